@@ -18,7 +18,7 @@ from derive.ir.constants import (
     TIE_SHARE,
     UNLIMITED,
 )
-from derive.ir.passes import bare, renamed
+from derive.ir.passes import renamed, without_assumptions
 from derive.ir.primitives import (
     Select,
     ToReal,
@@ -140,7 +140,7 @@ def setup_program(
     body += hoisted
     outputs += [Output(let.name.name, let.name) for let in hoisted if let.name in read]
     inputs = tuple(input_of(p) for p in parameters)
-    typed = tuple(converted(s, parameters) for s in bare(body))
+    typed = tuple(converted(s, parameters) for s in without_assumptions(body))
     return verify(Program("setup", inputs, typed, tuple(outputs)))
 
 
@@ -234,14 +234,14 @@ def _without_limits(joint: Joint) -> str:
 def _limits(key: str, fallback: Fallback) -> tuple[Let, ...]:
     lower, upper = real(f"lower_{key}"), real(f"upper_{key}")
     low, high, unlimited = _effective(key)
-    low_value, high_value, free = lower, upper, sp.Le(sp.Abs(lower) + sp.Abs(upper), 0)
+    low_value, high_value, without = lower, upper, sp.Le(sp.Abs(lower) + sp.Abs(upper), 0)
     for condition, bottom, top in fallback:
         given = sp.Gt(sp.Abs(lower) + sp.Abs(upper), 0)
         low_value = Select(given, lower, Select(condition, bottom, sp.Integer(0)) if condition != sp.true else bottom)
         high_value = Select(given, upper, Select(condition, top, sp.Integer(0)) if condition != sp.true else top)
-        free = sp.And(free, sp.Not(condition))
+        without = sp.And(without, sp.Not(condition))
     return (
-        Let(unlimited, free, f"{key}: whether it has no limits"),
+        Let(unlimited, without, f"{key}: whether it has no limits"),
         Let(low, low_value),
         Let(high, high_value),
     )

@@ -504,8 +504,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _try_joint(self, given: Values) -> Values | Status:
         """The residual of the closure at a trial, its slope, and the angles that may turn fast."""
         (
-            free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-            goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_elbow, wanted_shoulder,
+            freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
+            goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side, tried, wanted_elbow,
+            wanted_shoulder,
         ) = given
         k = self._constants
         a1 = k.a1
@@ -555,7 +556,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             slope_across_q1_tried = wanted_shoulder*slope_wrist_y_tried
             slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)*one_by_distance_q1_tried
         else:
-            chosen_q1 = freed_angle if freed == 0 else free_a1  # q1 where the pose leaves it free
+            chosen_q1 = freed_angle if freed == 0 else reference_a1  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
             slope_cos_q1_tried = 0.0
@@ -575,7 +576,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried*part_of_one_plus_cos_q3_tried_2
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = j6_offset_x*(goal_r32*cos_q6_tried + goal_r31*sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried*cos_q1_tried + slope_wrist_y_tried*sin_q1_tried + slope_cos_q1_tried*wrist_x_tried
@@ -594,19 +595,19 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_one_plus_cos_q3_tried = (
             -(part_of_one_plus_cos_q3_tried - part_of_one_plus_cos_q3_tried_2)*slope_reach_tried
         )
-        if sum_of_cos_q3_tried > 0.0:
-            divisor_of_cos_q3_tried = sum_of_cos_q3_tried
-            slope_sum_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-            slope_divisor_of_cos_q3_tried = slope_sum_of_cos_q3_tried
+        if sum_q3_tried > 0.0:
+            divisor_of_cos_q3_tried = sum_q3_tried
+            slope_sum_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+            slope_divisor_of_cos_q3_tried = slope_sum_q3_tried
         else:
             divisor_of_cos_q3_tried = 1.0
             slope_divisor_of_cos_q3_tried = 0.0
-        one_by_sum_of_cos_q3_tried = 1.0/divisor_of_cos_q3_tried
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_of_cos_q3_tried
+        one_by_sum_q3_tried = 1.0/divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_q3_tried
         sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
         root_of_sin_swing_q3_tried = (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
-        sin_swing_q3_tried = 2.0*one_by_sum_of_cos_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
+        sin_swing_q3_tried = 2.0*one_by_sum_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
         # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
@@ -615,7 +616,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
                 - slope_divisor_of_cos_q3_tried*cos_swing_q3_tried
             )
-            *one_by_sum_of_cos_q3_tried
+            *one_by_sum_q3_tried
         )
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
@@ -627,7 +628,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
         slope_sin_swing_q3_tried = (
             (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_divisor_of_cos_q3_tried*sin_swing_q3_tried)
-            *one_by_sum_of_cos_q3_tried
+            *one_by_sum_q3_tried
         )
         slope_cos_q3_tried = (
             a3_by_effective_q3_tried*slope_cos_swing_q3_tried + d4_by_effective_q3_tried*slope_sin_swing_q3_tried
@@ -677,7 +678,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)*one_by_root_of_length_q2_tried
             )
         else:
-            chosen_q2 = freed_angle if freed == 1 else free_a2  # q2 where the pose leaves it free
+            chosen_q2 = freed_angle if freed == 1 else reference_a2  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
             slope_cos_q2_tried = 0.0
@@ -721,9 +722,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _finish_root(self, given: Values) -> Values | Status:
         """The joints at a root, improved by Newton's method, and whether they are on the branch."""
         (
-            free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-            goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_crossing, wanted_elbow,
-            wanted_shoulder, wanted_wrist,
+            freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
+            goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side, tried, wanted_crossing,
+            wanted_elbow, wanted_shoulder, wanted_wrist,
         ) = given
         k = self._constants
         a1 = k.a1
@@ -756,7 +757,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             across_q1_tried = wanted_shoulder*wrist_y_tried
             sin_q1_tried = across_q1_tried/length_q1_tried
         else:
-            chosen_q1 = freed_angle if freed == 0 else free_a1  # q1 where the pose leaves it free
+            chosen_q1 = freed_angle if freed == 0 else reference_a1  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
         # coordinate of the point that the remaining links must reach
@@ -772,8 +773,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             (reach_tried - a2_minus_effective_q3_tried)*(a2_minus_effective_q3_tried + reach_tried)
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        divisor_of_cos_q3_tried = sum_of_cos_q3_tried if sum_of_cos_q3_tried > 0.0 else 1.0
+        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        divisor_of_cos_q3_tried = sum_q3_tried if sum_q3_tried > 0.0 else 1.0
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
         sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
@@ -800,7 +801,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             cos_q2_tried = along_q2_tried/length_q2_tried
             sin_q2_tried = across_q2_tried/length_q2_tried
         else:
-            chosen_q2 = freed_angle if freed == 1 else free_a2  # q2 where the pose leaves it free
+            chosen_q2 = freed_angle if freed == 1 else reference_a2  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
         r21_from_q1_tried = goal_r21*cos_q1_tried - goal_r11*sin_q1_tried
@@ -1042,9 +1043,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _find_root(self, given: Values) -> Values | Status:
         """The joints at the root that is nearest to the start; zeros where the machine needs no scan."""
         (
-            free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
-            goal_r33, goal_x, goal_y, goal_z, looked_for, start, wanted_crossing, wanted_elbow, wanted_shoulder,
-            wanted_wrist,
+            goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32, goal_r33, goal_x,
+            goal_y, goal_z, looked_for, reference_a1, reference_a2, start, wanted_crossing, wanted_elbow,
+            wanted_shoulder, wanted_wrist,
         ) = given
         # root scan along A6
         found = nearest_root(
@@ -1053,13 +1054,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             start,
             looked_for,
             (
-                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_elbow, wanted_shoulder,
+                "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+                goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, "side", "tried", wanted_elbow,
+                wanted_shoulder,
             ),
             (
-                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_crossing, wanted_elbow,
-                wanted_shoulder, wanted_wrist,
+                "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+                goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, "side", "tried",
+                wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist,
             ),
             7,
             self._array_programs().try_joint,
@@ -1089,12 +1091,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9
         ):
             return Status.BAD_INPUT
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        free_a6 = (ref_a6 - offset_a6)*DEGREE
+        reference_a1 = (ref_a1 - offset_a1)*DEGREE
+        reference_a2 = (ref_a2 - offset_a2)*DEGREE
+        reference_a6 = (ref_a6 - offset_a6)*DEGREE
         return (
-            free_a1, free_a2, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, free_a6, sigma_crossing,
-            sigma_elbow, sigma_shoulder, sigma_wrist,
+            r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, reference_a1, reference_a2, reference_a6,
+            sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist,
         )
 
     def _from_joints(self, joints: Reals, turns: Turns, reference: Reals) -> Reals | Status:
@@ -1453,14 +1455,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # without the offset there is no second crossing
         if not (searched or (sigma_crossing > 0)):
             return Diagnosis(Status.UNREACHABLE, "without the offset there is no second crossing", 0.0)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        free_a6 = (ref_a6 - offset_a6)*DEGREE
+        reference_a1 = (ref_a1 - offset_a1)*DEGREE
+        reference_a2 = (ref_a2 - offset_a2)*DEGREE
+        reference_a6 = (ref_a6 - offset_a6)*DEGREE
         # root scan along A6
         found = self._find_root(
             (
-                free_a1, free_a2, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, free_a6,
-                sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist,
+                r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, reference_a1, reference_a2,
+                reference_a6, sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist,
             )
         )
         if isinstance(found, Status):
@@ -1484,12 +1486,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 across_q1_closed = sigma_shoulder*wrist_y_closed
                 sin_q1_closed = across_q1_closed/distance_q1_closed
             else:
-                cos_q1_closed = cos(free_a1)
-                sin_q1_closed = sin(free_a1)
+                cos_q1_closed = cos(reference_a1)
+                sin_q1_closed = sin(reference_a1)
             q1 = arctan2(sin_q1_closed + 0.0, cos_q1_closed + 0.0)
             # twice the scale, as the sum of both: then cosine and sine agree
-            sum_of_cos_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-            divisor_of_cos_q3_closed = sum_of_cos_q3_closed if sum_of_cos_q3_closed > 0.0 else 1.0
+            sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+            divisor_of_cos_q3_closed = sum_q3_closed if sum_q3_closed > 0.0 else 1.0
             sin_swing_q3_closed = (
                 2.0*(sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
                 /divisor_of_cos_q3_closed
@@ -1507,8 +1509,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 cos_q2_closed = along_q2_closed/length_q2_closed
                 sin_q2_closed = across_q2_closed/length_q2_closed
             else:
-                cos_q2_closed = cos(free_a2)
-                sin_q2_closed = sin(free_a2)
+                cos_q2_closed = cos(reference_a2)
+                sin_q2_closed = sin(reference_a2)
             q2 = arctan2(sin_q2_closed + 0.0, cos_q2_closed + 0.0)
             # addition theorem: plus the angle of the direction from which it is measured
             cos_q3_closed = a3_by_effective_q3_tried*cos_swing_q3_closed + d4_by_effective_q3_tried*sin_swing_q3_closed
@@ -1526,9 +1528,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 direction_x_q4_closed = sigma_wrist*r33_from_q123_closed
                 direction_y_q4_closed = -sigma_wrist*r23_from_q1_closed
             else:
-                free_a4 = (ref_a4 - offset_a4)*DEGREE
-                direction_x_q4_closed = cos(free_a4)
-                direction_y_q4_closed = sin(free_a4)
+                reference_a4 = (ref_a4 - offset_a4)*DEGREE
+                direction_x_q4_closed = cos(reference_a4)
+                direction_y_q4_closed = sin(reference_a4)
             q4 = arctan2(direction_y_q4_closed + 0.0, direction_x_q4_closed + 0.0)
             r13_from_q123_closed = r13_from_q1_closed*cos_q23_closed - r33*sin_q23_closed
             q4_radius_of_q5_closed = sigma_wrist*radius_q4_closed
@@ -1891,9 +1893,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _all_joints(self, given: Values) -> list[Reals]:
         """The joints at every root of a search."""
         (
-            free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
-            goal_r33, goal_x, goal_y, goal_z, looked_for, start, wanted_crossing, wanted_elbow, wanted_shoulder,
-            wanted_wrist,
+            goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32, goal_r33, goal_x,
+            goal_y, goal_z, looked_for, reference_a1, reference_a2, start, wanted_crossing, wanted_elbow,
+            wanted_shoulder, wanted_wrist,
         ) = given
         return every_root(
             self._try_joint,
@@ -1901,13 +1903,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             start,
             looked_for,
             (
-                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_elbow, wanted_shoulder,
+                "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+                goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, "side", "tried", wanted_elbow,
+                wanted_shoulder,
             ),
             (
-                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_crossing, wanted_elbow,
-                wanted_shoulder, wanted_wrist,
+                "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+                goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, "side", "tried",
+                wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist,
             ),
             7,
             self._array_programs().try_joint,

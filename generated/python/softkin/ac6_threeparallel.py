@@ -710,9 +710,9 @@ class Ac6ThreeParallel(Mechanism):
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/distance_q1_squared
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
         wrist_z = z - d6*r33
         wrist_y_from_q1_fixed = wrist_z - d1
         # turned, within rounding, to where q3 has a solution
@@ -721,9 +721,9 @@ class Ac6ThreeParallel(Mechanism):
             cos_q1 = cos_q1_before_q1_for_q3
             sin_q1 = sin_q1_before_q1_for_q3
         else:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = -sin(reference_a6)
             r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
             r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
             radius_q6_before_q1_for_q3 = sqrt(
@@ -760,8 +760,8 @@ class Ac6ThreeParallel(Mechanism):
                     *one_by_radius_q6_before_q1_for_q3
                 )
             else:
-                cos_q6_before_q1_for_q3 = cos_of_free_a6
-                sin_q6_before_q1_for_q3 = -sin_of_free_a6
+                cos_q6_before_q1_for_q3 = cos_of_reference_a6
+                sin_q6_before_q1_for_q3 = -sin_of_reference_a6
                 if radius_q6_before_q1_for_q3 > 0.0:
                     radius_q6_rate_q1_for_q3 = (
                         -(
@@ -985,11 +985,11 @@ class Ac6ThreeParallel(Mechanism):
             across_q6 = sigma_wrist*r22_from_q1
             sin_q6_before_q6_of_q3 = across_q6/radius_q6
         else:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
-            cos_q6_before_q6_of_q3 = cos_of_free_a6
-            sin_q6_before_q6_of_q3 = -sin_of_free_a6
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = -sin(reference_a6)
+            cos_q6_before_q6_of_q3 = cos_of_reference_a6
+            sin_q6_before_q6_of_q3 = -sin_of_reference_a6
         r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
         r21_from_q1_before_q56_before_q6_of_q3 = (
             r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5_times_r33
@@ -1103,9 +1103,8 @@ class Ac6ThreeParallel(Mechanism):
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(divisor_of_cos_q3)
         # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
@@ -1115,9 +1114,9 @@ class Ac6ThreeParallel(Mechanism):
             direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
             direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            direction_x_q2 = cos(free_a2)
-            direction_y_q2 = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            direction_x_q2 = cos(reference_a2)
+            direction_y_q2 = sin(reference_a2)
         angle_q2 = arctan2(direction_y_q2 + 0.0, direction_x_q2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2

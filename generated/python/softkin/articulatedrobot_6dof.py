@@ -752,9 +752,9 @@ class ArticulatedRobot6DOF(Mechanism):
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/distance_q1_squared
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
         turned_cos_q1_for_q3 = (
             one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
         )
@@ -816,9 +816,8 @@ class ArticulatedRobot6DOF(Mechanism):
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         # in the singularity: the angle of the reference
@@ -837,9 +836,9 @@ class ArticulatedRobot6DOF(Mechanism):
             cos_q2 = along_q2/length_q2
             sin_q2 = across_q2/length_q2
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2 = cos(free_a2)
-            sin_q2 = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_q2 = cos(reference_a2)
+            sin_q2 = sin(reference_a2)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: whole turns added
@@ -865,9 +864,9 @@ class ArticulatedRobot6DOF(Mechanism):
             direction_x_q4 = -sigma_hand*r13_from_q123
             direction_y_q4 = sigma_hand*r23_from_q1
         else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4 = cos(free_a4)
-            direction_y_q4 = sin(free_a4)
+            reference_a4 = (ref_a4 - offset_a4)*DEGREE
+            direction_x_q4 = cos(reference_a4)
+            direction_y_q4 = sin(reference_a4)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4 + 0.0)/DEGREE  # A4: whole turns added

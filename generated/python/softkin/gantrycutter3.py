@@ -488,9 +488,9 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_r <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        free_r = (ref_r - offset_r)*DEGREE
-        cos_r = cos(free_r)
-        sin_r = sin(free_r)
+        reference_r = (ref_r - offset_r)*DEGREE
+        cos_r = cos(reference_r)
+        sin_r = sin(reference_r)
         direction_r_times_sin_r = -direction_r*sin_r
         # commanded point, in the frame of the last moving joint
         tool_x = point_x*cos_r + direction_r_times_sin_r*point_y

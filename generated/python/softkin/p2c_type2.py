@@ -487,9 +487,8 @@ class P2CType2(OffsetKinematics):
                 - effective_a2 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
@@ -499,9 +498,8 @@ class P2CType2(OffsetKinematics):
         sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_y = inner_arm*sin_a1
         rod_1_y = y - pivot_1_y
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
@@ -770,9 +768,8 @@ class P2CType2(OffsetKinematics):
                 - effective_a2 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
@@ -782,9 +779,8 @@ class P2CType2(OffsetKinematics):
         sin_a1 = (flange_y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_y = inner_arm*sin_a1
         rod_1_y = flange_y - pivot_1_y
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured

@@ -462,9 +462,8 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         axis_a1 = offset_a1 + z
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
         # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
@@ -474,9 +473,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
             direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            direction_x_a2 = cos(free_a2)
-            direction_y_a2 = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            direction_x_a2 = cos(reference_a2)
+            direction_y_a2 = sin(reference_a2)
         angle_a2 = arctan2(direction_y_a2 + 0.0, direction_x_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
@@ -691,9 +690,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             and -1e9 <= ref_a4 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        free_a4 = (ref_a4 - offset_a4)*DEGREE
-        cos_a4 = cos(free_a4)
-        sin_a4 = sin(free_a4)
+        reference_a4 = (ref_a4 - offset_a4)*DEGREE
+        cos_a4 = cos(reference_a4)
+        sin_a4 = sin(reference_a4)
         link_length_3_plus_point_x = link_length_3 + point_x
         # commanded point, in the frame of the last moving joint
         tool_x = link_length_2 + link_length_3_plus_point_x*cos_a4 - point_y*sin_a4
@@ -722,9 +721,8 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         a1 = z - point_z  # a1 from the z equation, which is linear in it
         axis_a1 = a1 + offset_a1
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
         # addition theorem: plus the angle of the direction from which it is measured
@@ -737,9 +735,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             direction_x_a2 = arm_across_a2*y + arm_along_a2*x
             direction_y_a2 = arm_along_a2*y - arm_across_a2*x
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            direction_x_a2 = cos(free_a2)
-            direction_y_a2 = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            direction_x_a2 = cos(reference_a2)
+            direction_y_a2 = sin(reference_a2)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(direction_y_a2, direction_x_a2 + 0.0)/DEGREE  # A2: whole turns added

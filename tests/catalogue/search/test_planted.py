@@ -149,7 +149,7 @@ def scanned(robot: softkin.Ac6RZRYRYRXRYRZJ6Offset, frame: softkin.Frame, trials
             pose = dict(zip("xyz", frame.position, strict=True)) | {
                 f"r{i + 1}{j + 1}": frame.rotation[i][j] for i, j in product(range(3), repeat=2)
             }
-            given = {"free_a1": 0.0, "free_a2": 0.0, "freed": -1.0, "freed_angle": 0.0, "side": side, "tried": t}
+            given = {"reference_a1": 0.0, "reference_a2": 0.0, "freed": -1.0, "freed_angle": 0.0, "side": side, "tried": t}
             given |= {f"goal_{n}": v for n, v in pose.items()} | {"wanted_elbow": 1.0, "wanted_shoulder": shoulder}
             values = tuple(given[name] for name in sorted(given))
             with np.errstate(all="ignore"):

@@ -51,8 +51,9 @@ class ArrayPrograms(Programs):
     def try_joint(self, given: Values, status: Codes) -> Values:
         """The residual of the closure at a trial, its slope, and the angles that may turn fast."""
         (
-            free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-            goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_elbow, wanted_shoulder,
+            freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
+            goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side, tried, wanted_elbow,
+            wanted_shoulder,
         ) = given
         k = self.constants
         a1 = k.a1
@@ -78,8 +79,8 @@ class ArrayPrograms(Programs):
         slope_wrist_x_tried = j6_offset_x*(goal_r12*cos_q6_tried + goal_r11*sin_q6_tried)
         slope_wrist_y_tried = j6_offset_x*(goal_r22*cos_q6_tried + goal_r21*sin_q6_tried)
 
-        def elsewhere_cos_q1_tried(free_a1: Real, freed: Whole, freed_angle: Real) -> Reals:
-            chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1 where the pose leaves it free
+        def elsewhere_cos_q1_tried(freed: Whole, freed_angle: Real, reference_a1: Real) -> Reals:
+            chosen_q1 = select(freed == 0, freed_angle, reference_a1)  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)  # in the singularity: the angle of the reference
             sin_q1_tried = sin(chosen_q1)
             slope_cos_q1_tried = 0.0
@@ -121,7 +122,7 @@ class ArrayPrograms(Programs):
             (distance_q1_tried > machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
             elsewhere_cos_q1_tried,
-            (free_a1, freed, freed_angle),
+            (freed, freed_angle, reference_a1),
         )
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1
@@ -138,7 +139,7 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried*part_of_one_plus_cos_q3_tried_2
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = j6_offset_x*(goal_r32*cos_q6_tried + goal_r31*sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried*cos_q1_tried + slope_wrist_y_tried*sin_q1_tried + slope_cos_q1_tried*wrist_x_tried
@@ -164,21 +165,21 @@ class ArrayPrograms(Programs):
             slope_divisor_of_cos_q3_tried = 0.0
             return (divisor_of_cos_q3_tried, slope_divisor_of_cos_q3_tried)
 
-        divisor_of_cos_q3_tried = sum_of_cos_q3_tried
-        slope_sum_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-        slope_divisor_of_cos_q3_tried = slope_sum_of_cos_q3_tried
+        divisor_of_cos_q3_tried = sum_q3_tried
+        slope_sum_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+        slope_divisor_of_cos_q3_tried = slope_sum_q3_tried
         divisor_of_cos_q3_tried, slope_divisor_of_cos_q3_tried = elsewhere(
-            sum_of_cos_q3_tried > 0.0,
+            sum_q3_tried > 0.0,
             (divisor_of_cos_q3_tried, slope_divisor_of_cos_q3_tried),
             elsewhere_divisor_of_cos_q3_tried,
             (),
         )
-        one_by_sum_of_cos_q3_tried = 1.0/divisor_of_cos_q3_tried
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_of_cos_q3_tried
+        one_by_sum_q3_tried = 1.0/divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_q3_tried
         sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
         root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
-        sin_swing_q3_tried = 2.0*one_by_sum_of_cos_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
+        sin_swing_q3_tried = 2.0*one_by_sum_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
         # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
@@ -187,7 +188,7 @@ class ArrayPrograms(Programs):
                 slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
                 - slope_divisor_of_cos_q3_tried*cos_swing_q3_tried
             )
-            *one_by_sum_of_cos_q3_tried
+            *one_by_sum_q3_tried
         )
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
@@ -202,7 +203,7 @@ class ArrayPrograms(Programs):
         )
         slope_sin_swing_q3_tried = (
             (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_divisor_of_cos_q3_tried*sin_swing_q3_tried)
-            *one_by_sum_of_cos_q3_tried
+            *one_by_sum_q3_tried
         )
         slope_cos_q3_tried = (
             a3_by_effective_q3_tried*slope_cos_swing_q3_tried + d4_by_effective_q3_tried*slope_sin_swing_q3_tried
@@ -211,8 +212,8 @@ class ArrayPrograms(Programs):
             a3_by_effective_q3_tried*slope_sin_swing_q3_tried - d4_by_effective_q3_tried*slope_cos_swing_q3_tried
         )
 
-        def elsewhere_cos_q2_tried(free_a2: Real, freed: Whole, freed_angle: Real) -> Reals:
-            chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2 where the pose leaves it free
+        def elsewhere_cos_q2_tried(freed: Whole, freed_angle: Real, reference_a2: Real) -> Reals:
+            chosen_q2 = select(freed == 1, freed_angle, reference_a2)  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)  # in the singularity: the angle of the reference
             sin_q2_tried = sin(chosen_q2)
             slope_cos_q2_tried = 0.0
@@ -271,7 +272,7 @@ class ArrayPrograms(Programs):
             (reach_tried > machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
             elsewhere_cos_q2_tried,
-            (free_a2, freed, freed_angle),
+            (freed, freed_angle, reference_a2),
         )
         r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried
         sin_q23_tried = cos_q2_tried*sin_q3_tried + cos_q3_tried*sin_q2_tried
@@ -312,9 +313,9 @@ class ArrayPrograms(Programs):
     def finish_root(self, given: Values, status: Codes) -> Values:
         """The joints at a root, improved by Newton's method, and whether they are on the branch."""
         (
-            free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-            goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_crossing, wanted_elbow,
-            wanted_shoulder, wanted_wrist,
+            freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
+            goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side, tried, wanted_crossing,
+            wanted_elbow, wanted_shoulder, wanted_wrist,
         ) = given
         k = self.constants
         a1 = k.a1
@@ -340,8 +341,8 @@ class ArrayPrograms(Programs):
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
 
-        def elsewhere_cos_q1_tried(free_a1: Real, freed: Whole, freed_angle: Real) -> Reals:
-            chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1 where the pose leaves it free
+        def elsewhere_cos_q1_tried(freed: Whole, freed_angle: Real, reference_a1: Real) -> Reals:
+            chosen_q1 = select(freed == 0, freed_angle, reference_a1)  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)  # in the singularity: the angle of the reference
             sin_q1_tried = sin(chosen_q1)
             return (cos_q1_tried, sin_q1_tried)
@@ -355,7 +356,7 @@ class ArrayPrograms(Programs):
             (distance_q1_tried > machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried),
             elsewhere_cos_q1_tried,
-            (free_a1, freed, freed_angle),
+            (freed, freed_angle, reference_a1),
         )
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1
@@ -370,8 +371,8 @@ class ArrayPrograms(Programs):
             (reach_tried - a2_minus_effective_q3_tried)*(a2_minus_effective_q3_tried + reach_tried)
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        divisor_of_cos_q3_tried = select(sum_of_cos_q3_tried > 0.0, sum_of_cos_q3_tried, 1.0)
+        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        divisor_of_cos_q3_tried = select(sum_q3_tried > 0.0, sum_q3_tried, 1.0)
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
         sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
@@ -380,8 +381,8 @@ class ArrayPrograms(Programs):
         cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
 
-        def elsewhere_cos_q2_tried(free_a2: Real, freed: Whole, freed_angle: Real) -> Reals:
-            chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2 where the pose leaves it free
+        def elsewhere_cos_q2_tried(freed: Whole, freed_angle: Real, reference_a2: Real) -> Reals:
+            chosen_q2 = select(freed == 1, freed_angle, reference_a2)  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)  # in the singularity: the angle of the reference
             sin_q2_tried = sin(chosen_q2)
             return (cos_q2_tried, sin_q2_tried)
@@ -403,7 +404,7 @@ class ArrayPrograms(Programs):
             (reach_tried > machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried),
             elsewhere_cos_q2_tried,
-            (free_a2, freed, freed_angle),
+            (freed, freed_angle, reference_a2),
         )
         r21_from_q1_tried = goal_r21*cos_q1_tried - goal_r11*sin_q1_tried
         r22_from_q1_tried = goal_r22*cos_q1_tried - goal_r12*sin_q1_tried
@@ -650,9 +651,9 @@ class ArrayPrograms(Programs):
     def find_root(self, given: Values, status: Codes) -> Values:
         """The joints at the root that is nearest to the start; zeros where the machine needs no scan."""
         (
-            free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
-            goal_r33, goal_x, goal_y, goal_z, looked_for, start, wanted_crossing, wanted_elbow, wanted_shoulder,
-            wanted_wrist,
+            goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32, goal_r33, goal_x,
+            goal_y, goal_z, looked_for, reference_a1, reference_a2, start, wanted_crossing, wanted_elbow,
+            wanted_shoulder, wanted_wrist,
         ) = given
         # root scan along A6
         found = nearest_root(
@@ -662,13 +663,14 @@ class ArrayPrograms(Programs):
             looked_for,
             status,
             (
-                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_elbow, wanted_shoulder,
+                "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+                goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, "side", "tried", wanted_elbow,
+                wanted_shoulder,
             ),
             (
-                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_crossing, wanted_elbow,
-                wanted_shoulder, wanted_wrist,
+                "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+                goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, "side", "tried",
+                wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist,
             ),
             7,
         )
@@ -930,14 +932,14 @@ class ArrayPrograms(Programs):
         require(status, searched | (sine_square_q3_closed >= -part_of_constant), Status.UNREACHABLE)
         # without the offset there is no second crossing
         require(status, searched | (sigma_crossing > 0), Status.UNREACHABLE)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        free_a6 = (ref_a6 - offset_a6)*DEGREE
+        reference_a1 = (ref_a1 - offset_a1)*DEGREE
+        reference_a2 = (ref_a2 - offset_a2)*DEGREE
+        reference_a6 = (ref_a6 - offset_a6)*DEGREE
         # root scan along A6
         found = self.find_root(
             (
-                free_a1, free_a2, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, free_a6,
-                sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist,
+                r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, reference_a1, reference_a2,
+                reference_a6, sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist,
             ),
             status,
         )
@@ -946,16 +948,16 @@ class ArrayPrograms(Programs):
         require(status, found_ | (opposite(searched)), Status.UNREACHABLE)
 
         def elsewhere_q1(
-            distance_q1_closed: Real, free_a1: Real, free_a2: Real, one_less_cos_q3_closed: Real,
-            one_plus_cos_q3_closed: Real, r11: Real, r12: Real, r13: Real, r21: Real, r22: Real, r23: Real, r31: Real,
-            r32: Real, r33: Real, reach_closed: Real, ref_a4: Real, sigma_elbow: Whole, sigma_shoulder: Whole,
-            sigma_wrist: Whole, sine_square_q3_closed: Real, wrist_x_closed: Real, wrist_x_from_q1_closed: Real,
-            wrist_y_closed: Real, wrist_z_from_q1_closed: Real,
+            distance_q1_closed: Real, one_less_cos_q3_closed: Real, one_plus_cos_q3_closed: Real, r11: Real,
+            r12: Real, r13: Real, r21: Real, r22: Real, r23: Real, r31: Real, r32: Real, r33: Real,
+            reach_closed: Real, ref_a4: Real, reference_a1: Real, reference_a2: Real, sigma_elbow: Whole,
+            sigma_shoulder: Whole, sigma_wrist: Whole, sine_square_q3_closed: Real, wrist_x_closed: Real,
+            wrist_x_from_q1_closed: Real, wrist_y_closed: Real, wrist_z_from_q1_closed: Real,
         ) -> Reals:
 
-            def elsewhere_cos_q1_closed(free_a1: Real) -> Reals:
-                cos_q1_closed = cos(free_a1)  # in the singularity: the angle of the reference
-                sin_q1_closed = sin(free_a1)
+            def elsewhere_cos_q1_closed(reference_a1: Real) -> Reals:
+                cos_q1_closed = cos(reference_a1)  # in the singularity: the angle of the reference
+                sin_q1_closed = sin(reference_a1)
                 return (cos_q1_closed, sin_q1_closed)
 
             along_q1_closed = sigma_shoulder*wrist_x_closed  # rotation by q1 that points the arm at the point
@@ -966,18 +968,18 @@ class ArrayPrograms(Programs):
                 distance_q1_closed > machine_scale_times_free_angle,
                 (cos_q1_closed, sin_q1_closed),
                 elsewhere_cos_q1_closed,
-                (free_a1,),
+                (reference_a1,),
             )
             q1 = atan2(sin_q1_closed, cos_q1_closed)
             # twice the scale, as the sum of both: then cosine and sine agree
-            sum_of_cos_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-            divisor_of_cos_q3_closed = select(sum_of_cos_q3_closed > 0.0, sum_of_cos_q3_closed, 1.0)
+            sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+            divisor_of_cos_q3_closed = select(sum_q3_closed > 0.0, sum_q3_closed, 1.0)
             sin_swing_q3_closed = 2.0*root(sine_square_q3_closed)*sigma_elbow/divisor_of_cos_q3_closed
             cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
 
-            def elsewhere_cos_q2_closed(free_a2: Real) -> Reals:
-                cos_q2_closed = cos(free_a2)  # in the singularity: the angle of the reference
-                sin_q2_closed = sin(free_a2)
+            def elsewhere_cos_q2_closed(reference_a2: Real) -> Reals:
+                cos_q2_closed = cos(reference_a2)  # in the singularity: the angle of the reference
+                sin_q2_closed = sin(reference_a2)
                 return (cos_q2_closed, sin_q2_closed)
 
             arm_along_q2_closed = effective_q3_tried*sin_swing_q3_closed
@@ -993,7 +995,7 @@ class ArrayPrograms(Programs):
                 reach_closed > machine_scale_times_free_angle,
                 (cos_q2_closed, sin_q2_closed),
                 elsewhere_cos_q2_closed,
-                (free_a2,),
+                (reference_a2,),
             )
             q2 = atan2(sin_q2_closed, cos_q2_closed)
             # addition theorem: plus the angle of the direction from which it is measured
@@ -1009,10 +1011,10 @@ class ArrayPrograms(Programs):
             radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
 
             def elsewhere_direction_x_q4_closed(ref_a4: Real) -> Reals:
-                free_a4 = (ref_a4 - offset_a4)*DEGREE
+                reference_a4 = (ref_a4 - offset_a4)*DEGREE
                 # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the reference
-                direction_x_q4_closed = cos(free_a4)
-                direction_y_q4_closed = sin(free_a4)
+                direction_x_q4_closed = cos(reference_a4)
+                direction_y_q4_closed = sin(reference_a4)
                 return (direction_x_q4_closed, direction_y_q4_closed)
 
             # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the reference
@@ -1054,8 +1056,8 @@ class ArrayPrograms(Programs):
             (q1, q2, q3, q4, q5, q6),
             elsewhere_q1,
             (
-                distance_q1_closed, free_a1, free_a2, one_less_cos_q3_closed, one_plus_cos_q3_closed, r11, r12, r13,
-                r21, r22, r23, r31, r32, r33, reach_closed, ref_a4, sigma_elbow, sigma_shoulder, sigma_wrist,
+                distance_q1_closed, one_less_cos_q3_closed, one_plus_cos_q3_closed, r11, r12, r13, r21, r22, r23, r31,
+                r32, r33, reach_closed, ref_a4, reference_a1, reference_a2, sigma_elbow, sigma_shoulder, sigma_wrist,
                 sine_square_q3_closed, wrist_x_closed, wrist_x_from_q1_closed, wrist_y_closed, wrist_z_from_q1_closed,
             ),
         )

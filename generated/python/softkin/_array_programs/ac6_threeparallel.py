@@ -218,10 +218,10 @@ class ArrayPrograms(Programs):
         ahead_q1_before_q1_for_q3 = -root(ahead_squared_q1)*sigma_shoulder
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
         # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
@@ -242,9 +242,9 @@ class ArrayPrograms(Programs):
             sigma_wrist: Whole, sin_q1_before_q1_for_q3: Real, wrist_x: Real, wrist_y: Real,
             wrist_y_from_q1_fixed: Real, wrist_z: Real,
         ) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = -sin(reference_a6)
             r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
             r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
             radius_q6_before_q1_for_q3 = sqrt(
@@ -259,12 +259,12 @@ class ArrayPrograms(Programs):
             across_q6_rate_q1_for_q3 = sigma_wrist*r22_from_q1_rate_q1_for_q3
 
             def elsewhere_cos_q6_before_q1_for_q3(
-                cos_of_free_a6: Real, r21_from_q1_before_q1_for_q3: Real, r21_from_q1_rate_q1_for_q3: Real,
+                cos_of_reference_a6: Real, r21_from_q1_before_q1_for_q3: Real, r21_from_q1_rate_q1_for_q3: Real,
                 r22_from_q1_before_q1_for_q3: Real, r22_from_q1_rate_q1_for_q3: Real, radius_q6_before_q1_for_q3: Real,
-                sin_of_free_a6: Real,
+                sin_of_reference_a6: Real,
             ) -> Reals:
-                cos_q6_before_q1_for_q3 = cos_of_free_a6
-                sin_q6_before_q1_for_q3 = -sin_of_free_a6
+                cos_q6_before_q1_for_q3 = cos_of_reference_a6
+                sin_q6_before_q1_for_q3 = -sin_of_reference_a6
 
                 def elsewhere_radius_q6_rate_q1_for_q3() -> Reals:
                     radius_q6_rate_q1_for_q3 = 0.0
@@ -320,8 +320,9 @@ class ArrayPrograms(Programs):
                 ),
                 elsewhere_cos_q6_before_q1_for_q3,
                 (
-                    cos_of_free_a6, r21_from_q1_before_q1_for_q3, r21_from_q1_rate_q1_for_q3,
-                    r22_from_q1_before_q1_for_q3, r22_from_q1_rate_q1_for_q3, radius_q6_before_q1_for_q3, sin_of_free_a6,
+                    cos_of_reference_a6, r21_from_q1_before_q1_for_q3, r21_from_q1_rate_q1_for_q3,
+                    r22_from_q1_before_q1_for_q3, r22_from_q1_rate_q1_for_q3, radius_q6_before_q1_for_q3,
+                    sin_of_reference_a6,
                 ),
             )
             (
@@ -638,11 +639,11 @@ class ArrayPrograms(Programs):
         q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33
 
         def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
-            cos_q6_before_q6_of_q3 = cos_of_free_a6  # in the singularity: the angle of the reference
-            sin_q6_before_q6_of_q3 = -sin_of_free_a6
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = -sin(reference_a6)
+            cos_q6_before_q6_of_q3 = cos_of_reference_a6  # in the singularity: the angle of the reference
+            sin_q6_before_q6_of_q3 = -sin_of_reference_a6
             return (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3)
 
         along_q6 = -sigma_wrist*r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
@@ -799,17 +800,16 @@ class ArrayPrograms(Programs):
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = select(absolute(sum_of_cos_q3) > 0.0, sum_of_cos_q3, 1.0)
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = select(absolute(sum_q3) > 0.0, sum_q3, 1.0)
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         sin_q3 = 2.0*root(sine_square_q3)*sigma_elbow/absolute(divisor_of_cos_q3)
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
-            direction_x_q2 = cos(free_a2)
-            direction_y_q2 = sin(free_a2)
+            direction_x_q2 = cos(reference_a2)
+            direction_y_q2 = sin(reference_a2)
             return (direction_x_q2, direction_y_q2)
 
         arm_along_q2 = a2 + a3*cos_q3
@@ -946,10 +946,10 @@ class ArrayPrograms(Programs):
         ahead_q1_before_q1_for_q3_right = root(ahead_squared_q1)
 
         def elsewhere_cos_q1_before_q1_for_q3_left(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
-            cos_q1_before_q1_for_q3_left = cos(free_a1)
-            sin_q1_before_q1_for_q3_left = sin(free_a1)
+            cos_q1_before_q1_for_q3_left = cos(reference_a1)
+            sin_q1_before_q1_for_q3_left = sin(reference_a1)
             # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
             cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left
             sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
@@ -987,9 +987,9 @@ class ArrayPrograms(Programs):
             sin_q1_before_q1_for_q3_right: Real, wrist_x: Real, wrist_y: Real, wrist_y_from_q1_fixed: Real,
             wrist_z: Real,
         ) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = -sin(reference_a6)
             r21_from_q1_before_q1_for_q3_left = r21*cos_q1_before_q1_for_q3_left - r11*sin_q1_before_q1_for_q3_left
             r22_from_q1_before_q1_for_q3_left = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
             radius_q6_before_q1_for_q3_left = sqrt(
@@ -1001,12 +1001,12 @@ class ArrayPrograms(Programs):
             r22_from_q1_rate_q1_for_q3_left = -r12*cos_q1_before_q1_for_q3_left - r22*sin_q1_before_q1_for_q3_left
 
             def elsewhere_cos_q6_before_q1_for_q3_left_down(
-                cos_of_free_a6: Real, r21_from_q1_before_q1_for_q3_left: Real, r21_from_q1_rate_q1_for_q3_left: Real,
+                cos_of_reference_a6: Real, r21_from_q1_before_q1_for_q3_left: Real, r21_from_q1_rate_q1_for_q3_left: Real,
                 r22_from_q1_before_q1_for_q3_left: Real, r22_from_q1_rate_q1_for_q3_left: Real,
-                radius_q6_before_q1_for_q3_left: Real, sin_of_free_a6: Real,
+                radius_q6_before_q1_for_q3_left: Real, sin_of_reference_a6: Real,
             ) -> Reals:
-                cos_q6_before_q1_for_q3_left_down = cos_of_free_a6
-                sin_q6_before_q1_for_q3_left_down = -sin_of_free_a6
+                cos_q6_before_q1_for_q3_left_down = cos_of_reference_a6
+                sin_q6_before_q1_for_q3_left_down = -sin_of_reference_a6
 
                 def elsewhere_radius_q6_rate_q1_for_q3_left() -> Reals:
                     radius_q6_rate_q1_for_q3_left = 0.0
@@ -1027,7 +1027,7 @@ class ArrayPrograms(Programs):
                 )
                 cos_q6_rate_q1_for_q3_left_down = 0.0
                 sin_q6_rate_q1_for_q3_left_down = 0.0
-                cos_q6_before_q1_for_q3_left_up = cos_of_free_a6
+                cos_q6_before_q1_for_q3_left_up = cos_of_reference_a6
                 sin_q6_before_q1_for_q3_left_up = sin_q6_before_q1_for_q3_left_down
                 cos_q6_rate_q1_for_q3_left_up = 0.0
                 sin_q6_rate_q1_for_q3_left_up = 0.0
@@ -1092,9 +1092,9 @@ class ArrayPrograms(Programs):
                 ),
                 elsewhere_cos_q6_before_q1_for_q3_left_down,
                 (
-                    cos_of_free_a6, r21_from_q1_before_q1_for_q3_left, r21_from_q1_rate_q1_for_q3_left,
+                    cos_of_reference_a6, r21_from_q1_before_q1_for_q3_left, r21_from_q1_rate_q1_for_q3_left,
                     r22_from_q1_before_q1_for_q3_left, r22_from_q1_rate_q1_for_q3_left, radius_q6_before_q1_for_q3_left,
-                    sin_of_free_a6,
+                    sin_of_reference_a6,
                 ),
             )
             (
@@ -1429,13 +1429,15 @@ class ArrayPrograms(Programs):
                 one_by_radius_q6_before_q1_for_q3_right*r21_from_q1_before_q1_for_q3_right
             )
             cos_q6_before_q1_for_q3_right_down = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_cos_q6_before_q1_for_q3_right_down, cos_of_free_a6,
+                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_cos_q6_before_q1_for_q3_right_down,
+                cos_of_reference_a6,
             )
             part_of_sin_q6_before_q1_for_q3_right_down = (
                 one_by_radius_q6_before_q1_for_q3_right*r22_from_q1_before_q1_for_q3_right
             )
             sin_q6_before_q1_for_q3_right_down = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, part_of_sin_q6_before_q1_for_q3_right_down, -sin_of_free_a6,
+                radius_q6_before_q1_for_q3_right > 1e-11, part_of_sin_q6_before_q1_for_q3_right_down,
+                -sin_of_reference_a6,
             )
             r21_from_q1_before_q6_before_q1_for_q3_right_down = (
                 r31*cos_q6_before_q1_for_q3_right_down - r32*sin_q6_before_q1_for_q3_right_down
@@ -1466,10 +1468,11 @@ class ArrayPrograms(Programs):
                 across_q6_q1_for_q3_right*across_q6_q1_for_q3_right + along_q6_q1_for_q3_right*along_q6_q1_for_q3_right
             )
             cos_q6_before_q1_for_q3_right_up = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, part_of_cos_q6_before_q1_for_q3_right_down, cos_of_free_a6,
+                radius_q6_before_q1_for_q3_right > 1e-11, part_of_cos_q6_before_q1_for_q3_right_down, cos_of_reference_a6,
             )
             sin_q6_before_q1_for_q3_right_up = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_sin_q6_before_q1_for_q3_right_down, -sin_of_free_a6,
+                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_sin_q6_before_q1_for_q3_right_down,
+                -sin_of_reference_a6,
             )
             r21_from_q1_before_q6_before_q1_for_q3_right_up = (
                 r31*cos_q6_before_q1_for_q3_right_up - r32*sin_q6_before_q1_for_q3_right_up
@@ -2729,11 +2732,11 @@ class ArrayPrograms(Programs):
         q6_radius_of_q5_times_r33_left_down = r33*radius_q6_left_down
 
         def elsewhere_cos_q6_before_q6_of_q3_left_down(ref_a6: Real) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
-            cos_q6_before_q6_of_q3_left_down = cos_of_free_a6  # in the singularity: the angle of the reference
-            sin_q6_before_q6_of_q3_left_down = -sin_of_free_a6
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = -sin(reference_a6)
+            cos_q6_before_q6_of_q3_left_down = cos_of_reference_a6  # in the singularity: the angle of the reference
+            sin_q6_before_q6_of_q3_left_down = -sin_of_reference_a6
             return (cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down)
 
         # in the singularity: the angle of the reference
@@ -2943,16 +2946,16 @@ class ArrayPrograms(Programs):
         # A1: whole turns added
         axis_a1_left_down = nearest_period(offset_a1 + degrees(sin_q1_left_down, cos_q1_left_down), near_a1)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_left_down = one_less_cos_q3_left_down + one_plus_cos_q3_left_down
-        divisor_of_cos_q3_left_down = select(absolute(sum_of_cos_q3_left_down) > 0.0, sum_of_cos_q3_left_down, 1.0)
+        sum_q3_left_down = one_less_cos_q3_left_down + one_plus_cos_q3_left_down
+        divisor_of_cos_q3_left_down = select(absolute(sum_q3_left_down) > 0.0, sum_q3_left_down, 1.0)
         cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)/divisor_of_cos_q3_left_down
         sin_q3_left_up_down = 2.0*root(sine_square_q3_left_down)/absolute(divisor_of_cos_q3_left_down)
 
         def elsewhere_direction_x_q2_left_up_down(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
-            direction_x_q2_left_up_down = cos(free_a2)
-            direction_y_q2_left_up_down = sin(free_a2)
+            direction_x_q2_left_up_down = cos(reference_a2)
+            direction_y_q2_left_up_down = sin(reference_a2)
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_left_down_down = direction_x_q2_left_up_down
             direction_y_q2_left_down_down = direction_y_q2_left_up_down
@@ -3024,11 +3027,11 @@ class ArrayPrograms(Programs):
         q6_radius_of_q5_times_r33_left_up = -r33*radius_q6_left_up
 
         def elsewhere_cos_q6_before_q6_of_q3_left_up(ref_a6: Real) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
-            cos_q6_before_q6_of_q3_left_up = cos_of_free_a6  # in the singularity: the angle of the reference
-            sin_q6_before_q6_of_q3_left_up = -sin_of_free_a6
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = -sin(reference_a6)
+            cos_q6_before_q6_of_q3_left_up = cos_of_reference_a6  # in the singularity: the angle of the reference
+            sin_q6_before_q6_of_q3_left_up = -sin_of_reference_a6
             return (cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up)
 
         # in the singularity: the angle of the reference
@@ -3230,16 +3233,16 @@ class ArrayPrograms(Programs):
         # A1: whole turns added
         axis_a1_left_up = nearest_period(offset_a1 + degrees(sin_q1_left_up, cos_q1_left_up), near_a1)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_left_up = one_less_cos_q3_left_up + one_plus_cos_q3_left_up
-        divisor_of_cos_q3_left_up = select(absolute(sum_of_cos_q3_left_up) > 0.0, sum_of_cos_q3_left_up, 1.0)
+        sum_q3_left_up = one_less_cos_q3_left_up + one_plus_cos_q3_left_up
+        divisor_of_cos_q3_left_up = select(absolute(sum_q3_left_up) > 0.0, sum_q3_left_up, 1.0)
         cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)/divisor_of_cos_q3_left_up
         sin_q3_left_up_up = 2.0*root(sine_square_q3_left_up)/absolute(divisor_of_cos_q3_left_up)
 
         def elsewhere_direction_x_q2_left_up_up(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
-            direction_x_q2_left_up_up = cos(free_a2)
-            direction_y_q2_left_up_up = sin(free_a2)
+            direction_x_q2_left_up_up = cos(reference_a2)
+            direction_y_q2_left_up_up = sin(reference_a2)
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_left_down_up = direction_x_q2_left_up_up
             direction_y_q2_left_down_up = direction_y_q2_left_up_up
@@ -3321,11 +3324,11 @@ class ArrayPrograms(Programs):
         q6_radius_of_q5_times_r33_right_down = r33*radius_q6_right_down
 
         def elsewhere_cos_q6_before_q6_of_q3_right_down(ref_a6: Real) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
-            cos_q6_before_q6_of_q3_right_down = cos_of_free_a6  # in the singularity: the angle of the reference
-            sin_q6_before_q6_of_q3_right_down = -sin_of_free_a6
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = -sin(reference_a6)
+            cos_q6_before_q6_of_q3_right_down = cos_of_reference_a6  # in the singularity: the angle of the reference
+            sin_q6_before_q6_of_q3_right_down = -sin_of_reference_a6
             return (cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down)
 
         # in the singularity: the angle of the reference
@@ -3536,16 +3539,16 @@ class ArrayPrograms(Programs):
         # A1: whole turns added
         axis_a1_right_down = nearest_period(offset_a1 + degrees(sin_q1_right_down, cos_q1_right_down), near_a1)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_right_down = one_less_cos_q3_right_down + one_plus_cos_q3_right_down
-        divisor_of_cos_q3_right_down = select(absolute(sum_of_cos_q3_right_down) > 0.0, sum_of_cos_q3_right_down, 1.0)
+        sum_q3_right_down = one_less_cos_q3_right_down + one_plus_cos_q3_right_down
+        divisor_of_cos_q3_right_down = select(absolute(sum_q3_right_down) > 0.0, sum_q3_right_down, 1.0)
         cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)/divisor_of_cos_q3_right_down
         sin_q3_right_up_down = 2.0*root(sine_square_q3_right_down)/absolute(divisor_of_cos_q3_right_down)
 
         def elsewhere_direction_x_q2_right_up_down(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
-            direction_x_q2_right_up_down = cos(free_a2)
-            direction_y_q2_right_up_down = sin(free_a2)
+            direction_x_q2_right_up_down = cos(reference_a2)
+            direction_y_q2_right_up_down = sin(reference_a2)
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_right_down_down = direction_x_q2_right_up_down
             direction_y_q2_right_down_down = direction_y_q2_right_up_down
@@ -3613,11 +3616,11 @@ class ArrayPrograms(Programs):
         q6_radius_of_q5_times_r33_right_up = -r33*radius_q6_right_up
 
         def elsewhere_cos_q6_before_q6_of_q3_right_up(ref_a6: Real) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
-            cos_q6_before_q6_of_q3_right_up = cos_of_free_a6  # in the singularity: the angle of the reference
-            sin_q6_before_q6_of_q3_right_up = -sin_of_free_a6
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = -sin(reference_a6)
+            cos_q6_before_q6_of_q3_right_up = cos_of_reference_a6  # in the singularity: the angle of the reference
+            sin_q6_before_q6_of_q3_right_up = -sin_of_reference_a6
             return (cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up)
 
         # in the singularity: the angle of the reference
@@ -3822,16 +3825,16 @@ class ArrayPrograms(Programs):
         # A1: whole turns added
         axis_a1_right_up = nearest_period(offset_a1 + degrees(sin_q1_right_up, cos_q1_right_up), near_a1)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_right_up = one_less_cos_q3_right_up + one_plus_cos_q3_right_up
-        divisor_of_cos_q3_right_up = select(absolute(sum_of_cos_q3_right_up) > 0.0, sum_of_cos_q3_right_up, 1.0)
+        sum_q3_right_up = one_less_cos_q3_right_up + one_plus_cos_q3_right_up
+        divisor_of_cos_q3_right_up = select(absolute(sum_q3_right_up) > 0.0, sum_q3_right_up, 1.0)
         cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)/divisor_of_cos_q3_right_up
         sin_q3_right_up_up = 2.0*root(sine_square_q3_right_up)/absolute(divisor_of_cos_q3_right_up)
 
         def elsewhere_direction_x_q2_right_up_up(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
-            direction_x_q2_right_up_up = cos(free_a2)
-            direction_y_q2_right_up_up = sin(free_a2)
+            direction_x_q2_right_up_up = cos(reference_a2)
+            direction_y_q2_right_up_up = sin(reference_a2)
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_right_down_up = direction_x_q2_right_up_up
             direction_y_q2_right_down_up = direction_y_q2_right_up_up

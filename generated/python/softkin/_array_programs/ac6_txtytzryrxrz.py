@@ -146,10 +146,10 @@ class ArrayPrograms(Programs):
         radius_a4 = sqrt(r13*r13 + r33*r33)  # polar coordinates: the radius at angle a4
 
         def elsewhere_direction_x_a4(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            reference_a4 = (ref_a4 - offset_a4)*DEGREE
             # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
-            direction_x_a4 = cos(free_a4)
-            direction_y_a4 = sin(free_a4)
+            direction_x_a4 = cos(reference_a4)
+            direction_y_a4 = sin(reference_a4)
             return (direction_x_a4, direction_y_a4)
 
         # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
@@ -252,10 +252,10 @@ class ArrayPrograms(Programs):
         radius_a4 = sqrt(r13*r13 + r33*r33)  # polar coordinates: the radius at angle a4
 
         def elsewhere_direction_x_a4_upright(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            reference_a4 = (ref_a4 - offset_a4)*DEGREE
             # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
-            direction_x_a4_upright = cos(free_a4)
-            direction_y_a4_upright = sin(free_a4)
+            direction_x_a4_upright = cos(reference_a4)
+            direction_y_a4_upright = sin(reference_a4)
             # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
             direction_x_a4_flipped = direction_x_a4_upright
             direction_y_a4_flipped = direction_y_a4_upright

@@ -247,10 +247,10 @@ class ArrayPrograms(Programs):
         turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
         # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
@@ -345,16 +345,15 @@ class ArrayPrograms(Programs):
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = select(sum_of_cos_q3 > 0.0, sum_of_cos_q3, 1.0)
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = select(sum_q3 > 0.0, sum_q3, 1.0)
         sin_swing_q3 = -2.0*root(sine_square_q3)*sigma_elbow/divisor_of_cos_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
 
         def elsewhere_cos_q2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2 = cos(free_a2)  # in the singularity: the angle of the reference
-            sin_q2 = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_q2 = cos(reference_a2)  # in the singularity: the angle of the reference
+            sin_q2 = sin(reference_a2)
             return (cos_q2, sin_q2)
 
         arm_along_q2 = -effective_q3*sin_swing_q3
@@ -394,10 +393,10 @@ class ArrayPrograms(Programs):
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
 
         def elsewhere_direction_x_q4(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            reference_a4 = (ref_a4 - offset_a4)*DEGREE
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
-            direction_x_q4 = cos(free_a4)
-            direction_y_q4 = sin(free_a4)
+            direction_x_q4 = cos(reference_a4)
+            direction_y_q4 = sin(reference_a4)
             return (direction_x_q4, direction_y_q4)
 
         # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
@@ -558,10 +557,10 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_cos_q1_before_q1_for_q3_front(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
-            cos_q1_before_q1_for_q3_front = cos(free_a1)
-            sin_q1_before_q1_for_q3_front = sin(free_a1)
+            cos_q1_before_q1_for_q3_front = cos(reference_a1)
+            sin_q1_before_q1_for_q3_front = sin(reference_a1)
             # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
@@ -766,15 +765,15 @@ class ArrayPrograms(Programs):
         # A1: whole turns added
         axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
-        divisor_of_cos_q3_front = select(sum_of_cos_q3_front > 0.0, sum_of_cos_q3_front, 1.0)
+        sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
+        divisor_of_cos_q3_front = select(sum_q3_front > 0.0, sum_q3_front, 1.0)
         sin_swing_q3_front_up = 2.0*root(sine_square_q3_front)/divisor_of_cos_q3_front
         cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/divisor_of_cos_q3_front
 
         def elsewhere_cos_q2_front_down(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_front_down = cos(free_a2)  # in the singularity: the angle of the reference
-            sin_q2_front_down = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_q2_front_down = cos(reference_a2)  # in the singularity: the angle of the reference
+            sin_q2_front_down = sin(reference_a2)
             cos_q2_front_up = cos_q2_front_down  # in the singularity: the angle of the reference
             sin_q2_front_up = sin_q2_front_down
             return (cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up)
@@ -827,10 +826,10 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_direction_x_q4_front_down_down(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            reference_a4 = (ref_a4 - offset_a4)*DEGREE
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
-            direction_x_q4_front_down_down = cos(free_a4)
-            direction_y_q4_front_down_down = sin(free_a4)
+            direction_x_q4_front_down_down = cos(reference_a4)
+            direction_y_q4_front_down_down = sin(reference_a4)
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_front_down_up = direction_x_q4_front_down_down
             direction_y_q4_front_down_up = direction_y_q4_front_down_down
@@ -927,10 +926,10 @@ class ArrayPrograms(Programs):
         radius_q4_front_up = sqrt(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
 
         def elsewhere_direction_x_q4_front_up_down(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            reference_a4 = (ref_a4 - offset_a4)*DEGREE
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
-            direction_x_q4_front_up_down = cos(free_a4)
-            direction_y_q4_front_up_down = sin(free_a4)
+            direction_x_q4_front_up_down = cos(reference_a4)
+            direction_y_q4_front_up_down = sin(reference_a4)
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_front_up_up = direction_x_q4_front_up_down
             direction_y_q4_front_up_up = direction_y_q4_front_up_down
@@ -1009,15 +1008,15 @@ class ArrayPrograms(Programs):
         refusal_back = select(sine_square_q3_back >= -swing_scale_q3_squared_times_rounding, 0, 3)  # q3: out of reach
         axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: whole turns added
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back
-        divisor_of_cos_q3_back = select(sum_of_cos_q3_back > 0.0, sum_of_cos_q3_back, 1.0)
+        sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back
+        divisor_of_cos_q3_back = select(sum_q3_back > 0.0, sum_q3_back, 1.0)
         sin_swing_q3_back_up = 2.0*root(sine_square_q3_back)/divisor_of_cos_q3_back
         cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back
 
         def elsewhere_cos_q2_back_down(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_back_down = cos(free_a2)  # in the singularity: the angle of the reference
-            sin_q2_back_down = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_q2_back_down = cos(reference_a2)  # in the singularity: the angle of the reference
+            sin_q2_back_down = sin(reference_a2)
             cos_q2_back_up = cos_q2_back_down  # in the singularity: the angle of the reference
             sin_q2_back_up = sin_q2_back_down
             return (cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up)
@@ -1066,10 +1065,10 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_direction_x_q4_back_down_down(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            reference_a4 = (ref_a4 - offset_a4)*DEGREE
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
-            direction_x_q4_back_down_down = cos(free_a4)
-            direction_y_q4_back_down_down = sin(free_a4)
+            direction_x_q4_back_down_down = cos(reference_a4)
+            direction_y_q4_back_down_down = sin(reference_a4)
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_back_down_up = direction_x_q4_back_down_down
             direction_y_q4_back_down_up = direction_y_q4_back_down_down
@@ -1155,10 +1154,10 @@ class ArrayPrograms(Programs):
         radius_q4_back_up = sqrt(r13_from_q123_back_up*r13_from_q123_back_up + r23_from_q1_back*r23_from_q1_back)
 
         def elsewhere_direction_x_q4_back_up_down(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            reference_a4 = (ref_a4 - offset_a4)*DEGREE
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
-            direction_x_q4_back_up_down = cos(free_a4)
-            direction_y_q4_back_up_down = sin(free_a4)
+            direction_x_q4_back_up_down = cos(reference_a4)
+            direction_y_q4_back_up_down = sin(reference_a4)
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_back_up_up = direction_x_q4_back_up_down
             direction_y_q4_back_up_up = direction_y_q4_back_up_down

@@ -157,9 +157,8 @@ class ArrayPrograms(Programs):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
@@ -169,9 +168,8 @@ class ArrayPrograms(Programs):
         sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
         pivot_1_y = -inner_arm*sin_a1
         rod_1_y = y - pivot_1_y
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
@@ -269,9 +267,8 @@ class ArrayPrograms(Programs):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1_outward = 2.0*root(sine_square_a1)/divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
@@ -282,9 +279,8 @@ class ArrayPrograms(Programs):
         sin_a1_outward = (y*cos_swing_a1 + span_1_x*sin_swing_a1_outward)/divisor_a1
         pivot_1_y_outward = -inner_arm*sin_a1_outward
         rod_1_y_outward = y - pivot_1_y_outward
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2_inward = 2.0*root(sine_square_a2)/divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured

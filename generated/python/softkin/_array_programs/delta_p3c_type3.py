@@ -300,9 +300,8 @@ class ArrayPrograms(Programs):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_knee_1/divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
@@ -314,9 +313,8 @@ class ArrayPrograms(Programs):
         sin_a1 = (along_a1*sin_swing_a1 - z*cos_swing_a1)/divisor_a1
         pivot_1_z = -inner_arm_1*sin_a1
         rod_1_z = z - pivot_1_z
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
@@ -328,9 +326,8 @@ class ArrayPrograms(Programs):
         sin_a2 = (along_a2*sin_swing_a2 - z*cos_swing_a2)/divisor_a2
         pivot_2_z = -inner_arm_2*sin_a2
         rod_2_z = z - pivot_2_z
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/divisor_of_cos_a3
         # addition theorem: plus the angle of the direction from which it is measured
@@ -501,9 +498,8 @@ class ArrayPrograms(Programs):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1_inward = 2.0*root(sine_square_a1)/divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
@@ -516,9 +512,8 @@ class ArrayPrograms(Programs):
         sin_a1_outward = (-along_a1*sin_swing_a1_inward - z*cos_swing_a1)/divisor_a1
         pivot_1_z_outward = -inner_arm_1*sin_a1_outward
         rod_1_z_outward = z - pivot_1_z_outward
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2_inward = 2.0*root(sine_square_a2)/divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
@@ -531,9 +526,8 @@ class ArrayPrograms(Programs):
         sin_a2_outward = (-along_a2*sin_swing_a2_inward - z*cos_swing_a2)/divisor_a2
         pivot_2_z_outward = -inner_arm_2*sin_a2_outward
         rod_2_z_outward = z - pivot_2_z_outward
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_swing_a3_inward = 2.0*root(sine_square_a3)/divisor_of_cos_a3
         # addition theorem: plus the angle of the direction from which it is measured

@@ -129,10 +129,10 @@ class ArrayPrograms(Programs):
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
 
         def elsewhere_direction_x_a(ref_a: Real) -> Reals:
-            free_a = (ref_a - offset_a)*DEGREE
+            reference_a = (ref_a - offset_a)*DEGREE
             # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
-            direction_x_a = cos(free_a)
-            direction_y_a = sin(free_a)
+            direction_x_a = cos(reference_a)
+            direction_y_a = sin(reference_a)
             return (direction_x_a, direction_y_a)
 
         # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
@@ -221,10 +221,10 @@ class ArrayPrograms(Programs):
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
 
         def elsewhere_direction_x_a_positive(ref_a: Real) -> Reals:
-            free_a = (ref_a - offset_a)*DEGREE
+            reference_a = (ref_a - offset_a)*DEGREE
             # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
-            direction_x_a_positive = cos(free_a)
-            direction_y_a_positive = sin(free_a)
+            direction_x_a_positive = cos(reference_a)
+            direction_y_a_positive = sin(reference_a)
             # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive

@@ -211,9 +211,8 @@ class ArrayPrograms(Programs):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/divisor_of_cos_a1
         sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
@@ -257,9 +256,8 @@ class ArrayPrograms(Programs):
         )
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
@@ -369,9 +367,8 @@ class ArrayPrograms(Programs):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1_right = 2.0*root(sine_square_a1)/divisor_of_cos_a1
         sin_a1_left = (span_upper_x*cos_swing_a1 - span_upper_y*sin_swing_a1_right)/divisor_a1
@@ -420,8 +417,8 @@ class ArrayPrograms(Programs):
             (link_length_4_plus_link_length_5 - divisor_a2_left)*(divisor_a2_left - link_length_5_minus_link_length_4)
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left
-        divisor_of_cos_a2_left = select(sum_of_cos_a2_left > 0.0, sum_of_cos_a2_left, 1.0)
+        sum_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left
+        divisor_of_cos_a2_left = select(sum_a2_left > 0.0, sum_a2_left, 1.0)
         cos_swing_a2_left = (one_plus_cos_a2_left - one_less_cos_a2_left)/divisor_of_cos_a2_left
         sine_square_a2_left = one_less_cos_a2_left*one_plus_cos_a2_left  # sine squared, times the squared scale
         sin_swing_a2_left_right = 2.0*root(sine_square_a2_left)/divisor_of_cos_a2_left
@@ -514,8 +511,8 @@ class ArrayPrograms(Programs):
             *(divisor_a2_right - link_length_5_minus_link_length_4)
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right
-        divisor_of_cos_a2_right = select(sum_of_cos_a2_right > 0.0, sum_of_cos_a2_right, 1.0)
+        sum_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right
+        divisor_of_cos_a2_right = select(sum_a2_right > 0.0, sum_a2_right, 1.0)
         cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right)/divisor_of_cos_a2_right
         sine_square_a2_right = one_less_cos_a2_right*one_plus_cos_a2_right  # sine squared, times the squared scale
         sin_swing_a2_right_right = 2.0*root(sine_square_a2_right)/divisor_of_cos_a2_right

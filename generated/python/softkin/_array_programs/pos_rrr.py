@@ -184,10 +184,10 @@ class ArrayPrograms(Programs):
         turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
         # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
@@ -283,17 +283,16 @@ class ArrayPrograms(Programs):
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = select(sum_of_cos_q3 > 0.0, sum_of_cos_q3, 1.0)
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = select(sum_q3 > 0.0, sum_q3, 1.0)
         sin_swing_q3 = -2.0*root(sine_square_q3)*sigma_elbow/divisor_of_cos_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
-            direction_x_q2 = cos(free_a2)
-            direction_y_q2 = sin(free_a2)
+            direction_x_q2 = cos(reference_a2)
+            direction_y_q2 = sin(reference_a2)
             return (direction_x_q2, direction_y_q2)
 
         arm_along_q2 = -effective_q3_2*sin_swing_q3
@@ -418,10 +417,10 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_cos_q1_before_q1_for_q3_front(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
-            cos_q1_before_q1_for_q3_front = cos(free_a1)
-            sin_q1_before_q1_for_q3_front = sin(free_a1)
+            cos_q1_before_q1_for_q3_front = cos(reference_a1)
+            sin_q1_before_q1_for_q3_front = sin(reference_a1)
             # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
@@ -623,16 +622,16 @@ class ArrayPrograms(Programs):
         # A1: whole turns added
         axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
-        divisor_of_cos_q3_front = select(sum_of_cos_q3_front > 0.0, sum_of_cos_q3_front, 1.0)
+        sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
+        divisor_of_cos_q3_front = select(sum_q3_front > 0.0, sum_q3_front, 1.0)
         sin_swing_q3_front_up = 2.0*root(sine_square_q3_front)/divisor_of_cos_q3_front
         cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/divisor_of_cos_q3_front
 
         def elsewhere_direction_x_q2_front_down(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
-            direction_x_q2_front_down = cos(free_a2)
-            direction_y_q2_front_down = sin(free_a2)
+            direction_x_q2_front_down = cos(reference_a2)
+            direction_y_q2_front_down = sin(reference_a2)
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_front_up = direction_x_q2_front_down
             direction_y_q2_front_up = direction_y_q2_front_down
@@ -695,16 +694,16 @@ class ArrayPrograms(Programs):
         refusal_back = select(sine_square_q3_back >= -swing_scale_q3_2_squared_times_rounding, 0, 3)
         axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: whole turns added
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back
-        divisor_of_cos_q3_back = select(sum_of_cos_q3_back > 0.0, sum_of_cos_q3_back, 1.0)
+        sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back
+        divisor_of_cos_q3_back = select(sum_q3_back > 0.0, sum_q3_back, 1.0)
         sin_swing_q3_back_up = 2.0*root(sine_square_q3_back)/divisor_of_cos_q3_back
         cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back
 
         def elsewhere_direction_x_q2_back_down(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
-            direction_x_q2_back_down = cos(free_a2)
-            direction_y_q2_back_down = sin(free_a2)
+            direction_x_q2_back_down = cos(reference_a2)
+            direction_y_q2_back_down = sin(reference_a2)
             # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_back_up = direction_x_q2_back_down
             direction_y_q2_back_up = direction_y_q2_back_down

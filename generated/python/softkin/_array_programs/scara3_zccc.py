@@ -139,17 +139,16 @@ class ArrayPrograms(Programs):
         # a3: out of reach
         require(status, sine_square_a3 >= -scale_a3_squared_times_rounding, Status.UNREACHABLE)
         axis_a1 = offset_a1 + z
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_a3 = 2.0*root(sine_square_a3)*sigma_elbow/divisor_of_cos_a3
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
             # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
-            direction_x_a2 = cos(free_a2)
-            direction_y_a2 = sin(free_a2)
+            direction_x_a2 = cos(reference_a2)
+            direction_y_a2 = sin(reference_a2)
             return (direction_x_a2, direction_y_a2)
 
         arm_along_a2 = link_length_1 + link_length_2*cos_a3
@@ -257,17 +256,16 @@ class ArrayPrograms(Programs):
         # a3: out of reach
         require(status, sine_square_a3 >= -scale_a3_squared_times_rounding, Status.UNREACHABLE)
         axis_a1 = offset_a1 + z
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_a3_right = 2.0*root(sine_square_a3)/divisor_of_cos_a3
 
         def elsewhere_direction_x_a2_right(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
             # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
-            direction_x_a2_right = cos(free_a2)
-            direction_y_a2_right = sin(free_a2)
+            direction_x_a2_right = cos(reference_a2)
+            direction_y_a2_right = sin(reference_a2)
             # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_a2_left = direction_x_a2_right
             direction_y_a2_left = direction_y_a2_right

@@ -145,17 +145,16 @@ class ArrayPrograms(Programs):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/divisor_of_cos_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
-            direction_x_a1 = cos(free_a1)
-            direction_y_a1 = sin(free_a1)
+            direction_x_a1 = cos(reference_a1)
+            direction_y_a1 = sin(reference_a1)
             return (direction_x_a1, direction_y_a1)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2
@@ -178,11 +177,11 @@ class ArrayPrograms(Programs):
         part_of_axis_a2 = offset_a2 - motor_a1*part_of_open_a2
 
         def elsewhere_near_a2(part_of_axis_a2: Real, ref_a1: Real, ref_a2: Real, single_a2: Truth) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            free_a2 = ref_motor_a2 + coupling_12*free_a1
+            reference_a2 = ref_motor_a2 + coupling_12*reference_a1
             # A2: without a commanded turn, the value nearest to this
-            open_a2 = select(single_a2, mid_a2, part_of_axis_a2 + free_a2/DEGREE)
+            open_a2 = select(single_a2, mid_a2, part_of_axis_a2 + reference_a2/DEGREE)
             near_a2 = open_a2
             return (near_a2,)
 
@@ -201,14 +200,14 @@ class ArrayPrograms(Programs):
         def elsewhere_near_a3(
             part_of_axis_a3: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real, single_a3: Truth,
         ) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
 
-            def elsewhere_open_a3(free_a1: Real, part_of_axis_a3: Real, ref_a3: Real, ref_motor_a2: Real) -> Reals:
+            def elsewhere_open_a3(part_of_axis_a3: Real, ref_a3: Real, ref_motor_a2: Real, reference_a1: Real) -> Reals:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
-                free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
+                reference_a3 = ref_motor_a3 + coupling_13*reference_a1 + coupling_23*ref_motor_a2
                 # A3: without a commanded turn, the value nearest to this
-                open_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE
+                open_a3 = offset_a3 + (part_of_axis_a3 + reference_a3)/DEGREE
                 return (open_a3,)
 
             open_a3 = mid_a3  # A3: without a commanded turn, the value nearest to this
@@ -216,7 +215,7 @@ class ArrayPrograms(Programs):
                 single_a3,
                 (open_a3,),
                 elsewhere_open_a3,
-                (free_a1, part_of_axis_a3, ref_a3, ref_motor_a2),
+                (part_of_axis_a3, ref_a3, ref_motor_a2, reference_a1),
             )
             near_a3 = open_a3
             return (near_a3,)
@@ -333,17 +332,16 @@ class ArrayPrograms(Programs):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_a2_right = 2.0*root(sine_square_a2)/divisor_of_cos_a2
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
-            direction_x_a1_right = cos(free_a1)
-            direction_y_a1_right = sin(free_a1)
+            direction_x_a1_right = cos(reference_a1)
+            direction_y_a1_right = sin(reference_a1)
             # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_a1_left = direction_x_a1_right
             direction_y_a1_left = direction_y_a1_right
@@ -378,17 +376,17 @@ class ArrayPrograms(Programs):
         def elsewhere_near_a2_right(
             part_of_axis_a2_left: Real, part_of_axis_a2_right: Real, ref_a1: Real, ref_a2: Real, single_a2: Truth,
         ) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
 
             def elsewhere_open_a2_right(
-                free_a1: Real, part_of_axis_a2_left: Real, part_of_axis_a2_right: Real, ref_motor_a2: Real,
+                part_of_axis_a2_left: Real, part_of_axis_a2_right: Real, ref_motor_a2: Real, reference_a1: Real,
             ) -> Reals:
-                free_a2 = ref_motor_a2 + coupling_12*free_a1
+                reference_a2 = ref_motor_a2 + coupling_12*reference_a1
                 # A2: without a commanded turn, the value nearest to this
-                open_a2_right = part_of_axis_a2_right + free_a2/DEGREE
+                open_a2_right = part_of_axis_a2_right + reference_a2/DEGREE
                 # A2: without a commanded turn, the value nearest to this
-                open_a2_left = part_of_axis_a2_left + free_a2/DEGREE
+                open_a2_left = part_of_axis_a2_left + reference_a2/DEGREE
                 return (open_a2_right, open_a2_left)
 
             open_a2_right = mid_a2  # A2: without a commanded turn, the value nearest to this
@@ -397,7 +395,7 @@ class ArrayPrograms(Programs):
                 single_a2,
                 (open_a2_right, open_a2_left),
                 elsewhere_open_a2_right,
-                (free_a1, part_of_axis_a2_left, part_of_axis_a2_right, ref_motor_a2),
+                (part_of_axis_a2_left, part_of_axis_a2_right, ref_motor_a2, reference_a1),
             )
             near_a2_right = open_a2_right
             near_a2_left = open_a2_left
@@ -426,18 +424,19 @@ class ArrayPrograms(Programs):
             part_of_axis_a3_left: Real, part_of_axis_a3_right: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real,
             single_a3: Truth,
         ) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
 
             def elsewhere_open_a3_right(
-                free_a1: Real, part_of_axis_a3_left: Real, part_of_axis_a3_right: Real, ref_a3: Real, ref_motor_a2: Real,
+                part_of_axis_a3_left: Real, part_of_axis_a3_right: Real, ref_a3: Real, ref_motor_a2: Real,
+                reference_a1: Real,
             ) -> Reals:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
-                free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
+                reference_a3 = ref_motor_a3 + coupling_13*reference_a1 + coupling_23*ref_motor_a2
                 # A3: without a commanded turn, the value nearest to this
-                open_a3_right = offset_a3 + (free_a3 + part_of_axis_a3_right)/DEGREE
+                open_a3_right = offset_a3 + (part_of_axis_a3_right + reference_a3)/DEGREE
                 # A3: without a commanded turn, the value nearest to this
-                open_a3_left = offset_a3 + (free_a3 + part_of_axis_a3_left)/DEGREE
+                open_a3_left = offset_a3 + (part_of_axis_a3_left + reference_a3)/DEGREE
                 return (open_a3_right, open_a3_left)
 
             open_a3_right = mid_a3  # A3: without a commanded turn, the value nearest to this
@@ -446,7 +445,7 @@ class ArrayPrograms(Programs):
                 single_a3,
                 (open_a3_right, open_a3_left),
                 elsewhere_open_a3_right,
-                (free_a1, part_of_axis_a3_left, part_of_axis_a3_right, ref_a3, ref_motor_a2),
+                (part_of_axis_a3_left, part_of_axis_a3_right, ref_a3, ref_motor_a2, reference_a1),
             )
             near_a3_right = open_a3_right
             near_a3_left = open_a3_left

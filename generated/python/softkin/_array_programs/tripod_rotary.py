@@ -242,9 +242,8 @@ class ArrayPrograms(Programs):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
@@ -254,9 +253,8 @@ class ArrayPrograms(Programs):
         sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1
         rod_1_z = z - pivot_1_z
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
@@ -268,9 +266,8 @@ class ArrayPrograms(Programs):
         sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/divisor_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2
         rod_2_z = z - pivot_2_z
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/divisor_of_cos_a3
         # addition theorem: plus the angle of the direction from which it is measured
@@ -429,9 +426,8 @@ class ArrayPrograms(Programs):
         require(status, absolute(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 3
         require(status, absolute(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1_outward = 2.0*root(sine_square_a1)/divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
@@ -442,9 +438,8 @@ class ArrayPrograms(Programs):
         sin_a1_outward = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1_outward)/divisor_a1
         pivot_1_z_outward = fixed_length_2 - arm_length_1*sin_a1_outward
         rod_1_z_outward = z - pivot_1_z_outward
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2_inward = 2.0*root(sine_square_a2)/divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
@@ -457,9 +452,8 @@ class ArrayPrograms(Programs):
         sin_a2_outward = (-across_a2*cos_swing_a2 - along_a2*sin_swing_a2_inward)/divisor_a2
         pivot_2_z_outward = fixed_length_2 - arm_length_1*sin_a2_outward
         rod_2_z_outward = z - pivot_2_z_outward
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_swing_a3_inward = 2.0*root(sine_square_a3)/divisor_of_cos_a3
         # addition theorem: plus the angle of the direction from which it is measured

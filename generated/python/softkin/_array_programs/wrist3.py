@@ -116,10 +116,10 @@ class ArrayPrograms(OrientationPrograms):
         radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
-            free_c = (ref_c - offset_c)*DEGREE
+            reference_c = (ref_c - offset_c)*DEGREE
             # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
-            direction_x_c = cos(free_c)
-            direction_y_c = sin(free_c)
+            direction_x_c = cos(reference_c)
+            direction_y_c = sin(reference_c)
             return (direction_x_c, direction_y_c)
 
         # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
@@ -209,10 +209,10 @@ class ArrayPrograms(OrientationPrograms):
         radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
 
         def elsewhere_direction_x_c_down(ref_c: Real) -> Reals:
-            free_c = (ref_c - offset_c)*DEGREE
+            reference_c = (ref_c - offset_c)*DEGREE
             # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
-            direction_x_c_down = cos(free_c)
-            direction_y_c_down = sin(free_c)
+            direction_x_c_down = cos(reference_c)
+            direction_y_c_down = sin(reference_c)
             # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
             direction_x_c_up = direction_x_c_down
             direction_y_c_up = direction_y_c_down

@@ -106,9 +106,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y)/divisor_q1
             sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_y + d4_times_wrist_x)/divisor_q1
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3_left = cos(free_a1)
-            sin_q1_before_q1_for_q3_left = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3_left = cos(reference_a1)
+            sin_q1_before_q1_for_q3_left = sin(reference_a1)
             cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left
             sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
         minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_left - r21*cos_q1_before_q1_for_q3_left
@@ -125,9 +125,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)
-            sin_q6_before_q6_of_q3_down = sin(free_a6)
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_q6_before_q6_of_q3_down = cos(reference_a6)
+            sin_q6_before_q6_of_q3_down = sin(reference_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         r21_from_q1_before_q56_before_q6_of_q3_down = (
@@ -244,9 +244,8 @@ def unrolled(k: Constants) -> Unrolled:
         a2_plus_reach = a2 + reach
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         sine_square_q3_down = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = 2.0*(sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)/abs(divisor_of_cos_q3)
@@ -256,9 +255,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_up_down = free_a2
-            angle_q2_down_down = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_up_down = reference_a2
+            angle_q2_down_down = reference_a2
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         axis_a2_left_up_down = offset_a2 + angle_q2_up_down/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left_up_down - open_a2 < 179.999999999:
@@ -401,9 +400,8 @@ def unrolled(k: Constants) -> Unrolled:
         a2_plus_reach = a2 + reach
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         sine_square_q3_up = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = 2.0*(sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)/abs(divisor_of_cos_q3)
@@ -413,9 +411,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_up_up = free_a2
-            angle_q2_down_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_up_up = reference_a2
+            angle_q2_down_up = reference_a2
         axis_a2_left_up_up = offset_a2 + angle_q2_up_up/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left_up_up - open_a2 < 179.999999999:
             axis_a2_left_up_up = nearest_period(axis_a2_left_up_up, open_a2)
@@ -512,9 +510,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)
-            sin_q6_before_q6_of_q3_down = sin(free_a6)
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_q6_before_q6_of_q3_down = cos(reference_a6)
+            sin_q6_before_q6_of_q3_down = sin(reference_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         r21_from_q1_before_q56_before_q6_of_q3_down = (
@@ -630,9 +628,8 @@ def unrolled(k: Constants) -> Unrolled:
         a2_plus_reach = a2 + reach
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         sine_square_q3_down = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = 2.0*(sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)/abs(divisor_of_cos_q3)
@@ -642,9 +639,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_up_down = free_a2
-            angle_q2_down_down = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_up_down = reference_a2
+            angle_q2_down_down = reference_a2
         axis_a2_right_up_down = offset_a2 + angle_q2_up_down/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right_up_down - open_a2 < 179.999999999:
             axis_a2_right_up_down = nearest_period(axis_a2_right_up_down, open_a2)
@@ -781,9 +778,8 @@ def unrolled(k: Constants) -> Unrolled:
         a2_plus_reach = a2 + reach
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         sine_square_q3_up = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = 2.0*(sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)/abs(divisor_of_cos_q3)
@@ -793,9 +789,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_up_up = free_a2
-            angle_q2_down_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_up_up = reference_a2
+            angle_q2_down_up = reference_a2
         axis_a2_right_up_up = offset_a2 + angle_q2_up_up/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right_up_up - open_a2 < 179.999999999:
             axis_a2_right_up_up = nearest_period(axis_a2_right_up_up, open_a2)
@@ -977,9 +973,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y)/divisor_q1
             sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_y + d4_times_wrist_x)/divisor_q1
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3_left = cos(free_a1)
-            sin_q1_before_q1_for_q3_left = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3_left = cos(reference_a1)
+            sin_q1_before_q1_for_q3_left = sin(reference_a1)
             cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left
             sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
         minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_left - r21*cos_q1_before_q1_for_q3_left
@@ -996,9 +992,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)
-            sin_q6_before_q6_of_q3_down = sin(free_a6)
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_q6_before_q6_of_q3_down = cos(reference_a6)
+            sin_q6_before_q6_of_q3_down = sin(reference_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         r21_from_q1_before_q56_before_q6_of_q3_down = (
@@ -1118,9 +1114,8 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         refusal_left_down = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*RADIAN
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
@@ -1129,9 +1124,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_left_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_left_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_left_up_down = free_a2
-            angle_q2_left_down_down = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_left_up_down = reference_a2
+            angle_q2_left_down_down = reference_a2
         angle_q3_down = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_left_up_down = angle_q3_down*RADIAN
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
@@ -1255,9 +1250,8 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         refusal_left_up = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
@@ -1266,9 +1260,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_left_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_left_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_left_up_up = free_a2
-            angle_q2_left_down_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_left_up_up = reference_a2
+            angle_q2_left_down_up = reference_a2
         angle_q3_up = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_left_up_up = angle_q3_up*RADIAN
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
@@ -1294,9 +1288,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)
-            sin_q6_before_q6_of_q3_down = sin(free_a6)
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_q6_before_q6_of_q3_down = cos(reference_a6)
+            sin_q6_before_q6_of_q3_down = sin(reference_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         r21_from_q1_before_q56_before_q6_of_q3_down = (
@@ -1415,9 +1409,8 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         refusal_right_down = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*RADIAN
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
@@ -1426,9 +1419,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_right_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_right_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_right_up_down = free_a2
-            angle_q2_right_down_down = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_right_up_down = reference_a2
+            angle_q2_right_down_down = reference_a2
         angle_q3_down = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_right_up_down = angle_q3_down*RADIAN
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
@@ -1552,9 +1545,8 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         refusal_right_up = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
@@ -1563,9 +1555,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_right_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_right_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_right_up_up = free_a2
-            angle_q2_right_down_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_right_up_up = reference_a2
+            angle_q2_right_down_up = reference_a2
         angle_q3_up = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_right_up_up = angle_q3_up*RADIAN
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
@@ -1674,9 +1666,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/divisor_q1
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/divisor_q1
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
         # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3
         minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3 - r21*cos_q1_before_q1_for_q3
@@ -1690,9 +1682,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6_before_q6_of_q3 = along_q6/radius_q6
             sin_q6_before_q6_of_q3 = (sigma_wrist*r22_from_q1)/radius_q6
         else:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3 = cos(free_a6)
-            sin_q6_before_q6_of_q3 = sin(free_a6)
+            reference_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_q6_before_q6_of_q3 = cos(reference_a6)
+            sin_q6_before_q6_of_q3 = sin(reference_a6)
         r21_from_q1_before_q56_before_q6_of_q3 = (
             (r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3)*cos_q5 - q6_radius_of_q5*r33
         )
@@ -1793,9 +1785,8 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (sine_square_q3 >= -scale_q3_squared_times_rounding_2):
             return None
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:

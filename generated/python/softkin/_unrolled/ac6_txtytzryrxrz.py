@@ -77,9 +77,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_a4_upright = r33
             direction_y_a4_upright = r13
         else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_a4_upright = cos(free_a4)
-            direction_y_a4_upright = sin(free_a4)
+            reference_a4 = (ref_a4 - offset_a4)*DEGREE
+            direction_x_a4_upright = cos(reference_a4)
+            direction_y_a4_upright = sin(reference_a4)
             direction_x_a4_flipped = direction_x_a4_upright
             direction_y_a4_flipped = direction_y_a4_upright
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
@@ -171,9 +171,9 @@ def unrolled(k: Constants) -> Unrolled:
                 scaled_r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
                 direction_y_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
         else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_a4_upright = cos(free_a4)
-            direction_y_a4_upright = sin(free_a4)
+            reference_a4 = (ref_a4 - offset_a4)*DEGREE
+            direction_x_a4_upright = cos(reference_a4)
+            direction_y_a4_upright = sin(reference_a4)
             scaled_r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
             direction_y_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
             direction_x_a4_flipped = direction_x_a4_upright
@@ -217,9 +217,9 @@ def unrolled(k: Constants) -> Unrolled:
                 scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
                 direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
         else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_a4 = cos(free_a4)
-            direction_y_a4 = sin(free_a4)
+            reference_a4 = (ref_a4 - offset_a4)*DEGREE
+            direction_x_a4 = cos(reference_a4)
+            direction_y_a4 = sin(reference_a4)
             scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
             direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
         if no_offsets:

@@ -46,9 +46,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_theta = x
             direction_y_theta = y
         else:
-            free_theta = (ref_theta - offset_theta)*DEGREE
-            direction_x_theta = cos(free_theta)
-            direction_y_theta = sin(free_theta)
+            reference_theta = (ref_theta - offset_theta)*DEGREE
+            direction_x_theta = cos(reference_theta)
+            direction_y_theta = sin(reference_theta)
         # Theta: without a commanded turn, the value nearest to this
         open_theta = mid_theta if single_theta else ref_theta
         # Theta: whole turns added
@@ -68,9 +68,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
-            free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+            reference_phi = (ref_phi - offset_phi)*DEGREE
+            direction_x_phi = cos(nearest_on_arc(reference_phi, 90.0*DEGREE, 90.0*DEGREE))
+            direction_y_phi = sin(nearest_on_arc(reference_phi, 90.0*DEGREE, 90.0*DEGREE))
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         # limits of Phi
         if not (axis_phi >= lowest_phi and axis_phi <= highest_phi):
@@ -90,17 +90,17 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_theta = x
             direction_y_theta = y
         else:
-            free_theta = (ref_theta - offset_theta)*DEGREE
-            direction_x_theta = cos(free_theta)
-            direction_y_theta = sin(free_theta)
+            reference_theta = (ref_theta - offset_theta)*DEGREE
+            direction_x_theta = cos(reference_theta)
+            direction_y_theta = sin(reference_theta)
         # in the singularity: the angle of the reference
         if radius_phi > machine_scale_times_free_angle_2:
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
-            free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+            reference_phi = (ref_phi - offset_phi)*DEGREE
+            direction_x_phi = cos(nearest_on_arc(reference_phi, 90.0*DEGREE, 90.0*DEGREE))
+            direction_y_phi = sin(nearest_on_arc(reference_phi, 90.0*DEGREE, 90.0*DEGREE))
         return (
             (
                 offset_r + radius_phi, offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN,
@@ -119,17 +119,17 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_theta = x
             direction_y_theta = y
         else:
-            free_theta = (ref_theta - offset_theta)*DEGREE
-            direction_x_theta = cos(free_theta)
-            direction_y_theta = sin(free_theta)
+            reference_theta = (ref_theta - offset_theta)*DEGREE
+            direction_x_theta = cos(reference_theta)
+            direction_y_theta = sin(reference_theta)
         # in the singularity: the angle of the reference
         if radius_phi > machine_scale_times_free_angle_2:
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
-            free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+            reference_phi = (ref_phi - offset_phi)*DEGREE
+            direction_x_phi = cos(nearest_on_arc(reference_phi, 90.0*DEGREE, 90.0*DEGREE))
+            direction_y_phi = sin(nearest_on_arc(reference_phi, 90.0*DEGREE, 90.0*DEGREE))
         if no_offsets:
             return (
                 radius_phi, arctan2(direction_y_theta, direction_x_theta)*RADIAN,

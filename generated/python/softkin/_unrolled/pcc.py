@@ -68,8 +68,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding_2):
             return 2*(3,)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
+        sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = sum_a2_from_a1 if sum_a2_from_a1 > 0.0 else 1.0
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
         sin_a2_from_a1 = (
             2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/divisor_of_cos_a2_from_a1
@@ -82,9 +82,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            angle_a1_right = reference_a1
+            angle_a1_left = reference_a1
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
@@ -151,8 +151,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding_2):
             return 2*(None,)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
+        sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = sum_a2_from_a1 if sum_a2_from_a1 > 0.0 else 1.0
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
         sin_a2_from_a1 = (
             2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/divisor_of_cos_a2_from_a1
@@ -163,9 +163,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            angle_a1_right = reference_a1
+            angle_a1_left = reference_a1
         angle_a2_from_a1 = arctan2(sin_a2_from_a1, cos_a2_from_a1)
         # a2 from the sum a2_from_a1 of angles about parallel axes
         axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)*RADIAN
@@ -199,8 +199,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding_2):
             return None
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
+        sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = sum_a2_from_a1 if sum_a2_from_a1 > 0.0 else 1.0
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
         sin_a2_from_a1 = (
             2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow

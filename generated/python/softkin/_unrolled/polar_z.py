@@ -43,9 +43,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_c = x
             direction_y_c = y
         else:
-            free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(free_c)
-            direction_y_c = sin(free_c)
+            reference_c = (ref_c - offset_c)*DEGREE
+            direction_x_c = cos(reference_c)
+            direction_y_c = sin(reference_c)
         open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
         axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: whole turns added
         if not -180.000000001 <= axis_c - open_c < 179.999999999:
@@ -75,9 +75,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_c = x
             direction_y_c = y
         else:
-            free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(free_c)
-            direction_y_c = sin(free_c)
+            reference_c = (ref_c - offset_c)*DEGREE
+            direction_x_c = cos(reference_c)
+            direction_y_c = sin(reference_c)
         return (
             (offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN, offset_r + radius_c, offset_z + z),
         )
@@ -92,9 +92,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_c = x
             direction_y_c = y
         else:
-            free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(free_c)
-            direction_y_c = sin(free_c)
+            reference_c = (ref_c - offset_c)*DEGREE
+            direction_x_c = cos(reference_c)
+            direction_y_c = sin(reference_c)
         if no_offsets:
             return (arctan2(direction_y_c, direction_x_c)*RADIAN, radius_c, z)
         return (offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN, offset_r + radius_c, offset_z + z)

@@ -84,9 +84,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
@@ -95,9 +94,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_down = free_a2
-            angle_q2_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_down = reference_a2
+            angle_q2_up = reference_a2
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         axis_a2_front_down = offset_a2 + angle_q2_down/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
@@ -120,9 +119,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_x - d3_times_y)/divisor_q1
             sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_times_y)/divisor_q1
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3_front = cos(free_a1)
-            sin_q1_before_q1_for_q3_front = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3_front = cos(reference_a1)
+            sin_q1_before_q1_for_q3_front = sin(reference_a1)
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
@@ -167,9 +166,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
@@ -178,9 +176,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_down = free_a2
-            angle_q2_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_down = reference_a2
+            angle_q2_up = reference_a2
         axis_a2_back_down = offset_a2 + angle_q2_down/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_back_down - open_a2 < 179.999999999:
             axis_a2_back_down = nearest_period(axis_a2_back_down, open_a2)
@@ -273,15 +271,14 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_x - d3_times_y)/divisor_q1
             sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_times_y)/divisor_q1
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3_front = cos(free_a1)
-            sin_q1_before_q1_for_q3_front = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3_front = cos(reference_a1)
+            sin_q1_before_q1_for_q3_front = sin(reference_a1)
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*RADIAN
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
@@ -290,9 +287,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_front_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_front_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_front_down = free_a2
-            angle_q2_front_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_front_down = reference_a2
+            angle_q2_front_up = reference_a2
         angle_of_swing_q3_front_down = arctan2(-sin_swing_q3, cos_swing_q3)
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
@@ -307,9 +304,8 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         refusal_back = 0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2 else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
@@ -318,9 +314,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_back_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_back_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_back_down = free_a2
-            angle_q2_back_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_back_down = reference_a2
+            angle_q2_back_up = reference_a2
         angle_of_swing_q3_back_down = arctan2(-sin_swing_q3, cos_swing_q3)
         return (
             (
@@ -395,12 +391,11 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/divisor_q1
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/divisor_q1
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:

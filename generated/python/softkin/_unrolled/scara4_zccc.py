@@ -82,9 +82,8 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
             return 2*(3,)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/divisor_of_cos_a3
         if reach > machine_scale_times_free_angle_2:
@@ -93,9 +92,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
             angle_a2_left = angle_of_arm_along_a2 + angle_of_wrist_x
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_a2_right = free_a2
-            angle_a2_left = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_a2_right = reference_a2
+            angle_a2_left = reference_a2
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         axis_a2_right = offset_a2 + angle_a2_right/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
@@ -170,9 +169,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a3 >= -scale_a3_squared_times_rounding_2):
             return 2*(None,)
         axis_a1 = offset_a1 + z
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/divisor_of_cos_a3
         if reach > machine_scale_times_free_angle_2:
@@ -181,9 +179,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
             angle_a2_left = angle_of_arm_along_a2 + angle_of_wrist_x
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_a2_right = free_a2
-            angle_a2_left = free_a2
+            reference_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_a2_right = reference_a2
+            angle_a2_left = reference_a2
         angle_a3 = arctan2(sin_a3, cos_a3)
         part_of_axis_a3 = angle_a3*RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)
@@ -222,9 +220,8 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: out of reach
         if not (sine_square_a3 >= -scale_a3_squared_times_rounding_2):
             return None
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
         if reach > machine_scale_times_free_angle_2:

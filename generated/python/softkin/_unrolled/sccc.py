@@ -85,9 +85,8 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
             return 2*(3,)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle_2:
@@ -96,9 +95,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            angle_a1_right = reference_a1
+            angle_a1_left = reference_a1
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
@@ -114,9 +113,9 @@ def unrolled(k: Constants) -> Unrolled:
             open_a2_right = mid_a2
             open_a2_left = mid_a2
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            part_of_open_a2 = offset_a2 + (ref_motor_a2 + coupling_12*free_a1)/DEGREE
+            part_of_open_a2 = offset_a2 + (ref_motor_a2 + coupling_12*reference_a1)/DEGREE
             open_a2_right = part_of_open_a2 - coupling_12*motor_a1_right/DEGREE
             open_a2_left = part_of_open_a2 - coupling_12*motor_a1_left/DEGREE
         axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: whole turns added
@@ -133,10 +132,10 @@ def unrolled(k: Constants) -> Unrolled:
             open_a3_right = mid_a3
             open_a3_left = mid_a3
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            free_a3 = (ref_a3 - offset_a3)*DEGREE + coupling_13*free_a1 + coupling_23*ref_motor_a2
-            part_of_open_a3 = offset_a3 + free_a3/DEGREE
+            reference_a3 = (ref_a3 - offset_a3)*DEGREE + coupling_13*reference_a1 + coupling_23*ref_motor_a2
+            part_of_open_a3 = offset_a3 + reference_a3/DEGREE
             open_a3_right = part_of_open_a3 + (-coupling_13*motor_a1_right - coupling_23*motor_a2_right)/DEGREE
             open_a3_left = part_of_open_a3 + (-coupling_13*motor_a1_left - coupling_23*motor_a2_left)/DEGREE
         # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
@@ -210,9 +209,8 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
             return 2*(None,)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle_2:
@@ -221,9 +219,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            angle_a1_right = reference_a1
+            angle_a1_left = reference_a1
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
@@ -239,8 +237,8 @@ def unrolled(k: Constants) -> Unrolled:
             open_a2_right = mid_a2
             open_a2_left = mid_a2
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            part_of_open_a2 = offset_a2 + ((ref_a2 - offset_a2)*DEGREE + coupling_12*free_a1)*RADIAN
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            part_of_open_a2 = offset_a2 + ((ref_a2 - offset_a2)*DEGREE + coupling_12*reference_a1)*RADIAN
             open_a2_right = part_of_open_a2 - coupling_12*motor_a1_right*RADIAN
             open_a2_left = part_of_open_a2 - coupling_12*motor_a1_left*RADIAN
         axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: whole turns added
@@ -294,16 +292,15 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
             return None
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, as the sum of both: then cosine and sine agree
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle_2:
             angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1 = free_a1
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            angle_a1 = reference_a1
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - open_a1 < 179.999999999:
@@ -314,8 +311,10 @@ def unrolled(k: Constants) -> Unrolled:
         if single_a2:
             open_a2 = mid_a2
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            open_a2 = offset_a2 + ((ref_a2 - offset_a2)*DEGREE + coupling_12*free_a1)*RADIAN - coupling_12*motor_a1*RADIAN
+            reference_a1 = (ref_a1 - offset_a1)*DEGREE
+            open_a2 = (
+                offset_a2 + ((ref_a2 - offset_a2)*DEGREE + coupling_12*reference_a1)*RADIAN - coupling_12*motor_a1*RADIAN
+            )
         axis_a2 = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - open_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, open_a2)
