@@ -43,7 +43,7 @@ from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.origin import from_origin
 from derive.solver.subproblems.shortfall import out_of_reach
 
-_ADDITION = "addition theorem: plus the angle of the direction from which it is measured"
+_ADDITION = "addition theorem: plus the angle of the direction from which the cosine is measured"
 
 
 def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:

@@ -524,7 +524,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         swing_scale_q3_tried_squared = k.swing_scale_q3_tried_squared
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*j6_offset_x - d6*goal_r13
         wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*j6_offset_x - d6*goal_r23
         # distance of the point from the axis of q1
@@ -608,7 +608,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
         root_of_sin_swing_q3_tried = (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
         sin_swing_q3_tried = 2.0*one_by_sum_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
@@ -744,7 +744,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         size_of_j6_offset_x = k.size_of_j6_offset_x
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*j6_offset_x - d6*goal_r13
         wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*j6_offset_x - d6*goal_r23
         # distance of the point from the axis of q1
@@ -782,7 +782,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             2.0*(sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)*sign_elbow_tried
             /divisor_of_cos_q3_tried
         )
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
         # in the singularity: the angle of the reference
@@ -1285,13 +1285,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
         r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
         r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        wrist_x_closed = x - d6_times_r13_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x_closed = x - d6_times_r13_at_q5  # wrist centre: the last joints do not move this point
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
         margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_tried
         if searched:
-            # wrist centre: the point in which the last axes intersect
+            # wrist centre: the last joints do not move this point
             wrist_x_tried = wrist_x_closed + (r12_at_q6*sin_q6 - r11_at_q6*cos_q6)*j6_offset_x
             wrist_y_tried = wrist_y_closed + (r22_at_q6*sin_q6 - r21_at_q6*cos_q6)*j6_offset_x
             margin_shoulder_tried = one_by_machine_scale*(wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)
@@ -1420,7 +1420,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             and -1e9 <= ref_a6 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x_closed = x - d6*r13  # wrist centre: the point in which the last axes intersect
+        wrist_x_closed = x - d6*r13  # wrist centre: the last joints do not move this point
         wrist_y_closed = y - d6*r23
         # distance of the point from the axis of q1
         distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
@@ -1512,7 +1512,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 cos_q2_closed = cos(reference_a2)
                 sin_q2_closed = sin(reference_a2)
             q2 = arctan2(sin_q2_closed + 0.0, cos_q2_closed + 0.0)
-            # addition theorem: plus the angle of the direction from which it is measured
+            # addition theorem: plus the angle of the direction from which the cosine is measured
             cos_q3_closed = a3_by_effective_q3_tried*cos_swing_q3_closed + d4_by_effective_q3_tried*sin_swing_q3_closed
             sin_q3_closed = a3_by_effective_q3_tried*sin_swing_q3_closed - d4_by_effective_q3_tried*cos_swing_q3_closed
             q3 = arctan2(sin_q3_closed + 0.0, cos_q3_closed + 0.0)

@@ -574,7 +574,7 @@ class Ac6ThreeParallel(Mechanism):
         r31_at_q5 = cos_q5*sin_q234
         r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6
         r32_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         wrist_y = d6_times_r22_at_q5 + y
         branch_shoulder = (-wrist_x*cos_q1 - wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
@@ -693,7 +693,7 @@ class Ac6ThreeParallel(Mechanism):
             and -1e9 <= ref_a6 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6*r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -1279,7 +1279,7 @@ class Ac6ThreeParallel(Mechanism):
         x_at_q5 = x_at_q4 + d4*sin_q1
         x_at_q6 = x_at_q5 - d5*r12_at_q234
         x = d6_times_r12_at_q5 + x_at_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         r21_at_q234 = cos_q234*sin_q1
         r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5
         d6_times_r22_at_q5 = -d6*r22_at_q5

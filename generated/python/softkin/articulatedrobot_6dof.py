@@ -585,7 +585,7 @@ class ArticulatedRobot6DOF(Mechanism):
         r31_at_q5 = r31_at_q4*cos_q5 + sin_q23*sin_q5
         r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
         r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         wrist_y = y - d6_times_r22_at_q5
         branch_arm = (wrist_x*cos_q1 + wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
@@ -712,7 +712,7 @@ class ArticulatedRobot6DOF(Mechanism):
             and -1e9 <= ref_a6 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6*r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -844,7 +844,7 @@ class ArticulatedRobot6DOF(Mechanism):
         axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3
         sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
@@ -1028,7 +1028,7 @@ class ArticulatedRobot6DOF(Mechanism):
         x_at_q4 = x_at_q3 + a3*r11_at_q23 + d3*sin_q1
         x_at_q5 = x_at_q4 - d4*r12_at_q23
         x = d6_times_r12_at_q5 + x_at_q5
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         r22_at_q23 = -cos_q23*sin_q1
         r21_at_q23 = -sin_q1*sin_q23
         r21_at_q4 = r21_at_q23*cos_q4 - cos_q1*sin_q4

@@ -452,7 +452,7 @@ class Kin5Axes(Mechanism):
             and -1e9 <= ref_b <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x = x - r13*tool_length_times_tool_side  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - r13*tool_length_times_tool_side  # wrist centre: the last joints do not move this point
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length_times_tool_side
         axis_y = offset_y + wrist_y

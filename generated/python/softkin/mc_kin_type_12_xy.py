@@ -612,7 +612,7 @@ class KinType12XY(OffsetKinematics):
         sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
         along_a2 = (link_length_2*span_rear_x - part_of_branch_w*sin_a1)/link_length_2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/effective_a1
         span_rear_y = -link_length_3_by_link_length_2*span_upper_y
         across_a2 = (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)/link_length_2
@@ -654,7 +654,7 @@ class KinType12XY(OffsetKinematics):
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2
         # rod rear: centre about which it swings
         pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2
@@ -1023,7 +1023,7 @@ class KinType12XY(OffsetKinematics):
         sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
         along_a2 = (link_length_2*span_rear_x - part_of_branch_w*sin_a1)/link_length_2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/effective_a1
         span_rear_y = -link_length_3_by_link_length_2*span_upper_y
         across_a2 = (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)/link_length_2
@@ -1065,7 +1065,7 @@ class KinType12XY(OffsetKinematics):
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2
         # rod rear: centre about which it swings
         pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2

@@ -491,7 +491,7 @@ class P2CType2(OffsetKinematics):
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/effective_a1
         pivot_1_x = part_of_pivot_1_x + inner_arm*cos_a1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
@@ -502,7 +502,7 @@ class P2CType2(OffsetKinematics):
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (span_2_x*cos_swing_a2 - y*sin_swing_a2)/effective_a2
         pivot_2_x = inner_arm*cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
         rod_2_x = x - pivot_2_x
@@ -772,7 +772,7 @@ class P2CType2(OffsetKinematics):
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_1_x*cos_swing_a1 - flange_y*sin_swing_a1)/effective_a1
         pivot_1_x = part_of_pivot_1_x + inner_arm*cos_a1  # rod 1: centre about which it swings
         rod_1_x = flange_x - pivot_1_x
@@ -783,7 +783,7 @@ class P2CType2(OffsetKinematics):
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (span_2_x*cos_swing_a2 - flange_y*sin_swing_a2)/effective_a2
         pivot_2_x = inner_arm*cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
         rod_2_x = flange_x - pivot_2_x

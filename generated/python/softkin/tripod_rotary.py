@@ -782,7 +782,7 @@ class TripodRotary(OffsetKinematics):
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/effective_a1
         pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
@@ -793,7 +793,7 @@ class TripodRotary(OffsetKinematics):
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/effective_a2
         pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
         rod_2_x = x - pivot_2_x
@@ -806,7 +806,7 @@ class TripodRotary(OffsetKinematics):
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/effective_a3
         pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
         rod_3_x = x - pivot_3_x
@@ -1379,7 +1379,7 @@ class TripodRotary(OffsetKinematics):
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/effective_a1
         pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
         rod_1_x = flange_x - pivot_1_x
@@ -1390,7 +1390,7 @@ class TripodRotary(OffsetKinematics):
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/effective_a2
         pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
         rod_2_x = flange_x - pivot_2_x
@@ -1403,7 +1403,7 @@ class TripodRotary(OffsetKinematics):
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/effective_a3
         pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
         rod_3_x = flange_x - pivot_3_x

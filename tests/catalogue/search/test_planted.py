@@ -1,4 +1,4 @@
-"""Nothing is lost where robots stand: poses planted near A4 = 0 and 180 degrees and near a straight elbow, and paths there."""
+"""No solution is lost at common poses: near A4 = 0 and 180 degrees and near a straight elbow, and on paths there."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ LOST = {
         (102.38847764684363, -175.14384556208714, 94.76364659324585, -6.650570097147176e-11, 64.26025663, -109.14666664),
     ),
 }
-"""Poses with a guard or a value that turns twice between two trials: a dent that tangents, a cubic or both do not see."""
+"""Poses whose guard or value has two extrema between two trials, which tangents, the cubic, or both do not show."""
 
 
 @pytest.mark.parametrize(("lateral", "axes"), [(lateral, axes) for lateral, poses in LOST.items() for axes in poses])

@@ -71,7 +71,7 @@ class ArrayPrograms(Programs):
         swing_scale_q3_tried_squared = k.swing_scale_q3_tried_squared
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*j6_offset_x - d6*goal_r13
         wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*j6_offset_x - d6*goal_r23
         # distance of the point from the axis of q1
@@ -180,7 +180,7 @@ class ArrayPrograms(Programs):
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
         root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
         sin_swing_q3_tried = 2.0*one_by_sum_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
@@ -335,7 +335,7 @@ class ArrayPrograms(Programs):
         size_of_j6_offset_x = k.size_of_j6_offset_x
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*j6_offset_x - d6*goal_r13
         wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*j6_offset_x - d6*goal_r23
         # distance of the point from the axis of q1
@@ -377,7 +377,7 @@ class ArrayPrograms(Programs):
         sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
         sin_swing_q3_tried = 2.0*root(sine_square_q3_tried)*sign_elbow_tried/divisor_of_cos_q3_tried
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
 
@@ -811,7 +811,7 @@ class ArrayPrograms(Programs):
         r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
         r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
         r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        wrist_x_closed = x - d6_times_r13_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x_closed = x - d6_times_r13_at_q5  # wrist centre: the last joints do not move this point
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
@@ -826,7 +826,7 @@ class ArrayPrograms(Programs):
             branch_crossing = 1.0
             return (branch_shoulder, branch_wrist, branch_crossing)
 
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x_tried = wrist_x_closed + (r12_at_q6*sin_q6 - r11_at_q6*cos_q6)*j6_offset_x
         wrist_y_tried = wrist_y_closed + (r22_at_q6*sin_q6 - r21_at_q6*cos_q6)*j6_offset_x
         margin_shoulder_tried = one_by_machine_scale*(wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)
@@ -906,7 +906,7 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x_closed = x - d6*r13  # wrist centre: the point in which the last axes intersect
+        wrist_x_closed = x - d6*r13  # wrist centre: the last joints do not move this point
         wrist_y_closed = y - d6*r23
         # distance of the point from the axis of q1
         distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
@@ -998,7 +998,7 @@ class ArrayPrograms(Programs):
                 (reference_a2,),
             )
             q2 = atan2(sin_q2_closed, cos_q2_closed)
-            # addition theorem: plus the angle of the direction from which it is measured
+            # addition theorem: plus the angle of the direction from which the cosine is measured
             cos_q3_closed = a3_by_effective_q3_tried*cos_swing_q3_closed + d4_by_effective_q3_tried*sin_swing_q3_closed
             sin_q3_closed = a3_by_effective_q3_tried*sin_swing_q3_closed - d4_by_effective_q3_tried*cos_swing_q3_closed
             q3 = atan2(sin_q3_closed, cos_q3_closed)

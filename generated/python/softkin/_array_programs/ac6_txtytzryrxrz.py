@@ -136,7 +136,7 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
@@ -242,7 +242,7 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23

@@ -130,7 +130,7 @@ class ArrayPrograms(Programs):
         r31_at_q5 = r31_at_q4*cos_q5 + sin_q23*sin_q5
         r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
         r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         wrist_y = y - d6_times_r22_at_q5
         branch_arm = (wrist_x*cos_q1 + wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
@@ -207,7 +207,7 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6*r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -378,7 +378,7 @@ class ArrayPrograms(Programs):
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: whole turns added
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3
         sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
@@ -519,7 +519,7 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6*r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -808,7 +808,7 @@ class ArrayPrograms(Programs):
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # A2: whole turns added
         axis_a2_front_down = nearest_period(offset_a2 + degrees(sin_q2_front_down, cos_q2_front_down), near_a2)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_front_down = a3_by_effective_q3*cos_swing_q3_front + d4_by_effective_q3*sin_swing_q3_front_up
         sin_q3_front_down = d4_by_effective_q3*cos_swing_q3_front - a3_by_effective_q3*sin_swing_q3_front_up
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
@@ -914,7 +914,7 @@ class ArrayPrograms(Programs):
         )
         # A2: whole turns added
         axis_a2_front_up = nearest_period(offset_a2 + degrees(sin_q2_front_up, cos_q2_front_up), near_a2)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_front_up = a3_by_effective_q3*cos_swing_q3_front - d4_by_effective_q3*sin_swing_q3_front_up
         sin_q3_front_up = a3_by_effective_q3*sin_swing_q3_front_up + d4_by_effective_q3*cos_swing_q3_front
         # A3: whole turns added
@@ -1049,7 +1049,7 @@ class ArrayPrograms(Programs):
         )
         # A2: whole turns added
         axis_a2_back_down = nearest_period(offset_a2 + degrees(sin_q2_back_down, cos_q2_back_down), near_a2)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_back_down = a3_by_effective_q3*cos_swing_q3_back + d4_by_effective_q3*sin_swing_q3_back_up
         sin_q3_back_down = d4_by_effective_q3*cos_swing_q3_back - a3_by_effective_q3*sin_swing_q3_back_up
         # A3: whole turns added
@@ -1142,7 +1142,7 @@ class ArrayPrograms(Programs):
         )
         # A2: whole turns added
         axis_a2_back_up = nearest_period(offset_a2 + degrees(sin_q2_back_up, cos_q2_back_up), near_a2)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_back_up = a3_by_effective_q3*cos_swing_q3_back - d4_by_effective_q3*sin_swing_q3_back_up
         sin_q3_back_up = a3_by_effective_q3*sin_swing_q3_back_up + d4_by_effective_q3*cos_swing_q3_back
         # A3: whole turns added

@@ -304,7 +304,7 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_knee_1/divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (along_a1*cos_swing_a1 + z*sin_swing_a1)/divisor_a1
         pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
@@ -317,7 +317,7 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2*cos_swing_a2 + z*sin_swing_a2)/divisor_a2
         pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2: centre about which it swings
         rod_2_x = x - pivot_2_x
@@ -330,7 +330,7 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (along_a3*cos_swing_a3 + z*sin_swing_a3)/divisor_a3
         pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3: centre about which it swings
         rod_3_x = x - pivot_3_x
@@ -502,7 +502,7 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1_inward = 2.0*root(sine_square_a1)/divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1_outward = (along_a1*cos_swing_a1 - z*sin_swing_a1_inward)/divisor_a1
         # rod 1: centre about which it swings
         pivot_1_x_outward = part_of_pivot_1_x + cos_a1_outward*cos_azimuth_1_times_inner_arm_1
@@ -516,7 +516,7 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2_inward = 2.0*root(sine_square_a2)/divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_outward = (along_a2*cos_swing_a2 - z*sin_swing_a2_inward)/divisor_a2
         # rod 2: centre about which it swings
         pivot_2_x_outward = part_of_pivot_2_x + cos_a2_outward*cos_azimuth_2_times_inner_arm_2
@@ -530,7 +530,7 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_swing_a3_inward = 2.0*root(sine_square_a3)/divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3_outward = (along_a3*cos_swing_a3 - z*sin_swing_a3_inward)/divisor_a3
         # rod 3: centre about which it swings
         pivot_3_x_outward = part_of_pivot_3_x + cos_a3_outward*cos_azimuth_3_times_inner_arm_3
@@ -564,7 +564,7 @@ class ArrayPrograms(Programs):
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         # A3: whole turns added
         axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3_inward = (along_a3*cos_swing_a3 + z*sin_swing_a3_inward)/divisor_a3
         # rod 3: centre about which it swings
         pivot_3_x_inward = part_of_pivot_3_x + cos_a3_inward*cos_azimuth_3_times_inner_arm_3
@@ -586,7 +586,7 @@ class ArrayPrograms(Programs):
         refusal_outward_outward_inward = select(type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0, 3)
         # A3: whole turns added
         axis_a3_inward = nearest_period(offset_a3 + degrees(sin_a3_inward, cos_a3_inward), near_a3)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_inward = (along_a2*cos_swing_a2 + z*sin_swing_a2_inward)/divisor_a2
         # rod 2: centre about which it swings
         pivot_2_x_inward = part_of_pivot_2_x + cos_a2_inward*cos_azimuth_2_times_inner_arm_2
@@ -618,7 +618,7 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = select(type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0, 3)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1_inward = (along_a1*cos_swing_a1 + z*sin_swing_a1_inward)/divisor_a1
         # rod 1: centre about which it swings
         pivot_1_x_inward = part_of_pivot_1_x + cos_a1_inward*cos_azimuth_1_times_inner_arm_1

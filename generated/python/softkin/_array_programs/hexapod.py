@@ -307,7 +307,7 @@ class ArrayPrograms(StartedPrograms):
         require(status, done, Status.IMPOSSIBLE)
         # the other assembly mode
         require(status, assembly_sign*determinant > 0.0, Status.IMPOSSIBLE)
-        r11 = start_r11*turned_11 + start_r21*turned_12 + start_r31*turned_13  # the start, turned
+        r11 = start_r11*turned_11 + start_r21*turned_12 + start_r31*turned_13  # orientation of the platform
         r12 = start_r12*turned_11 + start_r22*turned_12 + start_r32*turned_13
         r13 = start_r13*turned_11 + start_r23*turned_12 + start_r33*turned_13
         r21 = start_r11*turned_21 + start_r21*turned_22 + start_r31*turned_23

@@ -118,7 +118,7 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - r13*tool_length_times_tool_side  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - r13*tool_length_times_tool_side  # wrist centre: the last joints do not move this point
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length_times_tool_side
         axis_y = offset_y + wrist_y
@@ -210,7 +210,7 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - r13*tool_length_times_tool_side  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - r13*tool_length_times_tool_side  # wrist centre: the last joints do not move this point
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length_times_tool_side
         axis_y = offset_y + wrist_y

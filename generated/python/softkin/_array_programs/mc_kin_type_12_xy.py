@@ -218,7 +218,7 @@ class ArrayPrograms(Programs):
         sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
         along_a2 = (link_length_2*span_rear_x - part_of_branch_w*sin_a1)/link_length_2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
         span_rear_y = -link_length_3_by_link_length_2*span_upper_y
         across_a2 = (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)/link_length_2
@@ -260,7 +260,7 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
         # rod rear: centre about which it swings
         pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2
@@ -373,12 +373,12 @@ class ArrayPrograms(Programs):
         sin_swing_a1_right = 2.0*root(sine_square_a1)/divisor_of_cos_a1
         sin_a1_left = (span_upper_x*cos_swing_a1 - span_upper_y*sin_swing_a1_right)/divisor_a1
         pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper: centre about which it swings
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1_left = (span_upper_y*cos_swing_a1 + span_upper_x*sin_swing_a1_right)/divisor_a1
         pivot_upper_y_left = -link_length_1*cos_a1_left
         sin_a1_right = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1_right)/divisor_a1
         pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper: centre about which it swings
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1_right = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1_right)/divisor_a1
         pivot_upper_y_right = -link_length_1*cos_a1_right
 
@@ -422,11 +422,11 @@ class ArrayPrograms(Programs):
         cos_swing_a2_left = (one_plus_cos_a2_left - one_less_cos_a2_left)/divisor_of_cos_a2_left
         sine_square_a2_left = one_less_cos_a2_left*one_plus_cos_a2_left  # sine squared, times the squared scale
         sin_swing_a2_left_right = 2.0*root(sine_square_a2_left)/divisor_of_cos_a2_left
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_left_left = (across_a2_left*sin_swing_a2_left_right + along_a2_left*cos_swing_a2_left)/divisor_a2_left
         sin_a2_left_left = (across_a2_left*cos_swing_a2_left - along_a2_left*sin_swing_a2_left_right)/divisor_a2_left
         swing_scale_a2_left = divisor_a2_left*twice_link_length_5  # law of cosines for a2: rod rear
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_left_right = (along_a2_left*cos_swing_a2_left - across_a2_left*sin_swing_a2_left_right)/divisor_a2_left
         sin_a2_left_right = (across_a2_left*cos_swing_a2_left + along_a2_left*sin_swing_a2_left_right)/divisor_a2_left
 
@@ -516,7 +516,7 @@ class ArrayPrograms(Programs):
         cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right)/divisor_of_cos_a2_right
         sine_square_a2_right = one_less_cos_a2_right*one_plus_cos_a2_right  # sine squared, times the squared scale
         sin_swing_a2_right_right = 2.0*root(sine_square_a2_right)/divisor_of_cos_a2_right
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_right_left = (
             (across_a2_right*sin_swing_a2_right_right + along_a2_right*cos_swing_a2_right)/divisor_a2_right
         )
@@ -524,7 +524,7 @@ class ArrayPrograms(Programs):
             (across_a2_right*cos_swing_a2_right - along_a2_right*sin_swing_a2_right_right)/divisor_a2_right
         )
         swing_scale_a2_right = divisor_a2_right*twice_link_length_5  # law of cosines for a2: rod rear
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_right_right = (
             (along_a2_right*cos_swing_a2_right - across_a2_right*sin_swing_a2_right_right)/divisor_a2_right
         )

@@ -161,7 +161,7 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_knee_1/divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/divisor_a1
         pivot_1_x = part_of_pivot_1_x + inner_arm*cos_a1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
@@ -172,7 +172,7 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = 2.0*root(sine_square_a2)*sigma_knee_2/divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (span_2_x*cos_swing_a2 - y*sin_swing_a2)/divisor_a2
         pivot_2_x = inner_arm*cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
         rod_2_x = x - pivot_2_x
@@ -271,7 +271,7 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1_inward = 2.0*root(sine_square_a1)/divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1_outward = (span_1_x*cos_swing_a1 + y*sin_swing_a1_inward)/divisor_a1
         pivot_1_x_outward = part_of_pivot_1_x + inner_arm*cos_a1_outward  # rod 1: centre about which it swings
         rod_1_x_outward = x - pivot_1_x_outward
@@ -282,7 +282,7 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2_outward = 2.0*root(sine_square_a2)/divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_outward = (span_2_x*cos_swing_a2 - y*sin_swing_a2_outward)/divisor_a2
         pivot_2_x_outward = inner_arm*cos_a2_outward - part_of_pivot_1_x  # rod 2: centre about which it swings
         rod_2_x_outward = x - pivot_2_x_outward
@@ -302,7 +302,7 @@ class ArrayPrograms(Programs):
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # A2: whole turns added
         axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_inward = (span_2_x*cos_swing_a2 + y*sin_swing_a2_outward)/divisor_a2
         pivot_2_x_inward = inner_arm*cos_a2_inward - part_of_pivot_1_x  # rod 2: centre about which it swings
         rod_2_x_inward = x - pivot_2_x_inward
@@ -316,7 +316,7 @@ class ArrayPrograms(Programs):
         refusal_outward_inward = select(type2_arms_aligned_outward_inward >= min_type2_margin, 0, 3)
         # A2: whole turns added
         axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1_inward = (span_1_x*cos_swing_a1 - y*sin_swing_a1_inward)/divisor_a1
         pivot_1_x_inward = part_of_pivot_1_x + inner_arm*cos_a1_inward  # rod 1: centre about which it swings
         rod_1_x_inward = x - pivot_1_x_inward

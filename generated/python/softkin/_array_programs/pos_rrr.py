@@ -310,7 +310,7 @@ class ArrayPrograms(Programs):
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # A2: whole turns added
         axis_a2 = nearest_period(offset_a2 + degrees(direction_y_q2, direction_x_q2), near_a2)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = a3_by_effective_q3_2*cos_swing_q3 - d4_by_effective_q3_2*sin_swing_q3
         sin_q3 = a3_by_effective_q3_2*sin_swing_q3 + d4_by_effective_q3_2*cos_swing_q3
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
@@ -665,7 +665,7 @@ class ArrayPrograms(Programs):
             offset_a2 + degrees(direction_y_q2_front_down, direction_x_q2_front_down),
             near_a2,
         )
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_front_down = a3_by_effective_q3_2*cos_swing_q3_front + d4_by_effective_q3_2*sin_swing_q3_front_up
         sin_q3_front_down = d4_by_effective_q3_2*cos_swing_q3_front - a3_by_effective_q3_2*sin_swing_q3_front_up
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
@@ -677,7 +677,7 @@ class ArrayPrograms(Programs):
             offset_a2 + degrees(direction_y_q2_front_up, direction_x_q2_front_up),
             near_a2,
         )
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_front_up = a3_by_effective_q3_2*cos_swing_q3_front - d4_by_effective_q3_2*sin_swing_q3_front_up
         sin_q3_front_up = a3_by_effective_q3_2*sin_swing_q3_front_up + d4_by_effective_q3_2*cos_swing_q3_front
         # A3: whole turns added
@@ -729,14 +729,14 @@ class ArrayPrograms(Programs):
             offset_a2 + degrees(direction_y_q2_back_down, direction_x_q2_back_down),
             near_a2,
         )
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_back_down = a3_by_effective_q3_2*cos_swing_q3_back + d4_by_effective_q3_2*sin_swing_q3_back_up
         sin_q3_back_down = d4_by_effective_q3_2*cos_swing_q3_back - a3_by_effective_q3_2*sin_swing_q3_back_up
         # A3: whole turns added
         axis_a3_back_down = nearest_period(offset_a3 + degrees(sin_q3_back_down, cos_q3_back_down), near_a3)
         # A2: whole turns added
         axis_a2_back_up = nearest_period(offset_a2 + degrees(direction_y_q2_back_up, direction_x_q2_back_up), near_a2)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_back_up = a3_by_effective_q3_2*cos_swing_q3_back - d4_by_effective_q3_2*sin_swing_q3_back_up
         sin_q3_back_up = a3_by_effective_q3_2*sin_swing_q3_back_up + d4_by_effective_q3_2*cos_swing_q3_back
         # A3: whole turns added

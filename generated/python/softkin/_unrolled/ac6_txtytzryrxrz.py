@@ -55,7 +55,7 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= ref_a5 <= 1e9 and -1e9 <= ref_a6 <= 1e9
         ):
             return 2*(2,)
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
         axis_a1 = offset_a1 + wrist_x
         # limits of A1
@@ -152,7 +152,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         _, _, _, ref_a4, _, _ = 6*(0.0,) if reference is None else reference
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
@@ -201,7 +201,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         (sigma_wrist,) = signs
         _, _, _, ref_a4, _, _ = 6*(0.0,) if reference is None else reference
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33

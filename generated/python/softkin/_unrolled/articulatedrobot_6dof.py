@@ -78,7 +78,7 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= ref_a6 <= 1e9
         ):
             return 8*(2,)
-        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6*r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -595,7 +595,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         ref_a1, ref_a2, _, ref_a4, _, _ = 6*(0.0,) if reference is None else reference
-        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6*r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -979,7 +979,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         sigma_arm, sigma_elbow, sigma_hand = signs
         ref_a1, ref_a2, _, ref_a4, _, _ = 6*(0.0,) if reference is None else reference
-        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6*r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis

@@ -51,7 +51,7 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= ref_b <= 1e9
         ):
             return 2*(2,)
-        wrist_x = x - r13*tool_length_times_tool_side_2  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - r13*tool_length_times_tool_side_2  # wrist centre: the last joints do not move this point
         axis_x = offset_x + wrist_x
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
@@ -132,7 +132,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         _, _, _, ref_a, _ = 5*(0.0,) if reference is None else reference
-        wrist_x = x - r13*tool_length_times_tool_side_2  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - r13*tool_length_times_tool_side_2  # wrist centre: the last joints do not move this point
         axis_x = offset_x + wrist_x
         axis_y = offset_y + (y - r23*tool_length_times_tool_side_2)
         axis_z = offset_z + (z - r33*tool_length_times_tool_side_2)
@@ -168,7 +168,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         (sigma_roll,) = signs
         _, _, _, ref_a, _ = 5*(0.0,) if reference is None else reference
-        wrist_x = x - r13*tool_length_times_tool_side_2  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - r13*tool_length_times_tool_side_2  # wrist centre: the last joints do not move this point
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a

@@ -94,7 +94,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
@@ -105,7 +105,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
         pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2: centre about which it swings
         rod_2_x_outward = x - pivot_2_x
@@ -121,7 +121,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
         pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2: centre about which it swings
         rod_2_x_inward = x - pivot_2_x
@@ -153,7 +153,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_outward_outward_2 = 3
             refusal_outward_inward_2 = 3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
@@ -235,7 +235,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
         pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
@@ -249,7 +249,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
         pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2: centre about which it swings
         rod_2_x_outward = x - pivot_2_x
@@ -262,7 +262,7 @@ def unrolled(k: Constants) -> Unrolled:
         refusal_outward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
         pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2: centre about which it swings
         rod_2_x_inward = x - pivot_2_x
@@ -272,7 +272,7 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
         pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
@@ -333,7 +333,7 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
         pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
@@ -341,7 +341,7 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2/divisor_a2
         pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2: centre about which it swings
         sin_a2 = span_2_x*sin_swing_a2/divisor_a2 - y*cos_swing_a2/divisor_a2
