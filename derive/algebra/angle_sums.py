@@ -1,4 +1,4 @@
-"""Sums of angles: their names, and recognising a product of sines and cosines as the sine of a sum."""
+"""Sums of angles: their names, and the addition theorems read backwards."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ def _joined(names: Sequence[str]) -> str:
     return "_".join(names)
 
 
-def composite(terms: Terms) -> sp.Symbol:
+def symbol_of_sum(terms: Terms) -> sp.Symbol:
     """The symbol of a sum of angles."""
     return real(name_of(terms))
 
 
 def terms_of(argument: sp.Expr, angles: Sequence[sp.Symbol]) -> Terms | None:
-    """The angles of an argument with their signs; None where it is not a plain sum of angles."""
+    """The angles of an argument with their signs; None where it is no sum of angles with coefficients ±1."""
     found = tuple((a, int(argument.coeff(a))) for a in angles if argument.coeff(a) in (1, -1))
     rebuilt = sp.Add(*[a * s for a, s in found])
     return found if found and sp.expand(argument - rebuilt) == 0 else None

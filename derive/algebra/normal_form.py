@@ -1,7 +1,7 @@
 """Normal forms: polynomials in the sines and cosines of angles, modulo sin^2 + cos^2 = 1.
 
-An angle `a2` is written through two symbols, `sin_a2` and `cos_a2`, from the first equation to the last
-statement: what is an unknown of the solver today is a named temporary of the program tomorrow.
+An angle `a2` is expressed by two symbols, `sin_a2` and `cos_a2`, from the first equation to the last
+statement: an unknown of the solver becomes a named temporary of the program.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def polynomial(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence
     `signs` are parameters that are +1 or -1 (never zero: their squares are one, and they leave the argument of a
     cosine), and flags that are 0 or 1 (their squares are themselves).
     """
-    terms = sp.expand_trig(sp.expand(expression))  # first: a sign leaves an argument only where nothing is added to it
+    terms = sp.expand_trig(sp.expand(expression))  # first: a sign leaves an argument only where nothing is added
     expanded = _without_signs(terms, signs).subs(sp.pi, 180 * DEGREE)
     table: dict[sp.Expr, sp.Expr] = {}
     for angle in angles:
@@ -87,14 +87,14 @@ def reduce_units(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequen
 
 
 def linear_coefficients(expression: sp.Expr, atoms: Sequence[sp.Symbol]) -> tuple[list[sp.Expr], sp.Expr] | None:
-    """Coefficients of the atoms and the rest, where the expression is linear in them jointly; else None."""
+    """The coefficients of the atoms, and the rest, where the expression is linear in all of them together; else None."""
     found = _linear(expression, tuple(atoms))
     return None if found is None else (list(found[:-1]), found[-1])
 
 
 @cache
 def _linear(expression: sp.Expr, atoms: tuple[sp.Symbol, ...]) -> tuple[sp.Expr, ...] | None:
-    """The coefficients, then the rest. Every rule asks again for the equations that are left."""
+    """The coefficients, then the rest. Cached: every rule asks for the same equations."""
     try:
         poly = sp.Poly(expression, *atoms)
     except sp.PolynomialError:
@@ -105,7 +105,7 @@ def _linear(expression: sp.Expr, atoms: tuple[sp.Symbol, ...]) -> tuple[sp.Expr,
 
 
 def split_known(expression: sp.Expr, unknown: Iterable[sp.Symbol]) -> tuple[sp.Expr, sp.Expr]:
-    """The sum of the terms that hold an unknown, and the sum of those that do not."""
+    """The sum of the terms with an unknown, and the sum of those without."""
     atoms = set(unknown)
     terms = sp.Add.make_args(sp.expand(expression))
     moving = sp.Add(*[t for t in terms if t.free_symbols & atoms])

@@ -15,7 +15,7 @@ Entry = tuple[Path, Mechanism]
 
 
 def catalogue(folder: Path = MECHANISMS) -> tuple[Entry, ...]:
-    """All mechanisms with their files, aliases after the mechanism they repeat; raises `DescriptionError`."""
+    """All mechanisms with their files, each followed by its aliases. Raises `DescriptionError`."""
     files = sorted(p for p in folder.glob("*.py") if not p.name.startswith("_"))
     if not files:
         raise DescriptionError(f"{folder}: no mechanism files")

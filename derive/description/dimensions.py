@@ -1,4 +1,4 @@
-"""The dimensions of a machine: the parameters of a description, by what they are, and conditions between them."""
+"""The dimensions of a machine: the parameters of a description by their roles, and conditions between them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from derive.ir.symbols import (
 
 
 class Role(Enum):
-    """What a parameter is: decides unit, type and default."""
+    """The role of a parameter, which decides its unit, type and default."""
 
     LENGTH = "length"
     SIGNED_LENGTH = "signed length"
@@ -50,12 +50,12 @@ class Parameter(Quantity):
     """The interval is ]low .. high] instead of [low .. high]."""
     default: float | None
     nominal: float
-    """For drawings and tests."""
+    """A value for drawings and tests."""
     is_public: bool = True
 
     @property
     def has_vendor_range(self) -> bool:
-        """Whether the upper end is the vendor's and not merely the largest input."""
+        """Whether the upper end is given by the vendor, and is not the largest input that any parameter may have."""
         return self.high < 1e9
 
 
@@ -110,7 +110,7 @@ def distance(name: str, meaning: str, *, nominal: float, low: float = -1e9) -> P
 
 
 def radians(parameter: Parameter) -> sp.Expr:
-    """An angle parameter as it stands in sines and cosines."""
+    """An angle parameter in radians, as sines and cosines take it."""
     return parameter * DEGREE
 
 
@@ -133,4 +133,4 @@ class Constraint:
     condition: sp.Basic
     message: str
     steps: tuple[Let, ...] = ()
-    """Values under names that this condition and those after it read."""
+    """Statements that bind names for this condition and the following ones."""

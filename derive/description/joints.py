@@ -27,7 +27,7 @@ class Kind(Enum):
     LINEAR = "linear"
     ROTARY = "rotary"
     HELICAL = "helical"
-    """Turns, and is declared Linear because it carries another axis along (values in degrees)."""
+    """Turns, and moves another axis along by its pitch: it is declared Linear, with values in degrees."""
 
 
 @dataclass(frozen=True)
@@ -43,11 +43,11 @@ class Joint(Quantity):
     limit_range: Interval | None = None
     """The vendor's ranges, where the vendor gives them."""
     coupling: sp.Expr = sp.Integer(0)
-    """What motors of earlier axes add to this joint: linear in their `motor` symbols."""
+    """The gear coupling: what the motors of earlier axes add to this joint, linear in their `motor` symbols."""
     pitch: sp.Expr = sp.Integer(0)
     """Where this is not zero, the joint is always limited (to `limit_range` where no limit is given)."""
     domain: Interval | None = None
-    """What the closure itself allows (degrees or length), reported as the axis' range; None: anything."""
+    """The range that the closure allows (degrees or length), reported as the range of the axis; None: any value."""
     nominal: float = 0.0
 
     def __post_init__(self) -> None:
@@ -86,7 +86,7 @@ class Joint(Quantity):
 
     @property
     def turn(self) -> sp.Symbol:
-        """The commanded period number: 0 where it is open."""
+        """The commanded period number; 0: none is commanded."""
         return count(f"turn_{self.key}")
 
     @property
@@ -120,7 +120,7 @@ def arc(name: str, meaning: str, **details: Unpack[JointDetails]) -> Joint:
 
 
 def helical(name: str, meaning: str, **details: Unpack[JointDetails]) -> Joint:
-    """A joint that turns and carries another axis along: declared Linear, values in degrees."""
+    """A joint that turns and moves another axis along by its pitch: declared Linear, values in degrees."""
     return Joint(_joint_symbol(name), name, Kind.HELICAL, meaning, multi_turn=True, **details)
 
 

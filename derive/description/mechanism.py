@@ -1,7 +1,7 @@
 """The vocabulary of a mechanism description: joints, parameters, closure, task, branches.
 
-A description states equations and their meaning, and nothing that was solved by hand. Quantities take
-part in SymPy expressions directly: `Rz(A1) * Tx(link)`, `branch("elbow", sin(A2), right=+1, left=-1)`.
+A description states equations and their meaning, and nothing that was solved by hand. Quantities stand
+in SymPy expressions directly: `Rz(A1) * Tx(link)`, `branch("elbow", sin(A2), right=+1, left=-1)`.
 Inside expressions angles are in radians; `TURN` is one revolution, for couplings given per revolution.
 Joints and dimensions have files of their own; descriptions import everything from here.
 """
@@ -112,7 +112,7 @@ class DescriptionError(Exception):
 
 
 class Vendor(Enum):
-    """Who sells the geometry: decides how the function block is called."""
+    """The vendor of the geometry, which decides the name of the function block."""
 
     SINSEGYE = "Sinsegye SF512x"
     REXROTH = "Bosch Rexroth ctrlX"
@@ -129,17 +129,17 @@ class Branch:
     names: tuple[str, str]
     signs: tuple[int, int]
     margin: str
-    """What the singularity is called where its two solutions meet."""
+    """The name of the singularity at which its two solutions meet."""
 
     @property
     def is_crossing(self) -> bool:
-        """Whether it tells the roots of a search apart: its indicator is the slope of what is searched to vanish."""
+        """Whether it tells the roots of a scan apart: its indicator is the slope of the residual at the root."""
         return bool(self.indicator is sp.nan)
 
 
 @dataclass(frozen=True)
 class Search:
-    """A joint that is searched along where no subproblem determines it, because a parameter is not zero."""
+    """A joint that is scanned for roots where no subproblem determines it, because a parameter is not zero."""
 
     joint: Joint
     where: Parameter
@@ -158,7 +158,7 @@ class Assembly:
     signs: tuple[int, int]
     margin: str
     handedness: sp.Expr = sp.Integer(1)
-    """Made of parameters: where it is negative (legs numbered the other way round) the indicator's sign is reversed."""
+    """An expression of parameters. Where it is negative (legs numbered the other way round) the indicator changes its sign."""
 
     @property
     def parameter(self) -> str:
@@ -175,9 +175,9 @@ class Rod:
     plate: tuple[sp.Expr, ...]
     length: sp.Expr
     base_cone: sp.Expr | None = None
-    """The largest angle between the rod and its direction at the home pose, as its joint on the base sees it (radians)."""
+    """The largest angle between the rod and its direction at the home pose, at its joint on the base (radians)."""
     plate_cone: sp.Expr | None = None
-    """The same, as its joint on the plate sees it."""
+    """The same angle at its joint on the plate."""
 
     @property
     def equation(self) -> sp.Expr:
@@ -187,7 +187,7 @@ class Rod:
 
 @dataclass(frozen=True)
 class Bound:
-    """A quantity of joints and position that must not exceed a size (the swing of a ball joint)."""
+    """A quantity of joints and position whose absolute value has a bound (the swing of a ball joint)."""
 
     value: sp.Expr
     largest: sp.Expr
@@ -196,7 +196,7 @@ class Bound:
 
 @dataclass(frozen=True)
 class Limited:
-    """A quantity with limits of its own that no axis can see (relative elbow, X of an H-gantry)."""
+    """A quantity with limits of its own that is no axis (the relative angle of an elbow, X of an H-gantry)."""
 
     name: str
     value: sp.Expr
@@ -205,21 +205,21 @@ class Limited:
 
 
 class Turning(Enum):
-    """How much of the commanded rotation a mechanism follows."""
+    """The part of the commanded rotation that a mechanism follows."""
 
     NONE = "none"
     """The rotation is fixed or follows from the position: the commanded one is never read."""
     ABOUT_Z = "about z"
-    """One turn about the machine's z: the commanded rotation is projected, tool direction first."""
+    """A rotation about the z axis of the machine: the commanded one is projected to it, tool direction first."""
     DIRECTION = "direction"
-    """The direction of the tool, the z of the commanded rotation; the turn about it is passive."""
+    """The direction of the tool, which is the z axis of the commanded rotation; the rotation about it is passive."""
     FULL = "full"
     """The whole rotation."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """What is commanded: "xyz", "xy" with z met, or "" where a position kinematics is in front; and how much of the rotation."""
+    """The commanded coordinates ("xyz", "xy" in a plane, "" behind a position kinematics), and the part of the rotation."""
 
     position: str
     turning: Turning = Turning.NONE
@@ -227,7 +227,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """A mechanism: its equations, and what its quantities mean. Derivation reads nothing else."""
+    """A mechanism: its equations, and what its quantities mean. The derivation reads nothing else."""
 
     name: str
     vendor: Vendor
@@ -242,27 +242,27 @@ class Mechanism:
     rods: tuple[Rod, ...] = ()
     """Closure equations that say that a rod is rigid."""
     bars: tuple[Rod, ...] = ()
-    """What is drawn, where the rods leave bodies out or stand for others: a bar between two points, as long as stated."""
+    """The bars that are drawn, where the rods are not the bodies: each joins two points, and is as long as stated."""
     assembly: Assembly | None = None
     home: tuple[sp.Expr, ...] = ()
-    """Where an iterative forward kinematics starts: x, y, z, then roll, pitch and yaw in radians (Rz Ry Rx)."""
+    """The start of an iterative forward kinematics: x, y, z, then roll, pitch and yaw in radians (Rz Ry Rx)."""
     bounds: tuple[Bound, ...] = ()
     branches: tuple[Branch, ...] = ()
     search: Search | None = None
     positive: tuple[sp.Expr, ...] = ()
-    """Quantities whose negative mirror solution the machine does not have."""
+    """Quantities that are positive in this machine: their negative mirror solutions are excluded."""
     limited: tuple[Limited, ...] = ()
     constraints: tuple[Constraint, ...] = ()
     periods: tuple[str, ...] | None = None
     """The multi-turn axes in the order of their configuration bytes; None: the order of the axes."""
     aliases: tuple[str, ...] = ()
     title: str | None = None
-    """What GetKinematicsName answers; None: the name of the block."""
+    """The answer of GetKinematicsName; None: the name of the block."""
     class_name: str | None = None
     offset_interface: bool = True
     """Whether positions of a point off the flange can be commanded (orientation mode "Axis")."""
     notes: tuple[str, ...] = field(default=())
-    """Sentences for the user's documentation: what is our definition, what to know."""
+    """Sentences for the user's documentation: definitions of our own, and properties to know."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "positive", tuple(sp.sympify(v) for v in self.positive))
@@ -271,17 +271,17 @@ class Mechanism:
 
     @property
     def is_platform(self) -> bool:
-        """Whether this is a plate that follows the whole commanded pose: forward kinematics iterates."""
+        """Whether this is a platform that follows the whole commanded pose: its forward kinematics iterates."""
         return self.chain is None and self.task.turning is Turning.FULL
 
     @property
     def is_orientation(self) -> bool:
-        """Whether this is what a position kinematics carries: it turns the flange, and its position only follows."""
+        """Whether this is an orientation kinematics: it turns the tool, and commands no position."""
         return self.chain is not None and not self.task.position
 
     @property
     def is_position(self) -> bool:
-        """Whether a position kinematics: it can carry an orientation kinematics, and follows no tool direction itself."""
+        """Whether this is a position kinematics: an orientation kinematics can follow it, and it commands no tool direction."""
         return bool(self.task.position) and self.task.turning in (Turning.NONE, Turning.ABOUT_Z)
 
     @property
@@ -308,12 +308,12 @@ def branch(name: str, indicator: object, *, margin: str | None = None, **names: 
 
 
 def crossing(name: str, **names: int) -> Branch:
-    """The roots of a search told apart by whether what is searched to vanish rises or falls with the joint."""
+    """A branch that tells the roots of a scan apart: whether the residual rises or falls with the joint at the root."""
     return branch(name, sp.nan, margin=None, **names)
 
 
 def search(joint: Joint, *, where: Parameter) -> Search:
-    """Search along a joint where the parameter is not zero; where it is zero, the closure has a closed form."""
+    """Scan a joint for roots where the parameter is not zero; where it is zero, the closure has a closed form."""
     return Search(joint, where)
 
 
@@ -336,7 +336,7 @@ def rod(
 
 
 def on_plate(x: object, y: object, z: object) -> tuple[sp.Expr, ...]:
-    """Where a point of the plate is, by its coordinates in the frame of the plate."""
+    """The position of a point of the plate, from its coordinates in the frame of the plate."""
     return tuple(sp.Matrix([X.symbol, Y.symbol, Z.symbol]) + ROTATION * sp.Matrix([x, y, z]))
 
 

@@ -9,7 +9,7 @@ import sympy as sp
 
 @dataclass(frozen=True)
 class Quantity:
-    """Something with a symbol: takes part in SymPy expressions through it."""
+    """A quantity with a symbol, by which it stands in SymPy expressions."""
 
     symbol: sp.Symbol
 

@@ -1,4 +1,4 @@
-"""Conditions on the dimensions of a machine: whether its arms can reach a common place at all."""
+"""Conditions on the dimensions of a machine: whether its arms can reach a common point."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _PAIRS = ((1, 2), (1, 3), (2, 3))
 
 
 def discs_meet(centres: Sequence[Vector], radii: Sequence[sp.Expr], message: str) -> tuple[Constraint, ...]:
-    """That three discs in the plane have a point in common: what three arms reach, seen from above.
+    """The conditions that three discs in the plane, the ranges of three arms seen from above, have a point in common.
 
-    centres: x and y; radii: not negative; message: what must be the case. Every two must meet. Then all three do, unless
-    the point whose powers to the circles are equal lies between the centres and outside the discs. Where the centres lie
-    on a line there is no such point, and the pairs decide.
+    centres: x and y; radii: not negative; message: the condition in words. Every two discs must intersect. Then all three
+    do, unless the radical centre (the point with equal powers to the circles) lies in the triangle of the centres and outside
+    the discs. Where the centres lie on a line there is no radical centre, and the pairs decide.
     """
     corners = tuple(vector(*(real(f"reach_{c}_{i}") for c in "xy")) for i in (1, 2, 3))
     reaches = tuple(real(f"reach_{i}") for i in (1, 2, 3))
@@ -40,7 +40,7 @@ def discs_meet(centres: Sequence[Vector], radii: Sequence[sp.Expr], message: str
 
 
 def _all_three(second: Vector, third: Vector, reaches: Sequence[sp.Symbol], message: str) -> Constraint:
-    """Of three discs that meet in pairs: the second and third seen from the first."""
+    """The condition on three discs that intersect in pairs, in coordinates from the first centre."""
     power_2, power_3, area = real("power_2"), real("power_3"), real("corner_area")
     centre = _vector("equal_power")  # times 2 * area, seen from the first corner
     weight_2, weight_3 = real("weight_2"), real("weight_3")  # of the corners in it, times 2 * area²

@@ -30,7 +30,7 @@ _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _PARAMETER = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 _RESERVED = re.compile(r"(axis|ref|turn|sigma|branch|offset|lower|upper|motor|unlimited)_|check_limits\Z|[xyz]\Z|r[123][123]\Z")
-"""Names that programs use for something else."""
+"""Names that programs need for other values."""
 
 Expressions = tuple[tuple[str, sp.Basic], ...]
 

@@ -1,1 +1,1 @@
-"""What a drawing of a mechanism shows, as data computed from its description. How it looks is a matter of `emit`."""
+"""The drawing of a mechanism, as data computed from its description. `emit/picture` decides how it looks."""

@@ -1,4 +1,4 @@
-"""The scene of a chain: its factors walked base first, at given joint values."""
+"""The scene of a chain at given joint values, composed from its base."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _PARALLEL, _EXACT = 0.999, 1e-6
 
 
 def chain_scene(mechanism: Mechanism, values: Values, tool: Frame) -> Scene:
-    """Walk the chain of a mechanism; `values` has its parameters and joint values by name.
+    """The scene of the chain of a mechanism; `values` has its parameters and joint values by name.
 
-    Raises `DescriptionError` where it ends elsewhere than at the tool that forward kinematics computed.
+    Raises `DescriptionError` where the chain does not end at the tool that forward kinematics computed.
     """
     assert mechanism.chain is not None
     walker = _Walker(mechanism, values)
@@ -53,14 +53,14 @@ class _Walker:
     dimensions: list[Dimension] = field(default_factory=list)
     hidden: list[sp.Expr] = field(default_factory=list)
     moves: dict[Joint, list[Array]] = field(default_factory=dict)
-    """Of every joint, where the shifts it takes part in go per unit of it."""
+    """By joint: the vectors by which a unit of the joint moves its shifts."""
     _shifts: list[tuple[Array, sp.Expr]] = field(default_factory=list)
-    """Of the body that is being walked: its shifts, and what they are called."""
+    """The shifts of the current body, with their labels."""
     _start: Array = field(default_factory=lambda: np.zeros(3))
     _last_axis: Array | None = None
 
     def pass_over(self, factor: Factor) -> None:
-        """Go through one factor."""
+        """Compose the scene with one more factor."""
         moving = [j for j in self.mechanism.joints if j.symbol in factor.amount.free_symbols]
         direction = self.rotation[:, factor.axis]
         amount = float(evaluate(factor.amount, self.values))
@@ -96,7 +96,7 @@ class _Walker:
         self._last_axis = direction
 
     def finish_body(self, axis: Array | None) -> None:
-        """Draw the body up to here: first along the joint it hangs on, last along the next one, as machines are built."""
+        """Draw the body that ends here: first along the joint in front, last along the next joint, as machines are built."""
         at = self._start
         self._point_turns()
         for shift, label in sorted(self._shifts, key=lambda s: _place(s[0], self._last_axis, axis)):
@@ -111,7 +111,7 @@ class _Walker:
         self._shifts, self._start = [], self.position
 
     def _point_turns(self) -> None:
-        """Say of the last joints where the body that is done here goes."""
+        """Give the last joints the direction of the body that ends here."""
         total = self.position - self._start
         for index, turn in enumerate(self.turns):
             across = total - (total @ np.array(turn.axis)) * np.array(turn.axis)
@@ -123,7 +123,7 @@ class _Walker:
 
 
 def _drives(mechanism: Mechanism, values: Values, walker: _Walker) -> list[Slide]:
-    """Where a drive moves the tool that takes part in several shifts, or shares one."""
+    """The direction in which a drive moves the tool, where it moves several shifts or shares one."""
     arrows = {s.label for s in walker.slides if s.has_arrow}
     found = []
     for joint, moves in walker.moves.items():
@@ -135,7 +135,7 @@ def _drives(mechanism: Mechanism, values: Values, walker: _Walker) -> list[Slide
 
 
 def _unsigned(mechanism: Mechanism, amount: sp.Expr) -> sp.Expr:
-    """The amount without the parameters that are only a direction: arrows show it."""
+    """The amount without the parameters that are only a sign: arrows show the direction."""
     signs = {p.symbol: sp.Integer(1) for p in mechanism.parameters if p.role.value == "sign"}
     return sp.sympify(amount).xreplace(signs)
 

@@ -1,4 +1,4 @@
-"""The drawing of a mechanism: its scene, and what each byte of a configuration chooses, at one regular pose."""
+"""The drawing of a mechanism: its scene, and the choice of each configuration byte, at one regular pose."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from derive.drawing.scene import Scene, Segment, Spot
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.reference_cases import Reals
-from derive.report.reference_calls import Tested, branches
+from derive.report.reference_calls import Machine, branches
 
 _ANGLES = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0)
-"""Where rotary axes stand to show a configuration, one after the other."""
+"""Values of the rotary axes at which a configuration is shown, tried in this order."""
 _VISIBLE = 0.04
-"""Two poses look different where some point is this part of the machine's size away."""
+"""Two poses look different where some point moves by this fraction of the machine's size."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """One choice: two poses with the same commanded tool, or with the same axes where it is the way of assembly."""
+    """One choice: two poses with the same tool frame, or with the same axes where it is the assembly mode."""
 
     name: str
     names: tuple[str, str]
@@ -67,21 +67,21 @@ def drawing_of(kinematics: Kinematics) -> Drawing:
     )
 
 
-def _without_search(kinematics: Kinematics, machine: Tested) -> Tested:
-    """The machine with a closed form: what a search adds to the branches is not to be seen."""
+def _without_search(kinematics: Kinematics, machine: Machine) -> Machine:
+    """The machine with a closed form, without the branch of a root scan, which a picture cannot show."""
     search = kinematics.mechanism.search
     return machine if search is None else nominal_machine(kinematics, **{search.where.name: 0.0})
 
 
-def scene_at(machine: Tested, pose: Pose) -> Scene:
-    """What is drawn of a machine at a pose."""
+def scene_at(machine: Machine, pose: Pose) -> Scene:
+    """The scene of a machine at a pose."""
     mechanism = machine.kinematics.mechanism
     values = values_at(machine, pose)
     return (loop_scene if mechanism.chain is None else chain_scene)(mechanism, values, pose.tool)
 
 
-def _choices(machine: Tested, drawn: Pose) -> Iterator[Choice]:
-    """Every branch of the configuration, its other byte at the same tool frame."""
+def _choices(machine: Machine, drawn: Pose) -> Iterator[Choice]:
+    """The choice of every branch: both bytes at the same tool frame."""
     mechanism = machine.kinematics.mechanism
     told = [k for k, branch in enumerate(mechanism.branches) if not branch.is_crossing]
     found: dict[int, tuple[Scene, Scene]] = {}
@@ -95,7 +95,7 @@ def _choices(machine: Tested, drawn: Pose) -> Iterator[Choice]:
 
 
 def _candidates(mechanism: Mechanism, drawn: Pose) -> Iterator[Reals]:
-    """Poses to look at: near the drawn one for a loop, and with every rotary axis turned."""
+    """Candidates for the pose of a choice: near the drawn pose for a loop, and with every rotary axis turned."""
     for part in (0.0, 0.4, -0.4, 0.8, 1.2):
         turned = zip(mechanism.joints, drawn.axes, (*_ANGLES,) * 2, strict=False)
         if part or not drawn.is_zero or mechanism.chain is None:
@@ -103,7 +103,7 @@ def _candidates(mechanism: Mechanism, drawn: Pose) -> Iterator[Reals]:
             yield tuple(axis + (scale * angle if joint.is_angle else 0.0) for joint, axis, angle in turned)
 
 
-def _pair(machine: Tested, pose: Pose, index: int) -> tuple[Scene, Scene] | None:
+def _pair(machine: Machine, pose: Pose, index: int) -> tuple[Scene, Scene] | None:
     count = len(machine.kinematics.mechanism.branches)
     first = pose.configuration[index] == 1
     other = [3 - byte if k == index else byte for k, byte in enumerate(pose.configuration[:count])]
@@ -116,7 +116,7 @@ def _pair(machine: Tested, pose: Pose, index: int) -> tuple[Scene, Scene] | None
 
 
 def _assembly(kinematics: Kinematics, drawn: Pose) -> Choice | None:
-    """The two ways of assembly, at the same axis values."""
+    """The two assembly modes at the same axis values."""
     assembly = kinematics.mechanism.assembly
     if assembly is None:
         return None

@@ -1,4 +1,4 @@
-"""What a dimension is called: the parameter, or the simple expression in parameters, that it always equals."""
+"""The label of a dimension: the parameter, or the simple expression of parameters, that it equals on every machine."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from derive.kinematics.sampling import sample_machine
 Values = Mapping[str, Array]
 LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
 _SEEDS = (11, 12, 13)
-"""Machines of other dimensions, by which a coincidence in this one is found out."""
+"""Other machines, on which a dimension that equals a parameter by coincidence does not."""
 _SAME = 1e-9
 
 
@@ -34,7 +34,7 @@ def interface(mechanism: Mechanism, amount: sp.Expr) -> sp.Expr:
 
 
 def plain(label: sp.Expr) -> sp.Expr:
-    """The label in bare names, without what a description knows of their signs."""
+    """The label with symbols without assumptions."""
     return label.xreplace({s: sp.Symbol(s.name) for s in label.free_symbols})
 
 
@@ -49,7 +49,7 @@ def lengths_of(mechanism: Mechanism) -> tuple[Parameter, ...]:
 
 
 class Naming:
-    """Finds what a length is called, by measuring it on machines of other dimensions too."""
+    """Finds the labels of lengths by measuring them on machines of other dimensions."""
 
     def __init__(self, mechanism: Mechanism, values: Values) -> None:
         self._parameters = lengths_of(mechanism)
@@ -57,11 +57,11 @@ class Naming:
         self._machines = [{**values, **_own(mechanism, seed)} for seed in _SEEDS]
 
     def length(self, measure: Callable[[Values], float]) -> sp.Expr | None:
-        """The parameter, or half of it, that the length is on every machine; None where it is none."""
+        """The parameter, or half of it, that equals the length on every machine; else None."""
         return self._found(lambda machine: abs(measure(machine)), magnitude=True)
 
     def angle(self, measure: Callable[[Values], float]) -> sp.Expr | None:
-        """The parameter that the angle, in degrees, is on every machine."""
+        """The parameter that equals the angle, in degrees, on every machine; else None."""
         measured = np.array([measure(machine) for machine in self._machines])
         for name in self._angles:
             given = np.array([float(machine[name]) for machine in self._machines])
@@ -70,7 +70,7 @@ class Naming:
         return None
 
     def coordinates(self, entries: Sequence[Callable[[Values], float]]) -> tuple[sp.Expr, ...] | None:
-        """The parameters that the coordinates of a point are; None where one of them is no parameter and not zero."""
+        """The parameters that equal the coordinates of a point; None where one of them is neither a parameter nor zero."""
         found = [self._found(entry, magnitude=False) for entry in entries]
         names = [name for name in found if name is not None]
         return tuple(names) if len(names) == len(found) and any(n != 0 for n in names) else None
@@ -92,7 +92,7 @@ class Naming:
 
 
 def _own(mechanism: Mechanism, seed: int) -> dict[str, Array]:
-    """The description's own parameters of another machine. What is zero in this one is not zero there."""
+    """The parameters of another machine; those that are zero in this one are not zero there."""
     generator = np.random.default_rng(seed)
     drawn = sample_machine(mechanism, seed)
     found = {}

@@ -1,7 +1,7 @@
-"""The scene of a closed loop: its bars, and the cranks, rails and legs that its equations say of their ends.
+"""The scene of a closed loop: its bars, and the cranks, rails and legs that follow from the equations of their ends.
 
-Where an end of a bar depends on a rotary joint, it moves on a circle: the centre is the joint, and the way from there the
-crank. On a linear joint it moves on a line: the rail. A bar whose length is a joint is a leg that changes its length.
+An end of a bar that depends on a rotary joint moves on a circle: the centre is the joint, and the radius is the crank. An end
+that depends on a linear joint moves on a line, the rail. A bar whose length is a joint is a leg of variable length.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Entries = tuple[sp.Expr, ...]
 
 
 def bars_of(mechanism: Mechanism) -> tuple[Rod, ...]:
-    """The bars that are drawn: those the description names for it, else its rods."""
+    """The bars that are drawn: those of the description, else its rods."""
     return mechanism.bars or mechanism.rods
 
 
@@ -64,7 +64,7 @@ class _Builder:
     arcs: list[Arc] = field(default_factory=list)
     grounds: list[Array] = field(default_factory=list)
     _held: list[tuple[Entries, Array]] = field(default_factory=list)
-    """What stands still: the grounds, and where rails begin."""
+    """The fixed points: grounds, and the beginnings of rails."""
 
     def bar(self, bar: Rod) -> None:
         """A bar between its ends. It must have the length that the description states."""
@@ -77,7 +77,7 @@ class _Builder:
             self._dimension(start, end, lambda v: float(evaluate(bar.length, v)))
 
     def joint(self, joint: Joint) -> None:
-        """How a joint moves the ends of bars."""
+        """The crank, rail or leg by which a joint moves the ends of bars."""
         for bar in bars_of(self.mechanism):
             if joint.symbol in bar.length.free_symbols:
                 start, end = vector_at(bar.base, self.values), vector_at(bar.plate, self.values)
@@ -91,7 +91,7 @@ class _Builder:
             self._rail(joint, ends)
 
     def _moved_by(self, joint: Joint) -> list[tuple[Entries, bool]]:
-        """The ends of bars that depend on the joint, and whether a crank carries them: base ends, else the first plate end."""
+        """The ends of bars that depend on the joint, and whether a crank holds them: base ends, else the first plate end."""
         bars = bars_of(self.mechanism)
         for bar in bars:
             if joint.symbol in sp.Matrix(bar.base).free_symbols:
@@ -110,7 +110,7 @@ class _Builder:
         self._hold(tuple(e.xreplace({joint.symbol: sp.Integer(0)}) for e in entries), is_ground=False)
 
     def _crank(self, joint: Joint, ends: list[tuple[Entries, bool]]) -> None:
-        """From the centre of the circle to the middle between the ends, which a cross bar joins."""
+        """The crank, from the centre of the circle to the middle between the ends, and the cross bar that joins these."""
         circles = [_circle(joint, entries, self.values) for entries, _ in ends]
         centre = np.mean([c for c, _, _ in circles], axis=0)
         arm = np.mean([a for _, a, _ in circles], axis=0)
@@ -141,7 +141,7 @@ class _Builder:
         self._dimension(first, last, lambda v: float(np.linalg.norm(vector_at(apart, v))))
 
     def plate(self) -> None:
-        """The body that the bars carry: from the TCP to the ends that move with the pose alone."""
+        """The plate: from the TCP to the ends of bars that move with the pose alone."""
         ends: dict[tuple[float, ...], Entries] = {}
         for bar in bars_of(self.mechanism):
             symbols = sp.Matrix(bar.plate).free_symbols
@@ -159,7 +159,7 @@ class _Builder:
         self.segments += [Segment(point(tcp), point(p), Body.PLATE) for p in points if np.linalg.norm(p - tcp) > _EXACT]
 
     def base(self) -> None:
-        """What stands still: where cranks turn, rails begin and bars are held."""
+        """The fixed points: centres of cranks, beginnings of rails, fixed ends of bars."""
         for bar in bars_of(self.mechanism):
             if not sp.Matrix(bar.base).free_symbols & (self._joints() | set(_TCP)):
                 self._hold(bar.base)
@@ -172,7 +172,7 @@ class _Builder:
             self.segments += [Segment(point(a), point(b), Body.BASE) for a, b in pairs[: len(points) if len(points) > 2 else 1]]
 
     def _azimuth(self, entries: Entries, at: Array) -> None:
-        """The direction of a point, from X."""
+        """The polar angle of a point, from X."""
 
         def azimuth(values: Values) -> float:
             x, y, _ = vector_at(entries, values)
@@ -197,7 +197,7 @@ class _Builder:
             self.grounds += [at] if is_ground else []
 
     def _given(self, offset: Entries, start: Array, end: Array) -> None:
-        """How parameters give a point from another: by one length, by two at a right angle, or by coordinates."""
+        """The dimensions of a point seen from another: one length, two at a right angle, or coordinates."""
         if self._dimension(start, end, lambda v: float(np.linalg.norm(vector_at(offset, v)))):
             return
         corner = np.array([end[0], end[1], start[2]])
@@ -213,7 +213,7 @@ class _Builder:
             self._dimension(corner, end, lambda v: float(vector_at(offset, v)[2]))
 
     def _dimension(self, start: Array, end: Array, measure: Callable[[Values], float]) -> bool:
-        """A dimension, where the length has a name; each name is shown once."""
+        """A dimension, where the length has a label; each label is shown once."""
         name = self.naming.length(measure)
         if name is None or name == 0:
             return name is not None
@@ -242,7 +242,7 @@ def _circle(joint: Joint, entries: Entries, values: Values) -> tuple[Array, Arra
 
 
 def _centre_of(joint: Joint, ends: Sequence[Entries]) -> Entries:
-    """The centre of the circle as equations, between the ends that the crank carries."""
+    """The centre of the circle as expressions, for the middle between the ends that the crank holds."""
     found = []
     for coordinates in zip(*ends, strict=True):
         halves = [e.xreplace({joint.symbol: joint.symbol + k * sp.pi}) for e in coordinates for k in (0, 1)]

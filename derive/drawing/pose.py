@@ -1,4 +1,4 @@
-"""Which pose is drawn: the zero pose where the mechanism stands there as it is usually built, else a nominal one."""
+"""The pose that is drawn: the zero pose where the mechanism usually stands like this, else a nominal one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from derive.ir.interpret import evaluate
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.reference_cases import Bytes, Reals
-from derive.report.reference_calls import FRAME, Tested, forward, tested
+from derive.report.reference_calls import FRAME, Machine, forward, machine_with
 
 
 @dataclass(frozen=True)
@@ -35,18 +35,18 @@ class Pose:
         return frame_of(self.frame)
 
 
-def nominal_machine(kinematics: Kinematics, **changed: float) -> Tested:
+def nominal_machine(kinematics: Kinematics, **changed: float) -> Machine:
     """The machine with nominal dimensions and no offsets."""
-    return tested(kinematics, {p.name: p.nominal for p in kinematics.parameters} | changed)
+    return machine_with(kinematics, {p.name: p.nominal for p in kinematics.parameters} | changed)
 
 
-def pose_at(machine: Tested, axes: Reals) -> Pose | None:
+def pose_at(machine: Machine, axes: Reals) -> Pose | None:
     """The pose at these axis values; None where there is none."""
     status, frame, configuration = forward(machine, axes)
     return Pose(axes, frame, configuration) if status is Status.OK else None
 
 
-def drawn_pose(machine: Tested) -> Pose:
+def drawn_pose(machine: Machine) -> Pose:
     """The pose that is drawn. Raises `DescriptionError` where the nominal joint values of a closed loop fit no pose."""
     mechanism = machine.kinematics.mechanism
     if mechanism.home:
@@ -60,8 +60,8 @@ def drawn_pose(machine: Tested) -> Pose:
     return found
 
 
-def _is_usual(machine: Tested, pose: Pose) -> bool:
-    """Whether the mechanism stands there in its first configuration, and no length that is a joint vanishes."""
+def _is_usual(machine: Machine, pose: Pose) -> bool:
+    """Whether the mechanism is in its first configuration, and no joint that is a length is zero."""
     mechanism = machine.kinematics.mechanism
     values = values_at(machine, pose)
     bars = mechanism.bars or mechanism.rods
@@ -69,8 +69,8 @@ def _is_usual(machine: Tested, pose: Pose) -> bool:
     return whole and 2 not in pose.configuration[: len(mechanism.branches)]
 
 
-def values_at(machine: Tested, pose: Pose) -> Values:
-    """Everything a description reads, by name: parameters, joint values, and the pose of the tool."""
+def values_at(machine: Machine, pose: Pose) -> Values:
+    """The values of a description by name: parameters, joint values, and the pose of the tool."""
     mechanism = machine.kinematics.mechanism
     values = dict(machine.values)
     for joint, axis in zip(mechanism.joints, pose.axes, strict=True):

@@ -17,7 +17,7 @@ Point = tuple[float, float, float]
 
 
 class Body(Enum):
-    """What a drawn segment is a part of."""
+    """The kind of body to which a drawn segment belongs."""
 
     LINK = "link"
     ROD = "rod"
@@ -42,26 +42,26 @@ class Turn:
     at: Point
     axis: Point
     toward: Point | None = None
-    """Where what turns points to; None where it lies along the axis."""
+    """The direction of the body that turns; None where it lies along the axis."""
     zero: Point | None = None
-    """The same at joint value zero, where the drawn pose is another."""
+    """The same direction at joint value zero, where the drawn pose is another."""
 
 
 @dataclass(frozen=True)
 class Slide:
-    """A linear motion: its axis points where positive values are."""
+    """A linear joint: its axis points to positive values."""
 
     label: sp.Expr
     at: Point
     axis: Point
     has_rail: bool = True
     has_arrow: bool = True
-    """A rail that several drives move together has none: every drive has an arrow of its own."""
+    """None for a rail that several drives move together: every drive has an arrow of its own."""
 
 
 @dataclass(frozen=True)
 class Dimension:
-    """A length between two points. A negative one goes against its positive direction."""
+    """A length between two points; a negative length points against its positive direction."""
 
     label: sp.Expr
     start: Point
@@ -89,7 +89,7 @@ class Spot:
 
 @dataclass(frozen=True)
 class Frame:
-    """Where a frame is: the columns of its rotation are its axes."""
+    """A frame: its origin, and its axes as the columns of its rotation."""
 
     position: Point
     rotation: tuple[Point, Point, Point]
@@ -98,7 +98,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything to be drawn of a mechanism in one pose."""
+    """The drawing of a mechanism in one pose."""
 
     segments: tuple[Segment, ...]
     turns: tuple[Turn, ...]
@@ -114,7 +114,7 @@ class Scene:
 
     @property
     def size(self) -> float:
-        """The largest extent of what is drawn; 0 where everything is in one point."""
+        """The largest extent of the drawing; 0 where everything is in one point."""
         points = np.array([(0.0, 0.0, 0.0), self.tool.position, *(p for s in self.segments for p in (s.start, s.end))])
         return float(np.max(np.ptp(points, axis=0)))
 

@@ -58,12 +58,12 @@ def _motor_and_joint(value: sp.Expr, motor: sp.Symbol, joint: sp.Symbol, couplin
 
 
 def reference_lets(mechanism: Mechanism) -> tuple[Let, ...]:
-    """Joint values at the reference: `free_a1`, taken where nothing else determines the joint."""
+    """Joint values at the reference: `reference_a1`, taken where nothing else determines the joint."""
     table = {j.motor: _reference_motor(j) for j in mechanism.joints}
     lets: list[Let] = []
     for joint in mechanism.joints:
         motor = (joint.reference - joint.offset) * joint.unit
-        lets += _motor_and_joint(motor, _reference_motor(joint), free(joint), joint.coupling.xreplace(table))
+        lets += _motor_and_joint(motor, _reference_motor(joint), reference_value(joint), joint.coupling.xreplace(table))
     return tuple(lets)
 
 
@@ -71,9 +71,9 @@ def _reference_motor(joint: Joint) -> sp.Symbol:
     return real(f"ref_motor_{joint.key}")
 
 
-def free(joint: Joint) -> sp.Symbol:
+def reference_value(joint: Joint) -> sp.Symbol:
     """The joint value at the reference."""
-    return real(f"free_{joint.key}")
+    return real(f"reference_{joint.key}")
 
 
 def axis_lets(joint: Joint) -> tuple[Let, ...]:
@@ -101,7 +101,7 @@ def _near(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
     an axis moves with its neighbours.
     """
     shift = -joint.coupling / joint.unit
-    reference = joint.reference if joint.coupling == 0 else free(joint) / joint.unit + joint.offset + shift
+    reference = joint.reference if joint.coupling == 0 else reference_value(joint) / joint.unit + joint.offset + shift
     note = f"{joint.name}: without a commanded turn, the value nearest to this"
     open_value, is_single = real(f"open_{joint.key}"), flag(f"single_{joint.key}")
     commanded = Select(sp.Gt(joint.turn, 0), joint.turn - 1, joint.turn)
@@ -120,9 +120,9 @@ def plain_angle(joint: Joint) -> Let:
 def frozen_lets(joint: Joint) -> tuple[Statement, ...]:
     """A joint kept at its reference: its value, sine and cosine, and its axis value."""
     shift = joint.offset - joint.coupling / joint.unit
-    axis = joint.reference if joint.coupling == 0 else free(joint) / joint.unit + shift
+    axis = joint.reference if joint.coupling == 0 else reference_value(joint) / joint.unit + shift
     lets: list[Statement] = [
-        Let(joint.symbol, free(joint), f"{joint.name}: held at the reference"),
+        Let(joint.symbol, reference_value(joint), f"{joint.name}: held at the reference"),
         Let(joint.axis, axis),
         Let(joint.motor, (joint.axis - joint.offset) * joint.unit),
     ]

@@ -139,7 +139,7 @@ def _wrist(point: sp.Matrix, rotation: sp.Matrix, seen: Sequence[sp.Expr]) -> Ta
     moved = point + rotation * sp.Matrix(seen)
     lets = []
     for c, value in zip(COORDINATE_NAMES, moved, strict=True):
-        note = "wrist centre: the point in which the last axes intersect" if c == "x" else ""
+        note = "wrist centre: the last joints do not move this point" if c == "x" else ""
         lets.append(Let(real(f"wrist_{c}"), value, note))
     if not any(is_compound(let.value) for let in lets):
         return Target(tuple(moved))

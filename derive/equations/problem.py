@@ -125,7 +125,7 @@ class Problem:
     equations: tuple[Equation, ...]
     units: tuple[sp.Symbol, ...]
     """All angles, known ones too, whose sine and cosine symbols obey sin^2 + cos^2 = 1."""
-    free: Mapping[sp.Symbol, sp.Expr]
+    references: Mapping[sp.Symbol, sp.Expr]
     """The reference of each angle, in radians: its value where nothing determines it."""
     scale: sp.Expr
     """A length of the machine, made of parameters only, never zero."""

@@ -16,7 +16,7 @@ from derive.ir.constants import (
     ONE_TURN,
     UNLIMITED,
 )
-from derive.ir.passes import bare_expression, renamed
+from derive.ir.passes import plain, renamed
 from derive.ir.primitives import Select
 from derive.ir.program import Let, Output, Program, Require, Statement, Status, rewritten
 from derive.ir.reason import Reason, Why, about_input, about_parameters
@@ -124,9 +124,9 @@ def _fallback(joint: Joint) -> Fallback:
     found: list[tuple[sp.Basic, sp.Expr, sp.Expr]] = []
     if joint.pitch != 0 and joint.limit_range is not None:
         low, high = (sp.Integer(int(v)) for v in joint.limit_range)
-        found.append((bare_expression(sp.Gt(sp.Abs(joint.pitch), 0)), low, high))
+        found.append((plain(sp.Gt(sp.Abs(joint.pitch), 0)), low, high))
     if joint.domain is not None:
-        low, high = (bare_expression(sp.Integer(int(v)) + joint.offset) for v in joint.domain)
+        low, high = (plain(sp.Integer(int(v)) + joint.offset) for v in joint.domain)
         found.append((sp.true, low, high))
     return tuple(found)
 
@@ -158,8 +158,8 @@ def limits_of_axis() -> Program:
         Let(unlimited, sp.And(sp.Not(drive_limited), own_unlimited)),
         *window.ends,
     )
-    plain = {called(f"{word}_{axis.key}", like): called(name, like) for word, (name, like) in _OF_ANY_AXIS.items()}
-    named = tuple(renamed(rewritten(s, lambda e: e.xreplace(plain)), lambda name: plain.get(name, name)) for s in body)
+    general = {called(f"{word}_{axis.key}", like): called(name, like) for word, (name, like) in _OF_ANY_AXIS.items()}
+    named = tuple(renamed(rewritten(s, lambda e: e.xreplace(general)), lambda name: general.get(name, name)) for s in body)
     outputs = (*(Output(name, real(name)) for name in ("lowest", "highest")), Output("single", flag("single")))
     outputs = (*outputs, Output("middle", real("middle")))
     inputs = (own_unlimited, own_lower, own_upper, drive_limited, drive_lower, drive_upper)

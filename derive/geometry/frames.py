@@ -1,6 +1,6 @@
 """Chains of elementary frames: the geometry of a serial mechanism, written as a product.
 
-`Rz(A1) * Tx(link) * Rz(A2)` reads as it is drawn: turn about z, go along x, turn about z.
+`Rz(A1) * Tx(link) * Rz(A2)` is a rotation about z, a shift along x, and a rotation about the new z.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import sympy as sp
 
 
 class Motion(Enum):
-    """What an elementary frame does."""
+    """The kind of motion of an elementary frame."""
 
     TURN = "turn"
     SHIFT = "shift"
@@ -38,7 +38,7 @@ class Factor:
         return sp.ImmutableMatrix(sp.Matrix.vstack(rotation.row_join(position), sp.Matrix([[0, 0, 0, 1]])))
 
     def inverse(self) -> Factor:
-        """The frame that undoes it: half a turn undoes itself."""
+        """The inverse frame; half a turn is its own inverse."""
         return self if self.motion is Motion.FLIP else Factor(self.motion, self.axis, -self.amount)
 
     def _rotation(self) -> sp.Matrix:
@@ -75,37 +75,37 @@ def _one(motion: Motion, axis: int, amount: object) -> Chain:
 
 
 def Rx(angle: object) -> Chain:
-    """Turn about x by an angle (a joint, or an expression in radians)."""
+    """A rotation about x by an angle (a joint, or an expression in radians)."""
     return _one(Motion.TURN, 0, angle)
 
 
 def Ry(angle: object) -> Chain:
-    """Turn about y."""
+    """A rotation about y."""
     return _one(Motion.TURN, 1, angle)
 
 
 def Rz(angle: object) -> Chain:
-    """Turn about z."""
+    """A rotation about z."""
     return _one(Motion.TURN, 2, angle)
 
 
 def Tx(distance: object) -> Chain:
-    """Go along x."""
+    """A shift along x."""
     return _one(Motion.SHIFT, 0, distance)
 
 
 def Ty(distance: object) -> Chain:
-    """Go along y."""
+    """A shift along y."""
     return _one(Motion.SHIFT, 1, distance)
 
 
 def Tz(distance: object) -> Chain:
-    """Go along z."""
+    """A shift along z."""
     return _one(Motion.SHIFT, 2, distance)
 
 
 def Txyz(x: object, y: object, z: object) -> Chain:
-    """Go along x, y and z."""
+    """A shift along x, y and z."""
     return Tx(x) * Ty(y) * Tz(z)
 
 

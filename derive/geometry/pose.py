@@ -1,4 +1,4 @@
-"""The pose of a chain: parallel turns merged, so that `cos(a1 + a2)` stays one cosine; and its screws."""
+"""The pose of a chain, with consecutive parallel rotations merged, so that `cos(a1 + a2)` stays one cosine; and its screws."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from derive.geometry.frames import Chain, Factor, Motion
 
 @dataclass(frozen=True)
 class Screw:
-    """How one factor moves the end: along or about a base direction, through a point of the base frame."""
+    """The screw by which one factor moves the end of a chain: its direction, and a point on it, in the frame of the base."""
 
     motion: Motion
     amount: sp.Expr
@@ -22,7 +22,7 @@ class Screw:
 
 @dataclass(frozen=True)
 class Pose:
-    """Position and rotation of the end of a chain, its merged turns, and the screw of every factor."""
+    """Position and rotation of the end of a chain, its merged rotations, and the screw of every factor."""
 
     position: sp.ImmutableMatrix
     rotation: sp.ImmutableMatrix
@@ -31,7 +31,7 @@ class Pose:
 
 
 def pose_of(chain: Chain) -> Pose:
-    """Walk the chain from its base."""
+    """The pose of a chain, composed from its base."""
     turns: list[Factor] = []
     position = sp.zeros(3, 1)
     screws: list[Screw] = []

@@ -15,7 +15,7 @@ def vector(*entries: object) -> Vector:
 
 
 def minus(end: Vector, start: Vector) -> Vector:
-    """From start to end."""
+    """The vector from start to end."""
     return tuple(e - s for e, s in zip(end, start, strict=True))
 
 

@@ -4,8 +4,8 @@
 
 Nodes are hash-consed: equal operations on equal parts are the same node. A minus sign is no node: it stands beside the
 node that is read, and the sign in front of a sum or of a product is moved to its reader. So a value and its negative are
-one node, and a cosine does not know the sign of its angle. A sum is the same sum in any order. Nothing is expanded, and
-nothing that was written apart is put together.
+one node, and the cosine of an angle and of its negative are one node, too. The order of terms does not matter. Nothing is
+expanded, and nothing is factored.
 
 Names, notes and statements are not part of the graph: see `derive.lowering.draft` and `writing`.
 """
@@ -24,7 +24,7 @@ from derive.ir.symbols import is_count
 
 SUM, PRODUCT = sp.Add, sp.Mul
 Head = Any
-"""A name or a positive number; or what is done with the parts: `SUM`, `PRODUCT`, a primitive, a comparison, AND, OR."""
+"""A name or a positive number; or the operation on the parts: `SUM`, `PRODUCT`, a primitive, a comparison, AND, OR."""
 _EVEN = (sp.cos, sp.Abs)
 ODD = (sp.sin, ToReal)
 """What changes its sign with its argument."""
@@ -39,7 +39,7 @@ class Node:
     parts: tuple[Value, ...] = ()
     """Terms, factors (whose signs are +1) or arguments."""
     divisors: tuple[Node, ...] = ()
-    """Of a product: what it is divided by."""
+    """The divisors of a product."""
 
     @property
     def is_leaf(self) -> bool:
@@ -68,13 +68,13 @@ class Value(NamedTuple):
 
 @dataclass
 class Graph:
-    """All nodes that have been made, by what they are."""
+    """All nodes that have been made, by operation and parts."""
 
     nodes: list[Node] = field(default_factory=list)
     _known: dict[object, Node] = field(default_factory=dict)
 
     def leaf(self, head: sp.Basic) -> Value:
-        """A name, a truth, or a number, whose sign is taken off."""
+        """A name, a truth value, or the absolute value of a number with its sign beside it."""
         if isinstance(head, sp.Number) and head < 0:
             return Value(self._node(-head, -head), -1)
         return Value(self._node(head, head), 1)
@@ -96,7 +96,7 @@ class Graph:
         return Value(self._node((SUM, frozenset(signed)), SUM, signed), sign)
 
     def product(self, factors: Iterable[Value], divisors: Iterable[Value] = ()) -> Value:
-        """The product of factors over the product of divisors; numbers are multiplied, signs taken off."""
+        """The product of factors over the product of divisors; numbers are multiplied, and signs moved to the reader."""
         number, sign = sp.Integer(1), 1
         above, below = list[Node](), list[Node]()
         for value, side in (*((f, above) for f in factors), *((d, below) for d in divisors)):
@@ -115,7 +115,7 @@ class Graph:
         return Value(self._node(key, PRODUCT, tuple(Value(f, 1) for f in above), tuple(below)), sign)
 
     def apply(self, head: type[sp.Basic], arguments: Sequence[Value]) -> Value:
-        """A primitive, a comparison, AND or OR of its arguments; what is decided is not asked."""
+        """A primitive, a comparison, AND or OR of its arguments; conditions that are decided are left out."""
         parts = tuple(arguments)
         if head is Select:
             return self._choice(*parts)
@@ -167,7 +167,7 @@ class Graph:
 
 
 def reached(starts: Iterable[Node], is_end: Callable[[Node], bool] = lambda _: False) -> Iterator[Node]:
-    """These nodes and all that they read, each once; what an end reads is not looked at."""
+    """These nodes and all that they read, each once; the search does not go beyond an `end`."""
     seen: set[Node] = set()
     pending = list(starts)
     while pending:
@@ -179,7 +179,7 @@ def reached(starts: Iterable[Node], is_end: Callable[[Node], bool] = lambda _: F
 
 
 def is_whole(node: Node) -> bool:
-    """Whether names of whole numbers make it one."""
+    """Whether it is an integer, by the names in it."""
     if node.is_leaf:
         return is_count(node.head)
     if node.head in (SUM, PRODUCT, sp.Abs, Select):

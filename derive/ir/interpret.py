@@ -1,4 +1,4 @@
-"""Execute a program over arrays: the reference semantics of every primitive, and what the checks run."""
+"""The reference interpreter: it executes a program over arrays, and defines every primitive."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def evaluate(expression: sp.Basic, values: Mapping[str, Array]) -> Array:
 
 @cache
 def _evaluator(expression: sp.Basic) -> Callable[[Mapping[str, Array]], Array]:
-    """The expression as a function of the values of its symbols: expressions are evaluated thousands of times."""
+    """The expression as a function of the values of its symbols; cached, because expressions are evaluated often."""
     if isinstance(expression, sp.Symbol) and expression != DEGREE:
         return itemgetter(expression.name)
     if expression in (sp.true, sp.false):
@@ -128,7 +128,7 @@ def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array]
 
 
 def _as_declared(value: Array, name: sp.Symbol | None) -> Array:
-    """The value of an input, in the type of its name: a flag may be given as 0 or 1, a whole number as a real one."""
+    """The value of an input in the type of its name: a flag may be given as 0 or 1, an integer as a real number."""
     if isinstance(name, Flag):
         return np.asarray(value).astype(bool)
     return np.asarray(value, dtype=np.int64 if is_count(name) else float)
@@ -156,7 +156,7 @@ def _require(condition: Array, otherwise: Status, status: NDArray[np.object_]) -
 
 
 def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> None:
-    """The shared program sees its arguments and constants alone; a row that it refuses has its status."""
+    """Run a shared program with its arguments and constants; a row that it refuses gets its status."""
     inner = {s.name: known[s.name] for s in call.constants}
     inner |= {name.name: evaluate(value, known) for name, value in call.given}
     _execute(call.program.body, inner, status)
@@ -165,7 +165,7 @@ def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> N
 
 
 def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]) -> None:
-    """Roots are looked for only where they are wanted, and where nothing has refused before."""
+    """Find roots, only where they are wanted and nothing has refused before."""
     shape = status.shape
     looked = np.broadcast_to(evaluate(search.wanted, known), shape) & (status == Status.OK)
     rows = {k: np.broadcast_to(v, shape)[looked] for k, v in known.items()}
@@ -189,7 +189,7 @@ def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]
 
 
 def _iterate(loop: Iterate, known: dict[str, Array], status: NDArray[np.object_]) -> None:
-    """Rows that are done keep their state, and so every name of the step, while the others go on."""
+    """Run a loop: rows that are done keep their state and the names of the step, while the others go on."""
     start = [_as_declared(evaluate(value, known), name) for name, value in zip(loop.state, loop.start, strict=True)]
     known.update(zip((name.name for name in loop.state), start, strict=True))
     done = np.zeros(status.shape, dtype=bool)

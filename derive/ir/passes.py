@@ -1,8 +1,8 @@
-"""Passes over programs: fold aliases, order by need, hoist what depends on parameters alone.
+"""Passes over programs: fold aliases, order statements by use, hoist values that depend on parameters alone.
 
 fold    Let(cos_s, cos_heading); … cos_s …                   →  … cos_heading …
-order   a Let stands just before its first use; one that nothing needs disappears, and so does what a call need not bind;
-        what only the amount of a reason reads is written out in it
+order   a Let stands just before its first use; a Let that nothing reads disappears, and so does an unread result of a call;
+        a value that only the amount of a reason reads is written out in it
 hoist   Let(scale_a2, 2*link_length_1*link_length_2)         →  computed once, by `setup`
 """
 
@@ -45,22 +45,22 @@ from derive.ir.verify import BrokenProgram, verify
 
 
 def assemble(name: str, statements: Iterable[Statement], outputs: Sequence[Output]) -> Program:
-    """A verified program from statements in any sensible order: bare names, folded, ordered, inputs found."""
-    body, values = bare(statements), tuple(Output(o.name, bare_expression(o.value)) for o in outputs)
+    """A verified program from statements in any order: symbols without assumptions, aliases folded, ordered, inputs found."""
+    body, values = without_assumptions(statements), tuple(Output(o.name, plain(o.value)) for o in outputs)
     body, values = _fold(body, values)
     program = Program(name, (), written_out(_order(body, values), body), values)
     return with_inputs(program)
 
 
 def with_inputs(program: Program) -> Program:
-    """The program with its inputs recomputed, verified."""
+    """The program with its inputs recomputed, and verified."""
     inputs = tuple(sorted(program.reads(), key=lambda s: s.name))
     return verify(replace(program, inputs=inputs))
 
 
 @cache
-def bare_expression(value: sp.Basic) -> sp.Expr:
-    """Symbols with no assumption but their type: in a program a name is a name. Pi is 180 degrees, a square root a root."""
+def plain(value: sp.Basic) -> sp.Expr:
+    """The expression with symbols that have a type and no other assumptions, pi as 180 degrees, and square roots as `Root`."""
     named = value.xreplace({s: called(s.name, s) for s in value.free_symbols if s != DEGREE})
     rooted = named.replace(_is_square_root, lambda power: Root(power.base) ** sp.sign(power.exp))
     return rooted.subs(sp.pi, 180 * DEGREE) if rooted.has(sp.pi) else rooted
@@ -70,9 +70,9 @@ def _is_square_root(node: sp.Basic) -> bool:
     return isinstance(node, sp.Pow) and abs(node.exp) == sp.Rational(1, 2)
 
 
-def bare(statements: Iterable[Statement]) -> tuple[Statement, ...]:
-    """The statements with plain names: in a program a name is a name, whatever the solver knew of its sign."""
-    return tuple(renamed(rewritten(s, bare_expression), lambda name: called(name.name, name)) for s in statements)
+def without_assumptions(statements: Iterable[Statement]) -> tuple[Statement, ...]:
+    """The statements with symbols that have a type and no other assumptions: what the solver knew of signs is dropped."""
+    return tuple(renamed(rewritten(s, plain), lambda name: called(name.name, name)) for s in statements)
 
 
 def renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> Statement:
@@ -134,13 +134,13 @@ def _with_ordered_step(loop: Iterate) -> Iterate:
 
 
 def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Statement, ...]:
-    """What the wanted expressions need, each just before its first use; what sets the status is always needed."""
+    """The statements that the wanted expressions need, each just before its first use; a statement that may refuse is kept."""
     sources = {name: s for s in body for name in binds(s)}
     done: list[Statement] = []
     begun: set[int] = set()
 
     def provide(statement: Statement) -> None:
-        if id(statement) in begun:  # also a circle, which the verifier then refuses
+        if id(statement) in begun:  # also in a cycle, which the verifier then refuses
             return
         begun.add(id(statement))
         need(reads(statement))
@@ -160,7 +160,7 @@ def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Stat
 
 
 def written_out(body: Sequence[Statement], known: Iterable[Statement]) -> tuple[Statement, ...]:
-    """The statements, with every name that a reason reads and that is not bound before it replaced by what it stands for."""
+    """The statements, with each name that a reason reads before it is bound replaced by its value."""
     values = {s.name: s.value for s in known if isinstance(s, Let)}
     found: list[Statement] = []
     bound: set[sp.Symbol] = set()
@@ -171,14 +171,14 @@ def written_out(body: Sequence[Statement], known: Iterable[Statement]) -> tuple[
 
 
 def told_in(statement: Statement, bound: Container[sp.Symbol], values: Mapping[sp.Symbol, sp.Expr]) -> Statement:
-    """The statement with its reason in names that are bound; `values` are those of the others."""
+    """The statement with its reason in names that are bound; `values` has the values of all others."""
     if not isinstance(statement, Require) or statement.reason is None:
         return statement
     return replace(statement, reason=statement.reason.rewritten(partial(_in_full, bound=bound, values=values)))
 
 
 def _in_full(value: sp.Basic, bound: Container[sp.Symbol], values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-    for _ in values:  # a value reads no name that needs it: so often at most
+    for _ in values:  # no value depends on itself: as many replacements as values suffice
         unbound = {s: values[s] for s in symbols_of(value) if s in values and s not in bound}
         if not unbound:
             break
@@ -187,7 +187,7 @@ def _in_full(value: sp.Basic, bound: Container[sp.Symbol], values: Mapping[sp.Sy
 
 
 def untold(program: Program) -> Program:
-    """The program for callers that are told a status alone: its reasons compute nothing."""
+    """The program for callers that get a status alone: its reasons compute nothing."""
     body = tuple(
         replace(s, reason=replace(s.reason, amount=None, unit=Unit.NONE, turns=())) if isinstance(s, Require) and s.reason else s
         for s in program.body
@@ -196,13 +196,13 @@ def untold(program: Program) -> Program:
 
 
 def is_read_once(program: Program, name: sp.Symbol) -> bool:
-    """Whether one statement or one output alone reads a name, and no reason."""
+    """Whether exactly one statement or output reads a name, and no reason does."""
     readers = sum(name in reads(s) for s in program.body) + sum(name in symbols_of(o.value) for o in program.outputs)
     return readers == 1 and not any(name in symbols_of(e) for s in program.body for e in told(s))
 
 
 def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
-    """The programs without the Lets that depend on constants alone, and these Lets, each value under one name.
+    """The programs without the Lets that depend on constants alone, and these Lets, each value bound once.
 
     A program that others call comes before them.
     """
@@ -234,7 +234,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
 
 
 def calling(statement: Statement, programs: Mapping[str, Program]) -> Statement:
-    """The statement; a call of the program as it is now."""
+    """The statement; where it is a call, of the current version of its program."""
     if isinstance(statement, FindRoot):
         return replace(statement, trial=programs[statement.trial.name], finish=programs[statement.finish.name])
     return replace(statement, program=programs[statement.program.name]) if isinstance(statement, Call) else statement
@@ -251,7 +251,7 @@ def _varying(program: Program, constants: set[str]) -> list[sp.Symbol]:
 
 
 def _is_constant(let: Let, program: Program, constants: set[str]) -> bool:
-    """Whether a Let depends on constants alone, through whatever Lets."""
+    """Whether a Let depends on constants alone, directly or by other Lets."""
     values = {s.name: s.value for s in program.lets()}
     pending = symbols_of(let.value)
     while pending:

@@ -1,4 +1,4 @@
-"""The primitives: a closed set of total functions, of which every language has its own."""
+"""The primitives: a closed set of total functions, which every language implements."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ class Select(sp.Function):
 
     @classmethod
     def eval(cls, condition: Boolean, first: sp.Expr, second: sp.Expr) -> sp.Expr | None:
-        """A choice between equals is none, nor one that is decided."""
+        """Simplify a choice between equal values, and one whose condition is decided."""
         if condition in (sp.true, sp.false):
             return first if condition == sp.true else second
         return first if first == second else None
 
 
 class ToReal(sp.Function):
-    """to_real(n): a whole number as a real one, where it multiplies."""
+    """to_real(n): an integer as a real number, where it multiplies."""
 
     nargs = 1
     is_real = True
 
     @classmethod
     def eval(cls, number: sp.Expr) -> sp.Expr | None:
-        """A known number is both."""
+        """Simplify a known number, which is an integer and a real number."""
         return number if number.is_Integer else None
 
 

@@ -1,7 +1,7 @@
 """The intermediate representation: straight-line, total programs over numbers and flags.
 
 A program binds names (`Let`), sets a status (`Require`) and ends in outputs. Values are SymPy
-expressions over a closed set of primitives, each of a type (`types`), so that every language needs one printer and nothing else.
+expressions over a closed set of primitives, each of a type (`types`), so that a printer is all that a language needs.
 Every `Let` is defined for any finite input: a `Require` protects nothing, it only decides the status.
 It can therefore be printed as an early return (Structured Text, scalar Python) or as a mask (NumPy).
 
@@ -43,10 +43,10 @@ class Let:
 
     name: sp.Symbol
     value: sp.Basic
-    """A number, or of a flag a condition."""
+    """A number; for a flag, a condition."""
     note: str = ""
     turn_of: str = ""
-    """The axis whose turn the value chooses; empty where it chooses none."""
+    """The axis whose whole turns the value chooses; empty where it chooses none."""
 
     @property
     def comment(self) -> str:
@@ -75,7 +75,7 @@ class Require:
 class Solve:
     """Bind `names` to matrix^-1 right, by LU decomposition with partial pivoting.
 
-    Total: the determinant and the solution are zeros where the matrix is singular, or a number is none or beyond `SOLVABLE`.
+    Total: determinant and solution are zeros where the matrix is singular, or a number is NaN or larger than `SOLVABLE`.
 
     All three by rows: the matrix is square, `names` and `right` have as many columns as there are right-hand sides,
     which may be none where the determinant alone is wanted.
@@ -89,12 +89,12 @@ class Solve:
 
     @property
     def size(self) -> int:
-        """How many rows the matrix has."""
+        """The number of rows of the matrix."""
         return isqrt(len(self.matrix))
 
     @property
     def columns(self) -> int:
-        """How many right-hand sides there are."""
+        """The number of right-hand sides."""
         return len(self.right) // self.size
 
 
@@ -102,8 +102,8 @@ class Solve:
 class Iterate:
     """Repeat `step` from `start` until `done` holds, at most `limit` times; status `otherwise` where it never does.
 
-    Every pass evaluates the step at the state; then it is done, or the state becomes `following`. So the names of the
-    step are bound behind the loop, too: where it was done, they belong to the final state.
+    Every pass evaluates the step at the state. Then the loop ends, or the state becomes `following`. So the names of the
+    step are bound behind the loop, too, and belong to the final state.
     """
 
     state: tuple[sp.Symbol, ...]
@@ -116,20 +116,20 @@ class Iterate:
     otherwise: Status
     note: str = ""
     reason: Reason | None = None
-    """What a caller is told where it never is done; it has no amount."""
+    """The reason given to a caller where the loop never ends; it has no amount."""
 
 
 @dataclass(frozen=True)
 class Call:
     """Run a program that several programs share, and bind names of its outputs; where it refuses, so does the caller.
 
-    `given` are the values of its arguments. What else it reads is a constant of the machine: an input of the caller, too.
+    given: the values of its arguments. Its other inputs are constants of the machine, which are inputs of the caller, too.
     """
 
     program: Program
     given: tuple[tuple[sp.Symbol, sp.Expr], ...]
     names: tuple[sp.Symbol, ...]
-    """The outputs that the caller reads: the values of the others are dropped."""
+    """The outputs that the caller reads; all others are dropped."""
     note: str = ""
 
     @property
@@ -140,7 +140,7 @@ class Call:
 
     @property
     def constants(self) -> tuple[sp.Symbol, ...]:
-        """What the shared program reads besides its arguments."""
+        """The inputs of the shared program besides its arguments."""
         arguments = {name for name, _ in self.given}
         return tuple(s for s in self.program.inputs if s not in arguments)
 
@@ -149,11 +149,11 @@ class Call:
 class FindRoot:
     """Bind `names` to true and the outputs of `finish` at the root of `trial` that fits and is nearest to `start` on the circle.
 
-    A trial is a function of `TRIED`, on the wanted side of a two-root step (`SIDE` +1) or the other (-1), with the partial step
-    of the number `FREED` given by `FREED_ANGLE` instead (-1: none). Its outputs are the value that must vanish, its slope, a
-    guard that is negative where there is no solution, its slope, then cosine and sine of the angle of every partial step.
-    `finish` has the same arguments; its first output is whether the root is wanted. See `roots` for how roots are
-    found. Where there is none, or `wanted` does not hold so that none is looked for, the names are bound to false and zeros.
+    A trial is a function of `TRIED`, with the two-root step on the wanted side (`SIDE` = 1) or the other (-1), and the angle of
+    the step with the number `FREED` set to `FREED_ANGLE` (-1: no step). Its outputs are the residual with its slope, the guard,
+    which is negative where there is no solution, with its slope, then cosine and sine of the angle of every step with a measure.
+    `finish` has the same arguments; its first output tells whether the root is on the wanted branch. `roots` says how roots are
+    found. Where there is none, or `wanted` is false, the names are bound to false and zeros.
     """
 
     trial: Program
@@ -162,7 +162,7 @@ class FindRoot:
     wanted: Boolean
     names: tuple[sp.Symbol, ...]
     arguments: tuple[sp.Symbol, ...]
-    """What both programs are given besides the place; all else that they read is a constant of the machine."""
+    """The arguments of both programs besides the place; their other inputs are constants of the machine."""
     note: str = ""
 
     def given(self, program: Program) -> tuple[sp.Symbol, ...]:
@@ -175,7 +175,7 @@ Statement = Let | Require | Solve | Iterate | Call | FindRoot
 
 @dataclass(frozen=True)
 class Output:
-    """A named result, written only on success."""
+    """A named result, which is written only on success."""
 
     name: str
     value: sp.Expr
@@ -183,14 +183,14 @@ class Output:
 
 @dataclass(frozen=True)
 class Program:
-    """A straight-line program: the free names it may read, its statements, its outputs."""
+    """A straight-line program: its inputs, its statements, its outputs."""
 
     name: str
     inputs: tuple[sp.Symbol, ...]
     body: tuple[Statement, ...]
     outputs: tuple[Output, ...]
     summary: str = ""
-    """What it does, where its name does not say it: of a shared program."""
+    """A sentence on a shared program, where its name does not suffice."""
 
     def lets(self) -> tuple[Let, ...]:
         """The bindings, in order."""
@@ -226,7 +226,7 @@ def binds(statement: Statement) -> tuple[sp.Symbol, ...]:
 
 
 def expressions(statement: Statement) -> Iterator[sp.Basic]:
-    """The expressions of a statement, in the order of their evaluation, without what it tells where it refuses."""
+    """The expressions of a statement, in the order of their evaluation, without those of its reason."""
     if isinstance(statement, Let):
         yield statement.value
     elif isinstance(statement, Require):
@@ -251,7 +251,7 @@ def told(statement: Statement) -> Iterator[sp.Expr]:
 
 
 def reads(statement: Statement) -> set[sp.Symbol]:
-    """The symbols a statement reads and does not bind itself, without those of what it tells where it refuses."""
+    """The symbols that a statement reads and does not bind itself, without those of its reason."""
     found = {s for e in expressions(statement) for s in symbols_of(e)}
     if isinstance(statement, Call):
         return found | set(statement.constants)
@@ -261,7 +261,7 @@ def reads(statement: Statement) -> set[sp.Symbol]:
 
 
 def shared(programs: Iterable[Program]) -> tuple[Program, ...]:
-    """The programs that these call, each once, and before those that call it."""
+    """The programs that these call, each once and before its callers."""
     found: dict[str, Program] = {}
     for statement in (s for program in programs for s in program.body):
         called = [statement.program] if isinstance(statement, Call) else []
@@ -271,7 +271,7 @@ def shared(programs: Iterable[Program]) -> tuple[Program, ...]:
 
 
 def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> Statement:
-    """The statement with every expression changed, that of its reason too; the names it binds stay."""
+    """The statement with every expression changed, in its reason as well; the names that it binds stay."""
     if isinstance(statement, Let):
         return replace(statement, value=change(statement.value))
     if isinstance(statement, Require):

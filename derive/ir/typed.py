@@ -1,4 +1,4 @@
-"""The types of a whole program: every value has the type of its name, and what is asked is a condition."""
+"""The types of a whole program: every value has the type of its name, and a requirement is a condition."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def check_types(program: Program) -> None:
 
 
 def check_statement(statement: Statement, known: Known) -> None:
-    """The same of a statement, where some names are angles."""
+    """Raise `IllTypedError` for a statement that mixes types, where some names are angles."""
     if isinstance(statement, Iterate):
         _check_loop(statement, known)
         return

@@ -1,14 +1,14 @@
-"""The types of the intermediate representation, and what may be made of each.
+"""The types of the intermediate representation, and the operations on each.
 
     Real     a number
     Bool     a condition, and a name that is one: `flag`
-    Int      a whole number: `count`. It is compared with, added to and multiplied with whole numbers; `ToReal` makes it a Real
-    Angle    a Real modulo a turn, in radians. It comes from `Atan2` and `NearestOnArc`, and is added to, taken several times,
-             chosen, and asked for its sine and cosine. `Wrap` makes it a Real: what reads it otherwise is refused
-    Heading  an Angle in degrees, as axes are: `NearestPeriod` makes it a Real
+    Int      an integer: `count`. It is compared with, added to and multiplied by integers; `ToReal` makes it a Real
+    Angle    a Real modulo a turn, in radians. It comes from `Atan2` and `NearestOnArc`. It has sums, integer multiples, choices,
+             a sine and a cosine. `Wrap` makes it a Real; every other use is refused
+    Heading  an Angle in degrees, the unit of axes: `NearestPeriod` makes it a Real
 
-A whole number that is written down is an Int or a Real, as its neighbours are. A flag and a count are so by their names; a name
-is an angle because of what is bound to it.
+A literal integer is an Int or a Real, as its neighbours are. A flag and a count have their types by their names; a name is an
+angle if an angle is bound to it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from derive.ir.symbols import Flag, is_count, names_in
 
 
 class Type(Enum):
-    """What an expression is."""
+    """The type of an expression."""
 
     REAL = "real"
     BOOL = "bool"
@@ -58,13 +58,13 @@ _NOTHING: Known = {}
 
 
 def type_of(value: sp.Basic, known: Known = _NOTHING) -> Type:
-    """The type of an expression, through all of its parts; raises `IllTypedError`."""
+    """The type of an expression, from those of its parts. Raises `IllTypedError`."""
     return _type_of(value, frozenset((name, known[name]) for name in names_in(value) if name in known))
 
 
 @cache
 def _type_of(value: sp.Basic, angles: frozenset[tuple[sp.Symbol, Type]]) -> Type:
-    """The same, and the names in it that are angles: remembered, since every pass checks what it has not changed as well."""
+    """The same, with the names in it that are angles. Cached: every pass checks the expressions that it has not changed, too."""
     known = dict(angles)
     if isinstance(value, sp.Symbol):
         return Type.BOOL if isinstance(value, Flag) else Type.INT if is_count(value) else known.get(value, Type.REAL)
@@ -111,13 +111,13 @@ def angles_of(statement: Statement, known: Known) -> dict[sp.Symbol, Type]:
 
 
 def output_types(program: Program) -> dict[str, Type]:
-    """The types of what a program answers."""
+    """The types of the outputs of a program."""
     known = angles_in(program.body)
     return {output.name: type_of(output.value, known) for output in program.outputs}
 
 
 def _same(value: sp.Basic, found: Sequence[Type], *among: Type) -> Type:
-    """The one type of some parts, which must be among these."""
+    """The common type of some parts, which must be one of these."""
     named = {*found} - {Type.WRITTEN}
     if len(named) > 1 or not named <= {*among}:
         raise IllTypedError(f"{value} mixes types: {', '.join(sorted(t.value for t in {*found}))}")
@@ -125,7 +125,7 @@ def _same(value: sp.Basic, found: Sequence[Type], *among: Type) -> Type:
 
 
 def _turning(value: sp.Basic, found: Sequence[Type]) -> Type | None:
-    """The angle that some parts are of, where one is: what else there is must be a number."""
+    """The angle type among some parts, if any; all others must be numbers."""
     kinds = [kind for kind in _TURNING if kind in found]
     return _same(value, [t for t in found if t is not Type.REAL], *kinds) if kinds else None
 
@@ -144,7 +144,7 @@ def _sum(value: sp.Basic, found: Sequence[Type]) -> Type:
 
 
 def _product(value: sp.Basic, found: Sequence[Type]) -> Type:
-    """An angle several times, and in degrees."""
+    """The type of a product: an integer multiple of an angle, or an angle in degrees."""
     factors = [(f, kind) for f, kind in zip(value.args, found, strict=True) if kind is not Type.WRITTEN]
     if len(factors) == 2 and factors[0][0] == 1 / DEGREE and factors[1][1] is Type.ANGLE:
         return Type.HEADING
@@ -154,13 +154,13 @@ def _product(value: sp.Basic, found: Sequence[Type]) -> Type:
 
 
 def _power(value: sp.Basic, found: Sequence[Type]) -> Type:
-    """A whole number has no reciprocal."""
+    """The type of a power: an integer has no reciprocal."""
     kind = _same(value, found[:1], *_NUMBERS)
     return kind if value.args[1].is_positive else _same(value, found[:1], Type.REAL)
 
 
 def _comparison(value: sp.Basic, found: Sequence[Type]) -> Type:
-    """Only whole numbers are equal: of two reals this would depend on rounding."""
+    """A comparison of numbers; equality of integers only, because for reals it would depend on rounding."""
     _same(value, found, *((Type.INT,) if isinstance(value, sp.Eq | sp.Ne) else _NUMBERS))
     return Type.BOOL
 
@@ -170,7 +170,7 @@ def _logic(value: sp.Basic, found: Sequence[Type]) -> Type:
 
 
 def _opposite(value: sp.Basic, found: Sequence[Type]) -> Type:
-    """Of a name alone: the opposite of a comparison would hold for not-a-number."""
+    """Negation, of a flag only: the negation of a comparison would hold for NaN."""
     if not isinstance(value.args[0], Flag):
         raise IllTypedError(f"{value} is not the opposite of a flag")
     return Type.BOOL
@@ -198,7 +198,7 @@ def _direction(value: sp.Basic, found: Sequence[Type]) -> Type:
 
 
 def _on_arc(value: sp.Basic, found: Sequence[Type]) -> Type:
-    """Of angle and centre no turn counts; half the arc is a size."""
+    """The nearest angle on an arc: angle and centre are angles, half the arc is a Real."""
     _turning(value, found[:2])
     _same(value, found[2:], Type.REAL)
     return Type.ANGLE
@@ -229,4 +229,4 @@ _RULES: dict[type[sp.Basic], Callable[[sp.Basic, Sequence[Type]], Type]] = {
     sp.Or: _logic,
     sp.Not: _opposite,
 }
-"""What every operation makes of the types of its parts."""
+"""By operation: the function from the types of the parts to the type of the result."""

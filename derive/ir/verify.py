@@ -1,4 +1,4 @@
-"""The verifier of the intermediate representation: run after every pass, it finds a broken program at once."""
+"""The verifier of the intermediate representation: it runs after every pass, and finds a broken program at once."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _check_statement(program: Program, statement: Statement, bound: dict[str, sp
 
 
 def _check_call(program: Program, call: Call) -> None:
-    """The names of a call are those of the shared program, whose constants no statement of the caller binds."""
+    """Check a call: its names are outputs of the shared program, and the caller binds none of its constants."""
     outputs, arguments = {o.name for o in call.program.outputs}, [name for name, _ in call.given]
     if strangers := [n.name for n in call.names if n.name not in outputs]:
         raise BrokenProgram(f"{program.name}: {call.program.name} has no output {strangers[0]!r}")
@@ -98,7 +98,7 @@ def _check_loop(program: Program, loop: Iterate, bound: dict[str, sp.Symbol]) ->
 def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:
     if not _PORTABLE.match(name):
         raise BrokenProgram(f"{program.name}: {name!r} is not a portable snake_case name")
-    key = name.replace("_", "")  # Structured Text joins the words and ignores case
+    key = name.replace("_", "")  # Structured Text joins the words of a name, and ignores case
     if key in spelled:
         raise BrokenProgram(f"{program.name}: {name!r} is bound twice (also as {spelled[key]!r})")
     spelled[key] = name

@@ -93,7 +93,7 @@ def _solve_for_position(mechanism: Mechanism) -> Derivation:
         lengths=tuple(real(c) for c in mechanism.task.position),
         equations=closure.equations,
         units=all_angles(mechanism),
-        free={},
+        references={},
         scale=SCALE,
         signs=signs_of(mechanism),
     )

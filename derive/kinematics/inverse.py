@@ -12,7 +12,7 @@ from derive.description.mechanism import (
     Mechanism,
     Turning,
 )
-from derive.equations.axes import axis_lets, finite, free, frozen_lets, plain_angle, reference_lets
+from derive.equations.axes import axis_lets, finite, frozen_lets, plain_angle, reference_lets, reference_value
 from derive.equations.closure import (
     FLANGE,
     Closure,
@@ -105,7 +105,7 @@ def _solve(
         lengths=tuple(j.symbol for j in moving if not j.is_angle),
         equations=closure.equations,
         units=(*all_angles(mechanism), HEADING),
-        free={j.symbol: free(j) for j in mechanism.joints},
+        references={j.symbol: reference_value(j) for j in mechanism.joints},
         scale=SCALE,
         signs=signs_of(mechanism),
         is_overdetermined=is_overdetermined,

@@ -13,7 +13,7 @@ from derive.ir.constants import (
     LARGEST,
     TIE_SHARE,
 )
-from derive.ir.passes import bare
+from derive.ir.passes import without_assumptions
 from derive.ir.primitives import ToReal
 from derive.ir.program import (
     Let,
@@ -128,7 +128,7 @@ def setup_program(
     body += hoisted
     outputs += [Output(let.name.name, let.name) for let in hoisted if let.name in read]
     inputs = tuple(input_of(p) for p in parameters)
-    typed = tuple(converted(s, parameters) for s in bare(body))
+    typed = tuple(converted(s, parameters) for s in without_assumptions(body))
     return verify(Program("setup", inputs, typed, tuple(outputs)))
 
 

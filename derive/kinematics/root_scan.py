@@ -187,13 +187,13 @@ def trial_of(
     found: list[Let] = []
     choices: dict[sp.Expr, sp.Expr] = {}
     conditions: dict[sp.Expr, sp.Basic] = {}
-    for number, (angle, free) in enumerate(angles):
+    for number, (angle, reference) in enumerate(angles):
         chosen = real(f"chosen_{angle.name}")
         is_freed = sp.Eq(FREED, number)
-        found.append(Let(chosen, Select(is_freed, FREED_ANGLE, free), f"{angle.name} where the pose leaves it free"))
+        found.append(Let(chosen, Select(is_freed, FREED_ANGLE, reference), f"{angle.name} where the pose leaves it free"))
         for function in (sp.cos, sp.sin):
-            choices[function(free)] = function(chosen)
-            conditions[function(free)] = sp.Ne(FREED, number)
+            choices[function(reference)] = function(chosen)
+            conditions[function(reference)] = sp.Ne(FREED, number)
     for s in statements:
         if isinstance(s, Let):
             found.append(replace(s, value=_freed(s.value, choices, conditions)))

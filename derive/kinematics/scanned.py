@@ -23,7 +23,7 @@ from derive.description.mechanism import (
     Mechanism,
     Role,
 )
-from derive.equations.axes import axis_lets, finite, free
+from derive.equations.axes import axis_lets, finite, reference_value
 from derive.equations.closure import with_fixed_names
 from derive.equations.pose_at_axes import (
     Forward,
@@ -166,9 +166,9 @@ def _arguments(both: Scanned, program: Program) -> tuple[tuple[sp.Symbol, sp.Exp
     mechanism = both.mechanism
     assert mechanism.search is not None
     given: dict[sp.Symbol, sp.Expr] = {name: commanded for commanded, name in GOAL.items()}
-    given |= {START: free(mechanism.search.joint), LOOKED_FOR: SEARCHED}
+    given |= {START: reference_value(mechanism.search.joint), LOOKED_FOR: SEARCHED}
     given |= {_wanted(b): _sigma(b) for b in mechanism.branches}
-    given |= {free(j): free(j) for j in mechanism.joints}
+    given |= {reference_value(j): reference_value(j) for j in mechanism.joints}
     return tuple((name, given[name]) for name in program.inputs if name in given)
 
 
@@ -192,7 +192,7 @@ def search_of(both: Scanned) -> Program:
     mechanism = both.mechanism
     trial = _trial(both)
     finish = finish_program(mechanism, trial, _margins_wanted(both), DETERMINANT)
-    arguments = (*GOAL.values(), *map(_wanted, mechanism.branches), *map(free, mechanism.joints))
+    arguments = (*GOAL.values(), *map(_wanted, mechanism.branches), *map(reference_value, mechanism.joints))
     return find_program(mechanism, try_program(trial), finish, arguments)
 
 
@@ -251,7 +251,7 @@ def _trial(both: Scanned) -> Trial:
     statements = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
     angles = [m.angle for m in both.trial.derivation.measures]
     joints = {j.symbol: j for j in mechanism.joints}
-    trial = trial_of(statements, real("residual_tried"), [(a, free(joints[a])) for a in angles])
+    trial = trial_of(statements, real("residual_tried"), [(a, reference_value(joints[a])) for a in angles])
     return replace(trial, angles=tuple(real(f"{a.name}_tried") for a in angles))
 
 
@@ -360,7 +360,7 @@ def _measured_slope(both: Scanned, samples: dict[str, NDArray[np.float64]]) -> N
     for a in both.trial_branches:
         known[_wanted(a.branch).name] = np.where(values[f"margin_{a.branch.name}"] >= 0, 1.0, -1.0)
     for j in mechanism.joints:
-        known[free(j).name] = np.zeros(_SAMPLES)
+        known[reference_value(j).name] = np.zeros(_SAMPLES)
     known |= {SIDE.name: np.ones(_SAMPLES), FREED.name: -np.ones(_SAMPLES), FREED_ANGLE.name: np.zeros(_SAMPLES)}
     ends = []
     for shift in (1e-6, -1e-6):

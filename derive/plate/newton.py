@@ -151,7 +151,7 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
         Let(within, CONVERGED * SCALE, "tolerance of the leg lengths"),
         loop,
         Require(sp.Gt(ASSEMBLY_SIGN * DETERMINANT, 0), Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_ASSEMBLY)),
-        *with_note((Let(n, v) for n, v in zip(ROTATION_ENTRIES, rotation, strict=True)), "the start, turned"),
+        *with_note((Let(n, v) for n, v in zip(ROTATION_ENTRIES, rotation, strict=True)), "orientation of the platform"),
     )
 
 

@@ -1,1 +1,1 @@
-"""What is told about a mechanism: reasons of a refusal, costs, reference calls for a test on the controller."""
+"""Reports on a mechanism: reasons of refusals, costs, and reference calls for the self-test on the controller."""

@@ -1,8 +1,8 @@
-"""What a program costs: the arithmetic of one call at worst, counted in the statements that every language prints.
+"""The cost of a program: the operations of one call in the worst case, counted in the statements that every language prints.
 
-A subtraction is an addition, a change of sign and a comparison are free, a power is so many multiplications. Of a choice
-between statements the side counts that takes more, of one between values both, of an iteration all passes; what `Initialize`
-computed once counts nothing.
+A subtraction counts as an addition, changes of sign and comparisons are free, a power counts as multiplications. Of a choice
+between statements the more expensive side counts, of a choice between values both values, and all passes of an iteration. Values
+that `Initialize` has computed count nothing.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _BINARY_FRACTIONS = (2, 4, 8, 16)
 
 @dataclass(frozen=True)
 class Cost:
-    """How many operations of every kind."""
+    """The number of operations of each kind."""
 
     additions: int = 0
     multiplications: int = 0
@@ -79,7 +79,7 @@ def _regular(holds: Cost, _: Cost) -> Cost:
 
 @dataclass(frozen=True)
 class Bound:
-    """An iteration: the program it is in, what it does, and how many passes it has at most."""
+    """The bound of an iteration: its program, its note, and the largest number of its passes."""
 
     program: str
     note: str
@@ -88,17 +88,17 @@ class Bound:
 
 @dataclass(frozen=True)
 class Costs:
-    """What the calls of a block cost at worst."""
+    """The cost of the calls of a block in the worst case."""
 
     forward: Cost
     inverse: Cost
     """With a configuration that names every branch, away from singular poses."""
     automatic: Cost
-    """With a configuration that leaves every branch open: the same where there is none."""
+    """With a configuration that leaves every branch open; equal to `inverse` where there are no branches."""
     repair: Cost
-    """Of the commanded rotation, once a call more: nothing where it is not read."""
+    """The repair of the commanded rotation, once a call; nothing where the rotation is not read."""
     corners: Cost
-    """What a branch takes more at a singular pose: on the second sides of choices."""
+    """What a branch costs more at a singular pose: the second sides of choices."""
     bounds: tuple[Bound, ...]
 
 
@@ -110,13 +110,13 @@ _PRIMITIVES: dict[type[sp.Basic], Cost] = {
     NearestPeriod: Cost(additions=4, multiplications=1, divisions=1),
     NearestOnArc: Cost(additions=5, multiplications=3, divisions=1),
 }
-"""As the functions of Structured Text do it, where they have to."""
+"""The cost of the shared functions of Structured Text."""
 _PERIOD_BYTE = Cost(additions=3, divisions=1)
 """The number of the turn in which an axis value lies."""
 
 
 def costs_of(kinematics: Kinematics) -> Costs:
-    """What forward and inverse kinematics of a mechanism cost at worst."""
+    """The cost of forward and inverse kinematics of a mechanism in the worst case."""
     periods, axes = len(kinematics.period_joints), len(kinematics.distance_joints)
     limits, branch = _with_refusals(kinematics.limits), _with_refusals(kinematics.branch, _regular)
     # The distance of a solution from the reference, a sum of squares, and its comparison with the least so far
@@ -132,7 +132,7 @@ def costs_of(kinematics: Kinematics) -> Costs:
 
 
 def _with_refusals(program: Program, of_sides: _OfSides = _most) -> Cost:
-    """The same where a refusal also computes how much is missing: nothing that follows is then computed."""
+    """The cost with a refusal that computes how much is missing: nothing behind it is then computed."""
     worst, before = cost_of(program, of_sides), Cost()
     for item in structured(program):
         before += _item(item, of_sides)
@@ -147,13 +147,13 @@ def _amounts(require: Require) -> tuple[sp.Expr, ...]:
 
 
 def cost_of(program: Program, of_sides: _OfSides = _most) -> Cost:
-    """What one run of a program costs at worst. of_sides: of the two sides of a choice, the cost that counts."""
+    """The cost of one run of a program in the worst case. of_sides: what counts of the costs of both sides of a choice."""
     items = (_item(item, of_sides) for item in structured(program))
     return _total(items) + _total(map(expression_cost, (o.value for o in program.outputs)))
 
 
 def expression_cost(node: sp.Basic) -> Cost:
-    """What an expression costs, as every language writes it."""
+    """The cost of an expression as every language writes it."""
     if isinstance(node, sp.Mul | sp.Pow):
         return _product(node)
     own = _PRIMITIVES.get(type(node), Cost())
@@ -163,7 +163,7 @@ def expression_cost(node: sp.Basic) -> Cost:
 
 
 def solve_cost(size: int, columns: int) -> Cost:
-    """What linear equations cost: elimination with its pivots, the determinant, and the way back."""
+    """The cost of linear equations: elimination with pivoting, determinant, and back substitution."""
     eliminated = sum(rows * (rows + columns) for rows in range(size))
     back = columns * size * (size - 1) // 2
     by_inverses = size * (size - 1) // 2 + size * columns
@@ -194,7 +194,7 @@ def _statement(statement: Statement) -> Cost:
 
 
 def _product(node: sp.Expr) -> Cost:
-    """Factors above and below the line; a coefficient is one more, unless it is a sign."""
+    """The numbers of factors in numerator and denominator; a coefficient counts as a factor, a sign does not."""
     coefficient, rest = node.as_coeff_Mul()
     above = below = 0
     inner = Cost()

@@ -1,7 +1,7 @@
-"""What to say where a condition of the inverse does not hold: the axis or leg that refused, why, and how much is missing.
+"""Reasons in words: where a condition of the inverse does not hold, which axis or leg refuses, why, and what is missing.
 
-A reason ends in the unit of what is missing, as in "A1: above its upper limit [deg]". Without one it is a number (a margin),
-or there is nothing to measure.
+A reason ends in the unit of the missing amount, as in "A1: above its upper limit [deg]". Without a unit the amount is a number
+(a margin), or there is none.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ OTHER_TURN = "{subject}: this turn{axis} is beyond a limit, name one inside"
 
 @dataclass(frozen=True)
 class Check:
-    """Conditions that refuse with one reason, and what is missing where one of them does not hold."""
+    """Conditions that refuse with one reason, and the missing amount where one of them does not hold."""
 
     conditions: tuple[sp.Basic, ...]
     status: Status
     reason: str
     missing: sp.Expr | None
-    """How much one side is short of the other; None where that means nothing."""
+    """By how much one side is short of the other; None where this has no meaning."""
     turns: tuple[tuple[OtherTurn, str], ...] = ()
-    """What may be inside on another turn, with the reason where it is: the first that is gives reason and number."""
+    """The axes that may be inside on another turn, each with its reason; the first one that is gives reason and number."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Reasons:
     """The name of the axis, by the name of its joint value."""
 
     def checks(self, requires: Iterable[Require]) -> list[Check]:
-        """What requirements ask, in a fixed order: one check for every reason that has an amount, one for others alike."""
+        """The checks of requirements, in order: one for each reason with an amount, one for equal reasons without."""
         found: list[Check] = []
         for check in map(self._check, requires):
             if check.missing is None and found and found[-1].reason == check.reason:
@@ -62,7 +62,7 @@ class Reasons:
         return Check(conditions, require.otherwise, self.text(reason), reason.amount, turns)
 
     def loop(self, loop: Iterate) -> str:
-        """Why a loop that was never left refuses."""
+        """The reason of a loop that never ends."""
         return self.text(_given(loop))
 
     def text(self, reason: Reason) -> str:
@@ -70,11 +70,11 @@ class Reasons:
         return _with_unit(reason.why.of(self.name(reason.subject)), reason.unit)
 
     def name(self, subject: Subject) -> str:
-        """What a subject is called: a joint by its axis, if it has one."""
+        """The name of a subject; for a joint, that of its axis."""
         return self.axes.get(subject.name, subject.name) if subject.kind is Kind.JOINT else subject.name
 
     def _of_turn(self, reason: Reason, turn: OtherTurn) -> str:
-        """The same where an axis is inside on another turn: named, where the reason is not about itself."""
+        """The reason where an axis is inside on another turn; it names the axis where it is about another subject."""
         subject = self.name(reason.subject)
         axis = "" if subject == turn.name else f" of {turn.name}"
         return _with_unit(OTHER_TURN.format(subject=subject, axis=axis), reason.unit)
@@ -96,7 +96,7 @@ def reasons_of_rotation() -> Reasons:
 
 
 def rotation_texts() -> tuple[str, ...]:
-    """Every reason to refuse a commanded rotation: the place, from 1, is the number of the reason."""
+    """Every reason to refuse a commanded rotation, in the order of their numbers, which start at 1."""
     return tuple(check.reason for check in reasons_of_rotation().checks(rotation_program().requires()))
 
 
@@ -109,7 +109,7 @@ def reasons_of(kinematics: Kinematics) -> Reasons:
 
 
 def texts(kinematics: Kinematics) -> tuple[str, ...]:
-    """Every reason of the inverse and of the limits, once, in order: the place, from 1, is the number of the reason."""
+    """Every reason of the inverse and of the limits, once, in the order of their numbers, which start at 1."""
     statements = (*kinematics.branch.body, *kinematics.limits.body)
     return tuple(dict.fromkeys(_texts(statements, reasons_of(kinematics))))
 
@@ -124,7 +124,7 @@ def _texts(statements: Iterable[object], reasons: Reasons) -> Iterator[str]:
 
 
 def workspace(kinematics: Kinematics) -> tuple[str, ...]:
-    """What bounds the workspace besides the limits of the axes: the reasons to refuse a pose that is one."""
+    """The bounds of the workspace besides the limits of the axes: the reasons to refuse a valid pose."""
     reasons = reasons_of(kinematics)
     bounds = [_given(s) for s in kinematics.branch.requires() if s.otherwise is Status.UNREACHABLE]
     found: dict[object, list[Reason]] = {}

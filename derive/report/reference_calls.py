@@ -1,4 +1,4 @@
-"""Calls of a block in the reference semantics of its programs: what its methods answer, rounded."""
+"""Reference calls: the answers of the methods of a block, by the reference interpreter, rounded."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ _HIGHEST_BYTE = 3
 
 
 @dataclass(frozen=True)
-class Tested:
-    """A machine: its parameters, what Initialize answers, and everything that programs then read by name."""
+class Machine:
+    """A machine: its parameters, the answer of Initialize, and the values that programs then read, by name."""
 
     kinematics: Kinematics
     given: Mapping[str, float]
@@ -51,14 +51,14 @@ class Tested:
         return inverse(self, frame, (), (0.0,) * len(self.kinematics.mechanism.joints))[1]
 
 
-def tested(kinematics: Kinematics, given: Mapping[str, float]) -> Tested:
+def machine_with(kinematics: Kinematics, given: Mapping[str, float]) -> Machine:
     """The machine with these parameters."""
     values = {name: np.asarray(value, dtype=float) for name, value in given.items()}
     constants, status = run(kinematics.setup, values)
-    return Tested(kinematics, dict(given), Status(status[()]), values | constants)
+    return Machine(kinematics, dict(given), Status(status[()]), values | constants)
 
 
-def forward(machine: Tested, axes: Reals) -> tuple[Status, Reals, Bytes]:
+def forward(machine: Machine, axes: Reals) -> tuple[Status, Reals, Bytes]:
     """AxesToCartesian: position and rotation by rows, configuration."""
     kinematics = machine.kinematics
     found, status = _run(kinematics.forward, machine, _axes(machine, [axes]))
@@ -71,8 +71,8 @@ def forward(machine: Tested, axes: Reals) -> tuple[Status, Reals, Bytes]:
     return Status.OK, (*_rounded(position), *_rounded(rotation, _ROTATION_DECIMALS)), (*branches, *periods)
 
 
-def inverse(machine: Tested, frame: Reals, configuration: Bytes, reference: Reals) -> tuple[Status, Reals]:
-    """CartesianToAxes: of the branches that the configuration admits, the solution nearest to the reference."""
+def inverse(machine: Machine, frame: Reals, configuration: Bytes, reference: Reals) -> tuple[Status, Reals]:
+    """CartesianToAxes: the solution nearest to the reference, of the branches that the configuration admits."""
     kinematics = machine.kinematics
     nothing = (0.0,) * len(reference)
     if any(byte > _HIGHEST_BYTE for byte in configuration[: len(kinematics.branches)]):
@@ -87,7 +87,7 @@ def inverse(machine: Tested, frame: Reals, configuration: Bytes, reference: Real
 
 
 def branches(
-    machine: Tested, frame: Reals, configuration: Bytes, reference: Reals
+    machine: Machine, frame: Reals, configuration: Bytes, reference: Reals
 ) -> tuple[list[Bytes], list[Reals], list[Status]]:
     """Every branch that the configuration admits: its bytes, its axis values and its status, limits not tested."""
     kinematics = machine.kinematics
@@ -111,16 +111,16 @@ def branches(
     return slots, solved, list(status)
 
 
-def margins(machine: Tested, poses: Sequence[Reals]) -> Array:
-    """The margins of IsSingularity by rows, a column for every pose; not a number where there is none."""
+def margins(machine: Machine, poses: Sequence[Reals]) -> Array:
+    """The margins of IsSingularity by rows, a column for every pose; NaN where there is none."""
     kinematics = machine.kinematics
     found, status = _run(kinematics.singularity, machine, _axes(machine, poses))
     rows = [found[m.name] for m in kinematics.margins] or [np.ones(len(poses))]
     return np.where(np.asarray(status == Status.OK, dtype=bool), np.stack(rows), np.nan)
 
 
-def _nearest(machine: Tested, solved: Sequence[Reals], reference: Reals) -> Reals:
-    """The nearest solution: of equals, that of the lowest slot."""
+def _nearest(machine: Machine, solved: Sequence[Reals], reference: Reals) -> Reals:
+    """The nearest solution; of equally near ones, that of the lowest slot."""
     kinematics, tie = machine.kinematics, float(machine.values.get(TIE_OF_LENGTHS.name, TIE))
     compared = [k for k, j in enumerate(kinematics.mechanism.joints) if j in kinematics.distance_joints]
     best, least = solved[0], np.inf
@@ -131,11 +131,11 @@ def _nearest(machine: Tested, solved: Sequence[Reals], reference: Reals) -> Real
     return best
 
 
-def _run(program: Program, machine: Tested, values: Mapping[str, Array]) -> tuple[dict[str, Array], NDArray[np.object_]]:
+def _run(program: Program, machine: Machine, values: Mapping[str, Array]) -> tuple[dict[str, Array], NDArray[np.object_]]:
     return run(program, {**machine.values, **values})
 
 
-def _axes(machine: Tested, poses: Sequence[Reals]) -> dict[str, Array]:
+def _axes(machine: Machine, poses: Sequence[Reals]) -> dict[str, Array]:
     """Axis values by name, a row for every pose, also of a mechanism without axes."""
     columns = np.array(poses, dtype=float).reshape(len(poses), -1)
     return {j.axis.name: columns[:, k] for k, j in enumerate(machine.kinematics.mechanism.joints)} | {"": np.zeros(len(poses))}

@@ -1,6 +1,6 @@
-"""Vectors for a test on the controller: calls of a block, and what its programs answer by their reference semantics.
+"""Test vectors for the controller: calls of a block, and the answers of its programs by the reference interpreter.
 
-Everything is drawn from fixed seeds and rounded, so that it reads the same wherever it is made.
+All values are drawn with fixed seeds and rounded, so that every computer generates the same.
 """
 
 from __future__ import annotations
@@ -26,28 +26,28 @@ from derive.ir.symbols import (
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.reference_cases import Bytes, Called, Case, Reals, SelfTest
 from derive.kinematics.sampling import sample_axes
-from derive.report.reference_calls import Tested, branches, forward, inverse, margins, tested
+from derive.report.reference_calls import Machine, branches, forward, inverse, machine_with, margins
 
 _CANDIDATES, _LOOP_CANDIDATES = 300, 3000
-"""Axis values that are drawn: of a closed loop few can be assembled."""
+"""The number of axis values that are drawn: few of them close a loop."""
 _TRIED = 8
 """Regular poses, among which the one with the most solutions is tested on every branch."""
 _REGULAR = 0.05
 """Margins at a regular pose are at least this."""
 _SINGULAR = 1e-5
-"""Margins at a singular pose are at most this: a hundredth of what IsSingularity calls singular."""
+"""Margins at a singular pose are at most this, a hundredth of the threshold of IsSingularity."""
 _AWAY = 0.02
-"""How far the legs of a platform are from those at its home pose."""
+"""The largest distance of the legs of a platform from those at its home pose."""
 _TOO_SHORT = 0.2
-"""Legs times this hold no platform."""
+"""Legs whose lengths are multiplied by this do not reach the platform."""
 _SIZE = 100.0
-"""How far linear axes go in a machine without lengths."""
+"""The range of linear axes in a machine without lengths."""
 _NO_ROTATION = 1.1
-"""A rotation times this is none."""
+"""A rotation multiplied by this is no rotation."""
 
 
 def self_test(kinematics: Kinematics) -> SelfTest:
-    """The vectors of a mechanism: a machine that is refused, the nominal one, and that with limits around a pose."""
+    """The test vectors of a mechanism: a refused machine, the nominal one, and the nominal one with limits around a pose."""
     nominal = _nominal(kinematics)
     found = _Vectors(nominal)
     machines = [nominal]
@@ -63,36 +63,36 @@ def self_test(kinematics: Kinematics) -> SelfTest:
     return SelfTest(tuple(m.given for m in machines), tuple(cases))
 
 
-def _nominal(kinematics: Kinematics) -> Tested:
+def _nominal(kinematics: Kinematics) -> Machine:
     """The nominal machine, with an offset on every axis where it may have one."""
     given = {p.name: p.nominal for p in kinematics.parameters}
     offsets = {j.offset.name: 10.5 * (i + 1) for i, j in enumerate(kinematics.mechanism.joints)}
-    shifted = tested(kinematics, given | offsets)
-    return shifted if shifted.status is Status.OK else tested(kinematics, given)
+    shifted = machine_with(kinematics, given | offsets)
+    return shifted if shifted.status is Status.OK else machine_with(kinematics, given)
 
 
-def _refused(nominal: Tested) -> Tested | None:
+def _refused(nominal: Machine) -> Machine | None:
     """A machine that Initialize refuses: without its first length, or with limits the wrong way round."""
     lengths = [p.name for p in nominal.kinematics.parameters if p.role is Role.LENGTH]
     keys = [j.key for j in nominal.kinematics.mechanism.joints]
     wrong = [{lengths[0]: 0.0}] if lengths else [{f"lower_{keys[0]}": 1.0, f"upper_{keys[0]}": -1.0}] if keys else []
-    found = (tested(nominal.kinematics, {**nominal.given, **change}) for change in wrong)
+    found = (machine_with(nominal.kinematics, {**nominal.given, **change}) for change in wrong)
     return next((machine for machine in found if machine.status is not Status.OK), None)
 
 
-def _limited(nominal: Tested, axes: Reals) -> Tested | None:
-    """The machine with limits that leave every axis one unit in each direction."""
+def _limited(nominal: Machine, axes: Reals) -> Machine | None:
+    """The machine with limits one unit away from every axis value, in both directions."""
     keys = [j.key for j in nominal.kinematics.mechanism.joints]
     limits = {f"lower_{k}": round(v - 1.0, 6) for k, v in zip(keys, axes, strict=True)}
     limits |= {f"upper_{k}": round(v + 1.0, 6) for k, v in zip(keys, axes, strict=True)}
-    machine = tested(nominal.kinematics, {**nominal.given, **limits})
+    machine = machine_with(nominal.kinematics, {**nominal.given, **limits})
     return machine if keys and machine.status is Status.OK else None
 
 
-def _once_more(machine: Tested, found: _Vectors) -> Iterator[Case]:
-    """What another machine answers to the first calls.
+def _once_more(machine: Machine, found: _Vectors) -> Iterator[Case]:
+    """The answers of another machine to the first calls.
 
-    One that is refused says so, one with limits finds a single solution, and none at another pose."""
+    A refused machine refuses; one with limits finds a single solution, and none at another pose."""
     first = [c for c in found.cases if c.status is Status.OK and c.called in (Called.FORWARD, Called.INVERSE)]
     inverses = [c for c in first if c.called is Called.INVERSE and c.frame == found.frames[0]]
     others = [c for c in first if c.called is Called.INVERSE and c.frame != found.frames[0]]
@@ -108,7 +108,7 @@ def _once_more(machine: Tested, found: _Vectors) -> Iterator[Case]:
 class _Vectors:
     """Poses of one machine, and the cases at them."""
 
-    def __init__(self, machine: Tested) -> None:
+    def __init__(self, machine: Machine) -> None:
         self.machine = machine
         self._mechanism = machine.kinematics.mechanism
         self._candidates = _candidates(machine)
@@ -145,7 +145,7 @@ class _Vectors:
         for axes in self._singular():
             yield self._singularity(axes)
             case = self._forward(axes)
-            if case.status is not Status.OK or not self._mechanism.rods:  # where the plate is nearly lost digits are, too
+            if case.status is not Status.OK or not self._mechanism.rods:  # near a type 2 singularity digits are lost
                 yield case
         yield from self._refusals()
 
@@ -165,13 +165,13 @@ class _Vectors:
         return found
 
     def _statuses(self, axes: Reals) -> list[Status]:
-        """What every branch answers at a pose."""
+        """The answers of every branch at a pose."""
         frame = forward(self.machine, axes)[1]
         every = self._open((0,) * len(self._mechanism.branches))
         return list(branches(self.machine, frame, every, self._aside(axes))[2])
 
     def _branches(self) -> Iterator[Case]:
-        """The first pose with its own configuration, and on every branch, its turns open; a search that fails is long."""
+        """The first pose with its own configuration, and on every branch without turns; a root scan that fails is long."""
         axes, frame = self.poses[0], self.frames[0]
         reference, every = self._aside(axes), self._open((0,) * len(self._mechanism.branches))
         yield self._inverse(frame, forward(self.machine, axes)[2], reference)
@@ -181,11 +181,11 @@ class _Vectors:
                 yield Case(Called.INVERSE, 0, status, found, reference, frame, self._open(slot))
 
     def _open(self, slot: Bytes) -> Bytes:
-        """The bytes of a branch with its turns open."""
+        """The bytes of a branch, without commanded turns."""
         return slot + (0,) * len(self._mechanism.period_joints)
 
     def _aside(self, axes: Reals) -> Reals:
-        """A reference that is not the answer."""
+        """A reference that differs from the answer."""
         if self._mechanism.search:
             return axes
         steps = (17.3 if j.is_angle else 1.7 for j in self._mechanism.joints)
@@ -204,13 +204,13 @@ class _Vectors:
         return Case(Called.SINGULARITY, 0, axes=axes, is_singular=not smallest >= float(SINGULAR))
 
     def _singular(self) -> Iterator[Reals]:
-        """A pose at which a margin is as good as zero, and axis values at which there is no pose."""
+        """A pose at which a margin is nearly zero, and axis values at which there is no pose."""
         yield from [*self._crossing(), *self._square()][:1]
         nowhere = np.flatnonzero(np.isnan(margins(self.machine, self._candidates)).any(axis=0))
         yield from (self._candidates[k] for k in nowhere[:1])
 
     def _crossing(self) -> Iterator[Reals]:
-        """Between two poses on either side of a singular one: halve the way."""
+        """A singular pose between two poses on either side of it, by bisection."""
         found = margins(self.machine, self._candidates)
         for row in range(len(found)):
             above, below = np.flatnonzero(found[row] > _REGULAR)[:1], np.flatnonzero(found[row] < -_REGULAR)[:20]
@@ -221,7 +221,7 @@ class _Vectors:
                     return
 
     def _square(self) -> Iterator[Reals]:
-        """Where a margin does not change its sign: the first pose, with one joint at zero or at a right angle."""
+        """A singular pose where the margin keeps its sign: the first pose, with one joint at zero or at a right angle."""
         for k, joint in enumerate(self._mechanism.joints):
             for value in (0.0, 90.0, -90.0, 180.0) if joint.is_angle else (0.0,):
                 zero = self.machine.given[joint.offset.name]
@@ -239,7 +239,7 @@ class _Vectors:
         return axes if abs(margins(self.machine, [axes])[row, 0]) < _SINGULAR else None
 
     def _refusals(self) -> Iterator[Case]:
-        """A number that is too large, far away, no rotation, a tool that points the opposite way, a byte without a meaning."""
+        """Refusals: a number too large, a pose too far away, no rotation, a tool pointing the opposite way, an invalid byte."""
         axes, frame = self.poses[0], self.frames[0]
         own = forward(self.machine, axes)[2]
         if axes:
@@ -253,8 +253,8 @@ class _Vectors:
         yield from (case for case in cases if case.status is not Status.OK)
 
 
-def _candidates(machine: Tested) -> list[Reals]:
-    """Axis values with one decimal, all over the ranges; of a platform, near its home pose."""
+def _candidates(machine: Machine) -> list[Reals]:
+    """Axis values with one decimal, over the whole ranges; for a platform, near its home pose."""
     mechanism = machine.kinematics.mechanism
     count = _LOOP_CANDIDATES if mechanism.rods else _CANDIDATES
     if mechanism.is_platform:
@@ -269,8 +269,8 @@ def _candidates(machine: Tested) -> list[Reals]:
     return [tuple(round(float(v), 1) for v in row) for row in drawn]
 
 
-def _stretch(machine: Tested, joint: Joint) -> float:
-    """Several turns where an axis has them; a size for a machine without lengths."""
+def _stretch(machine: Machine, joint: Joint) -> float:
+    """The range of an axis: several turns where it has them; a default for a machine without lengths."""
     if joint.is_angle:
         return 2.0 if joint.multi_turn else 1.0
     return _SIZE if float(machine.values[SCALE.name]) <= 1.0 else 1.0

@@ -20,7 +20,7 @@ from derive.ir.symbols import (
 from derive.ir.verify import BrokenProgram
 
 
-class Ledger:
+class DerivationRecord:
     """The bindings of a derivation, in order."""
 
     def __init__(self) -> None:

@@ -12,7 +12,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.algebra.angle_sums import Terms, composite, terms_of
+from derive.algebra.angle_sums import Terms, symbol_of_sum, terms_of
 from derive.algebra.normal_form import cosine, polynomial, reduce_units, sine
 from derive.equations.problem import Binding, Equation, Problem
 from derive.ir.program import Let
@@ -44,7 +44,7 @@ def candidate_sums(problem: Problem, arguments: Sequence[sp.Expr]) -> tuple[Sum,
         constant = expanded.xreplace(dict.fromkeys(expanded.free_symbols, sp.Integer(0)))  # a fixed rotation of the base
         terms = terms_of(expanded - constant, problem.angles)
         if terms is not None and len(terms) > 1:
-            found.setdefault(composite(terms), Sum(composite(terms), terms, terms[-1][0]))
+            found.setdefault(symbol_of_sum(terms), Sum(symbol_of_sum(terms), terms, terms[-1][0]))
     return tuple(found.values())
 
 
@@ -62,11 +62,11 @@ def substitute(problem: Problem, total: Sum) -> Problem:
         expression = reduce_units(equation.expression.xreplace(table), units, problem.signs)
         return replace(equation, expression=expression)
 
-    free = {**problem.free, total.symbol: sp.Add(*[problem.free[a] * s for a, s in total.terms])}
+    references = {**problem.references, total.symbol: sp.Add(*[problem.references[a] * s for a, s in total.terms])}
     equations = tuple(through_sum(e) for e in problem.equations)
     pending = (*problem.pending, total.replaced)
     turns = tuple(replace(t, amount=sp.expand(t.amount.xreplace({total.replaced: form}))) for t in problem.turns)
-    return replace(problem, angles=angles, units=units, equations=equations, free=free, pending=pending, turns=turns)
+    return replace(problem, angles=angles, units=units, equations=equations, references=references, pending=pending, turns=turns)
 
 
 def resolve(problem: Problem, total: Sum) -> Binding | None:
@@ -77,7 +77,7 @@ def resolve(problem: Problem, total: Sum) -> Binding | None:
     note = f"{total.replaced.name} from the sum {total.symbol.name} of angles about parallel axes"
     sign = dict(total.terms)[total.replaced]
     others = tuple((a, s) for a, s in total.terms if a != total.replaced)
-    rest = composite(others) if len(others) > 1 else others[0][0]
+    rest = symbol_of_sum(others) if len(others) > 1 else others[0][0]
     form = (total.symbol - rest * (others[0][1] if len(others) == 1 else 1)) * sign
     units = (*problem.units, total.replaced, rest)
     amount = sp.Add(*[a * s for a, s in others])

@@ -13,7 +13,7 @@ import sympy as sp
 from derive.equations.problem import Binding, Equation, Measure, Problem, Slope
 from derive.equations.rotations import conditions, rotations
 from derive.ir.program import Statement
-from derive.solver.derivation_record import Ledger
+from derive.solver.derivation_record import DerivationRecord
 from derive.solver.eliminations import differences, eliminations, squares, squares_of_three
 from derive.solver.feasible_arc import within_reach
 from derive.solver.folds import beyond_folds
@@ -67,28 +67,28 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     read. resolve_angle: gives the statements that bind an angle with its whole turns, for equations in which it stands outside
     sines and cosines. Raises `Unsolved` where no rule applies.
     """
-    ledger = Ledger()
+    record = DerivationRecord()
     sums: tuple[Sum, ...] = ()
     rules: list[str] = []
     left: list[sp.Expr] = []
     while problem.angles or problem.lengths or problem.pending:
         if problem.is_overdetermined and not problem.equations and not left:
             for condition in conditions(problem):
-                binding = ledger.commit(Binding("rotation", (), condition.lets, residual=condition.expression))
+                binding = record.commit(Binding("rotation", (), condition.lets, residual=condition.expression))
                 left += [binding.residual] if binding.residual is not None else []
         problem, binding, sums = _next(problem, sums, arguments)
-        binding = ledger.commit(binding)
+        binding = record.commit(binding)
         rules.append(binding.rule)
         plain = [a for a in binding.unknowns if any(a in e.expression.free_symbols for e in problem.equations)]
         for angle in plain:
             if angle not in problem.lengths:
-                ledger.append(resolve_angle(angle))
-        problem = _without(problem, binding, ledger)
-    statements = ledger.statements
+                record.append(resolve_angle(angle))
+        problem = _without(problem, binding, record)
+    statements = record.statements
     if not problem.is_overdetermined:
-        unfolded = beyond_folds(statements, ledger.slopes, ledger.measures, problem.scale)
-        statements = within_reach(unfolded, ledger.slopes, ledger.measures)
-    return Derivation(statements, ledger.slopes, ledger.measures, tuple(rules), sums, tuple(left), ledger.statements)
+        unfolded = beyond_folds(statements, record.slopes, record.measures, problem.scale)
+        statements = within_reach(unfolded, record.slopes, record.measures)
+    return Derivation(statements, record.slopes, record.measures, tuple(rules), sums, tuple(left), record.statements)
 
 
 def _next(
@@ -125,7 +125,7 @@ def _best(tiers: Iterable[list[Binding]]) -> Binding | None:
     return None
 
 
-def _without(problem: Problem, binding: Binding, ledger: Ledger) -> Problem:
+def _without(problem: Problem, binding: Binding, record: DerivationRecord) -> Problem:
     """The problem without the unknowns of a binding."""
     known = set(binding.unknowns)
     rest = replace(
@@ -133,7 +133,7 @@ def _without(problem: Problem, binding: Binding, ledger: Ledger) -> Problem:
         angles=tuple(a for a in problem.angles if a not in known),
         lengths=tuple(v for v in problem.lengths if v not in known),
         pending=tuple(a for a in problem.pending if a not in known),
-        definitions=ledger.definitions(problem.units),
+        definitions=record.definitions(problem.units),
     )
     equations = tuple(e for e in (*problem.equations, *binding.new_equations) if rest.unknowns_of(e.expression))
     return rest.with_equations(equations)

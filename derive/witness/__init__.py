@@ -13,9 +13,9 @@ from derive.witness.checks import check_forward, check_jacobian, check_margins
 from derive.witness.closure import closure_of
 from derive.witness.disagreement import Disagreement
 from derive.witness.inverse import check_inverse, check_offset, check_solutions
+from derive.witness.jointless import check_jointless
 from derive.witness.orientation import check_orientation
 from derive.witness.samples import regular_samples
-from derive.witness.still import check_still
 
 __all__ = ["Disagreement", "witness"]
 
@@ -27,7 +27,7 @@ def witness(kin: Kinematics) -> Evidence:
     try:
         closure = closure_of(kin.mechanism)
         if not kin.mechanism.joints:
-            poses, error = check_still(kin, closure)
+            poses, error = check_jointless(kin, closure)
             return Evidence(poses, decade(error), None)
         samples = regular_samples(kin, closure)
         forward = max(check_forward(kin, closure, samples), check_orientation(kin, samples))
@@ -46,5 +46,5 @@ def witness(kin: Kinematics) -> Evidence:
 
 
 def decade(measured: float) -> float:
-    """The next power of ten, from 1e-12 up: reads the same on every machine in spite of rounding."""
+    """The next power of ten, from 1e-12 up: the same on every computer in spite of rounding."""
     return float(f"1e{math.ceil(math.log10(max(measured, _FLOOR)) - 1e-9)}")

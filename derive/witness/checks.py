@@ -1,4 +1,4 @@
-"""What the witness compares: each check measures one derived program against the closure, or raises `Disagreement`.
+"""The checks of the witness: each measures one derived program against the closure, and raises `Disagreement` if it fails.
 
 Errors are dimensionless: angles in radians, lengths in reaches of the machine.
 """
@@ -19,7 +19,7 @@ CLOSURE_TOLERANCE = 1e-12
 JACOBIAN_TOLERANCE = 1e-10
 MARGIN_TOLERANCE = 1e-9
 CLEAR = 0.05
-"""Margins smaller than this are not asked for their sign."""
+"""The sign of a margin smaller than this is not checked."""
 
 
 def worst(kin: Kinematics, what: str, errors: Array, samples: Samples, tolerance: float) -> float:
@@ -33,7 +33,7 @@ def worst(kin: Kinematics, what: str, errors: Array, samples: Samples, tolerance
 
 
 def run_regular(kin: Kinematics, program: Program, samples: Samples) -> dict[str, Array]:
-    """The outputs of a program that must accept every regular sample."""
+    """The outputs of a program, which must accept every regular sample."""
     outputs, status = run(program, samples.values)
     refused = np.flatnonzero(np.broadcast_to(status != Status.OK, len(samples)))
     if len(refused):
@@ -42,14 +42,14 @@ def run_regular(kin: Kinematics, program: Program, samples: Samples) -> dict[str
 
 
 def displacement(closure: Closure, samples: Samples, joints: Array) -> Array:
-    """How far the pose would have to move to close Φ at the joints: |A⁺ Φ|."""
+    """The distance by which the pose would have to move to close Φ at the joints: |A⁺ Φ|."""
     state = (joints, samples.pose, samples.parameters)
     scaled = closure.by_pose(*state) * closure.row_scale(samples.reach)[:, None, :]
     return np.asarray(np.linalg.norm((np.linalg.pinv(scaled) @ closure.residual(*state))[:, :, 0], axis=1))
 
 
 def least_move(kin: Kinematics, closure: Closure, samples: Samples, joints: Array) -> Array:
-    """How far the pose, and of a loop the joints with it, would have to move to close Φ: |[A B]⁺ Φ|.
+    """The distance by which the pose, and in a loop the joints, would have to move to close Φ: |[A B]⁺ Φ|.
 
     Of the many solutions of a loop some are next to a type 2 singularity: there the pose alone would have to go far for what
     is the last digit of a joint.
@@ -66,10 +66,10 @@ def least_move(kin: Kinematics, closure: Closure, samples: Samples, joints: Arra
 def check_forward(kin: Kinematics, closure: Closure, samples: Samples) -> float:
     """Forward kinematics closes Φ and gives the whole frame; `orientation` gives the same rotation."""
     frame = closure.frame(samples.joints, samples.parameters)[:, :, 0]
-    if kin.mechanism.is_platform:  # the closure speaks of the whole pose: any rotation may be right
+    if kin.mechanism.is_platform:  # the closure holds the whole pose: any rotation may be right
         frame[:, 3:] = _nearest_rotations(samples.pose[:, 3:])
     position = (samples.pose[:, :3] - frame[:, :3]) / samples.reach[:, None]
-    if kin.mechanism.chain is None:  # closure equations speak of the commanded position: `displacement` measures it
+    if kin.mechanism.chain is None:  # stated equations hold the position alone: `displacement` measures it
         position[:, : len(kin.mechanism.task.position)] = 0.0
     outputs = run_regular(kin, kin.orientation, samples)
     rotation = np.stack([outputs[name] for name in POSE[3:]], axis=1)
@@ -88,7 +88,7 @@ def _nearest_rotations(rows: Array) -> Array:
 
 
 def check_jacobian(kin: Kinematics, closure: Closure, samples: Samples) -> float:
-    """The derived Jacobian is the closure's own, entry by entry, relative to the largest of its row."""
+    """The derived Jacobian equals that of the closure, entry by entry, relative to the largest entry of the row."""
     if kin.rows != closure.task:
         raise Disagreement(f"the Jacobian has the rows {kin.rows}, the task {closure.task}")
     outputs = run_regular(kin, kin.jacobian, samples)

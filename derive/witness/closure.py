@@ -35,7 +35,7 @@ from derive.ir.symbols import (
 from derive.witness.terms import Term, term
 
 LEAST_MARGIN = 1e-6
-"""A closed loop nearer to a type 2 singularity is not counted as a solution."""
+"""A solution of a closed loop nearer to a type 2 singularity than this is not counted."""
 POSE = ("x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123"))
 """The columns of a pose: position, then rotation by rows."""
 
@@ -81,7 +81,7 @@ class Closure:
     by_joints: Rows
     """joints, pose, parameters → B = ∂Φ/∂q"""
     frame: Rows
-    """joints, parameters → the pose of a chain; of closure equations: what they leave fixed, position zero"""
+    """joints, parameters → the pose of a chain; with stated equations its constant part, at position zero"""
     positive: Rows
     """joints, pose, parameters → the quantities that are positive in this machine"""
     indicators: Rows
@@ -95,20 +95,20 @@ class Closure:
     """Which joints are angles."""
 
     def row_scale(self, reach: Array) -> Array:
-        """What one unit of each task row is, where lengths are measured in reaches."""
+        """The unit of each row of the task, where lengths are measured in reaches."""
         return np.where([row not in COORDINATE_NAMES for row in self.task], 1.0, reach[:, None])
 
     def joint_scale(self, reach: Array) -> Array:
-        """The same of the joints, in radians and lengths."""
+        """The unit of each joint, in radians and lengths."""
         return np.where(self.angles, 1.0, reach[:, None])
 
     def axis_scale(self, reach: Array) -> Array:
-        """The same of the axes, in degrees and lengths."""
+        """The unit of each axis, in degrees and lengths."""
         return np.where(self.angles, np.degrees(1.0), reach[:, None])
 
 
 def closure_of(mechanism: Mechanism) -> Closure:
-    """Read the description into CasADi."""
+    """The closure of a description in CasADi."""
     count = len(mechanism.joints)
     q, axes, pose = ca.SX.sym("q", count), ca.SX.sym("axes", count), ca.SX.sym("pose", len(POSE))
     constants = [p.symbol for p in mechanism.parameters] + [j.offset for j in mechanism.joints]
@@ -142,7 +142,7 @@ def closure_of(mechanism: Mechanism) -> Closure:
 
 
 def task_rows(mechanism: Mechanism) -> tuple[str, ...]:
-    """The commanded directions: what the rows of the Jacobian must be."""
+    """The commanded directions, which the rows of the Jacobian must be."""
     turns = {Turning.NONE: "", Turning.ABOUT_Z: "z", Turning.FULL: "xyz"}
     if mechanism.task.turning is Turning.DIRECTION:
         return (*mechanism.task.position, "tilt x", "tilt y")
@@ -150,7 +150,7 @@ def task_rows(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def _positive(mechanism: Mechanism) -> list[sp.Expr]:
-    """What is positive in this machine: stated quantities, what is left of bounds, the indicator of its assembly mode."""
+    """The positive quantities of this machine: stated ones, distances from bounds, the indicator of the assembly mode."""
     left = [*mechanism.positive, *(b.largest - sp.Abs(b.value) for b in mechanism.bounds)]
     if mechanism.assembly is None:
         return left
@@ -160,7 +160,7 @@ def _positive(mechanism: Mechanism) -> list[sp.Expr]:
 
 
 def _indicator(branch: Branch, named: dict[sp.Symbol, Term]) -> Term:
-    """Positive is byte 1; not a number, which contradicts nothing, where only a search tells the solutions apart."""
+    """The branch indicators: positive is byte 1. NaN, which no check compares, where only a scan tells the solutions apart."""
     return ca.SX(float("nan")) if branch.is_crossing else branch.signs[0] * term(branch.indicator, named)
 
 
@@ -191,7 +191,7 @@ def _moved(pose: Term, task: tuple[str, ...], twist: Term) -> Term:
 
 
 def _residual(mechanism: Mechanism, known: dict[sp.Symbol, Term], pose: Term) -> tuple[Term, int]:
-    """Φ, and how many of its rows come before the rotation's."""
+    """Φ, and the number of its rows before those of the rotation."""
     if mechanism.chain is None:
         named = known | _position_symbols(pose)
         return _column([term(sp.sympify(e), named) for e in mechanism.equations]), len(mechanism.equations)

@@ -1,4 +1,4 @@
-"""What the witness says when a derived formula is wrong."""
+"""The error that the witness raises when a derived formula is wrong."""
 
 
 class Disagreement(Exception):

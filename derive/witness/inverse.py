@@ -1,4 +1,4 @@
-"""The inverse against the closure: every slot is a solution, forward's slot is the way back, and none is missing."""
+"""The inverse against the closure: every slot is a solution, the slot of forward kinematics leads back, none is missing."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from derive.witness.samples import SEED, Samples, describe
 
 AXES_TOLERANCE = 1e-9
 _NEAR = 15.0
-"""How far references stray from the axes, in degrees: near enough for gear couplings not to change the turn."""
+"""The largest distance of references from the axes, in degrees: with gear couplings, too, the turn stays the same."""
 _EVERY, _MOST_MISSED = 6, 0.01
-"""Of a search every so-manieth pose is searched for all solutions, and at most this share of them may be missed."""
+"""With a root scan all solutions are sought at every n-th pose, and at most this share of them may be missed."""
 _AROUND = 8
-"""References from which a search is asked for all solutions."""
+"""References from which a root scan is started to find all solutions."""
 _TOOL = 0.03
 """The size of the point off the flange, in reaches: less than REGULAR, so that it does not reach a mirror solution."""
 
@@ -33,7 +33,7 @@ Slots = tuple[Array, NDArray[np.bool_]]
 
 
 def check_inverse(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[float, float]:
-    """Every slot's answer closes Φ and lies on its branch; the slot that forward names gives the axes back, turns included."""
+    """The answer of every slot closes Φ and lies on its branch; the slot of forward kinematics gives back the axes with turns."""
     axes, ok = run_slots(kin, kin.branch, samples, _commands(kin, samples))
     residual = 0.0
     for slot, signs in enumerate(_signs(kin)):
@@ -52,7 +52,7 @@ def check_inverse(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[
 
 
 def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[int, tuple[int, int] | None]:
-    """Multi-start root finding finds what the slots hold, no more and no less; the largest number of solutions.
+    """Multi-start root finding finds the solutions in the slots, no more and no less. Returns the largest number of solutions.
 
     A search may miss some: then also how many, of how many.
     """
@@ -65,7 +65,7 @@ def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> tupl
     counts, missed = [], 0
     for row, found in enumerate(all_solutions(problem)):
         slots = np.array([offered[slot][row] for slot in np.flatnonzero(ok[:, row])]).reshape(-1, axes.shape[2])
-        slots = distinct(slots, problem.angles) if is_search else slots  # what is opposite the reference is met from both sides
+        slots = distinct(slots, problem.angles) if is_search else slots  # one opposite the reference is found twice
         missing = _compare(kin, problem, (found, slots), describe(kin, part, row))
         missed += missing
         counts.append(len(found))
@@ -80,7 +80,7 @@ def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> tupl
 
 
 def check_offset(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[float, float]:
-    """The offset interface puts the point where it is commanded, and gives the axes back on the branch it names."""
+    """The offset interface reaches the commanded point, and gives back the axes on the branch that it names."""
     if kin.offset_branch is None or kin.offset_configuration is None:
         return 0.0, 0.0
     offset = _TOOL * samples.reach[:, None] * np.random.default_rng(SEED + 3).uniform(-1.0, 1.0, (len(samples), 3))
@@ -104,7 +104,7 @@ def check_offset(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[f
 
 
 def run_slots(kin: Kinematics, program: Program, samples: Samples, commands: dict[str, Array]) -> Slots:
-    """Run an inverse program for every slot, all in one go: a search takes as many passes for one row as for all."""
+    """Run an inverse program for all slots at once: a root scan takes as many passes for one row as for all."""
     slots, count = np.array(_signs(kin)), len(samples)
     sigmas = {f"sigma_{b.name}": np.repeat(slots[:, i], count) for i, b in enumerate(kin.branches)}
     repeated = {name: np.tile(column, len(slots)) for name, column in (samples.values | commands).items()}
@@ -115,7 +115,7 @@ def run_slots(kin: Kinematics, program: Program, samples: Samples, commands: dic
 
 
 def _ranks(kin: Kinematics, samples: Samples) -> Slots:
-    """Every slot; of a search, from references all around the circle, for a branch may have several solutions."""
+    """The solutions of every slot; with a root scan from references around the circle: a branch may have several solutions."""
     commands = _commands(kin, samples)
     search = kin.mechanism.search
     if search is None:
@@ -166,7 +166,7 @@ def _round_trip(
 
 
 def _compare(kin: Kinematics, problem: Problem, solutions: tuple[Array, Array], place: str) -> int:
-    """How many solutions a search misses: without a search, and of what is offered, the slots hold just what there is."""
+    """The number of solutions that a root scan misses. Raises `Disagreement` for any other difference."""
     found, offered = solutions
     missing = [f for f in found if not any(same(f, o, problem.angles) for o in offered)]
     is_search = kin.mechanism.search is not None

@@ -1,4 +1,4 @@
-"""What the flange can do, against the frames that it has: the orientation image and the projection."""
+"""The orientations of the flange against the frames of forward kinematics: orientation image and projection."""
 
 from __future__ import annotations
 

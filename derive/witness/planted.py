@@ -1,4 +1,4 @@
-"""Poses planted next to where branches of a search meet: a joint is moved until a branch's indicator nearly vanishes.
+"""Poses close to where branches of a root scan meet: a joint is moved until the indicator of a branch nearly vanishes.
 
 Of every machine and every branch, on all decades of distance, with references far away: how many have no answer on
 their own branch. Random poses never come there, but robots stand there.
@@ -21,11 +21,11 @@ _TRIED = 24
 _HALVED = 60
 _DECADES = 12
 _FREE = 1e-11
-"""Branches with a smaller margin coincide: either byte will do."""
+"""Branches with a smaller margin coincide: both bytes are right."""
 
 
 def refused_when_planted(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[int, int]:
-    """How many planted poses are refused on their own branch, of how many."""
+    """The number of these poses that are refused on their own branch, and the number of all."""
     rng = np.random.default_rng(SEED + 7)
     rows = [r for b in range(len(kin.branches)) for j in range(samples.axes.shape[1]) for r in _near(closure, samples, b, j, rng)]
     if not rows:
@@ -51,7 +51,7 @@ def refused_when_planted(kin: Kinematics, closure: Closure, samples: Samples) ->
 
 
 def _near(closure: Closure, samples: Samples, branch: int, joint: int, rng: np.random.Generator) -> list[tuple[int, Array]]:
-    """A row of every machine with the joint where the branch's indicator vanishes, on either side, and a distance away."""
+    """For every machine the joint where the indicator vanishes, on both sides of it, and a distance away."""
     found: list[tuple[int, Array]] = []
     first = np.unique(samples.machine, return_index=True)[1]
     part = samples.take(first)

@@ -29,7 +29,7 @@ class Problem:
     parameters: Array
     weights: Array
     units: Array
-    """What one scaled unknown is in radians or lengths."""
+    """The unit of each scaled unknown, in radians or lengths."""
     angles: NDArray[np.bool_]
 
     def take(self, rows: Rows) -> Problem:
@@ -63,7 +63,7 @@ def problem_at(closure: Closure, samples: Samples) -> Problem:
 
 
 def all_solutions(problem: Problem) -> list[Array]:
-    """The distinct solutions at every pose, less those that the description excludes."""
+    """The distinct solutions at every pose, without those that the description excludes."""
     count = len(problem.pose)
     rows = np.repeat(np.arange(count), STARTS)
     many = problem.take(rows)
@@ -76,7 +76,7 @@ def all_solutions(problem: Problem) -> list[Array]:
 
 
 def within_one_turn(problem: Problem, unknowns: Array) -> Array:
-    """The same solutions with angles in [-π, π); what climbs with a turn follows by a few more steps."""
+    """The same solutions with angles in [-π, π); lengths that climb with a turn follow by a few more iterations."""
     wrapped = np.where(problem.angles, (unknowns + np.pi) % (2 * np.pi) - np.pi, unknowns)
     return _newton(problem, wrapped, _POLISH)
 

@@ -1,4 +1,4 @@
-"""The machines and poses on which the witness looks: the nominal machine, random ones, regular poses of each.
+"""The samples of the witness: the nominal machine and random ones, with regular poses of each.
 
 Everything is drawn from a fixed seed, so that a build says the same every time.
 """
@@ -20,7 +20,7 @@ from derive.ir.symbols import (
 from derive.kinematics.kinematics import Kinematics
 from derive.witness.closure import LEAST_MARGIN, POSE, Closure
 from derive.witness.disagreement import Disagreement
-from derive.witness.near_home import axes_near_home
+from derive.witness.home_samples import axes_near_home
 
 SEED = 20260
 MACHINES = 6
@@ -32,17 +32,17 @@ WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths (a gantry)."""
 _CANDIDATES = 100
 _LOOP_CANDIDATES = 2500
-"""Of a closed loop few random axis values can be assembled."""
+"""Random axis values to try: few of them close a loop."""
 _SPREAD = {Role.PITCH: 20.0, Role.GEAR: 0.1, Role.COUPLING: 0.5, Role.ANGLE: 200.0}
-"""How far a parameter strays whose nominal value is zero."""
+"""The largest random value of a parameter whose nominal value is zero, in reaches."""
 
 
 @dataclass(frozen=True)
 class Samples:
-    """Rows of samples, ordered by machine: what the programs read, and the same as arrays."""
+    """Rows of samples, ordered by machine: by the names that programs read, and as arrays."""
 
     values: dict[str, Array]
-    """Everything that programs read by name: parameters, constants, axis values, the pose."""
+    """The values that programs read, by name: parameters, constants, axis values, the pose."""
     machine: NDArray[np.int64]
     parameters: Array
     axes: Array
@@ -132,7 +132,7 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
 
 
 def _draw(parameter: Parameter, count: int, rng: Generator) -> Array:
-    """Random values of one parameter; what has a default keeps it in half of the machines."""
+    """Random values of one parameter; a parameter with a default keeps it in half of the machines."""
     low, high = max(parameter.low, -1e3), min(parameter.high, 1e3)
     size = abs(parameter.nominal) or _SPREAD.get(parameter.role, 50.0)
     if parameter.role is Role.LENGTH:
@@ -152,7 +152,7 @@ def _draw(parameter: Parameter, count: int, rng: Generator) -> Array:
 def _reach(mechanism: Mechanism, values: dict[str, Array]) -> Array:
     lengths = [np.abs(values[p.name]) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)]
     total = np.sum(lengths, axis=0) if lengths else np.zeros_like(next(iter(values.values())))
-    legs = max(1, len(mechanism.rods)) if mechanism.task.turning is Turning.NONE else 1  # of a loop, one leg
+    legs = max(1, len(mechanism.rods)) if mechanism.task.turning is Turning.NONE else 1  # one leg of a loop
     return np.where(total > 0, total / legs, WITHOUT_LENGTHS)
 
 
@@ -184,14 +184,14 @@ def _unit(joint: Joint) -> float:
 
 
 def _least_singular_value(closure: Closure, samples: Samples) -> Array:
-    """Of the Jacobian with lengths measured in reaches: small near a singularity of either type."""
+    """The least singular value of the Jacobian, with lengths in reaches: small near a singularity of either type."""
     columns, rows = closure.joint_scale(samples.reach), closure.row_scale(samples.reach)
     scaled = np.nan_to_num(samples.jacobian * columns[:, None, :] / rows[:, :, None], posinf=0.0, neginf=0.0)
     return np.asarray(np.linalg.svd(scaled, compute_uv=False)[:, -1])
 
 
 def _rank_within(group: NDArray[np.int64], chosen: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """The how-manieth chosen row of its group a row is, from 1; groups stand in order."""
+    """The number of each chosen row within its group, from 1; groups stand in order."""
     total = np.cumsum(chosen)
     _, first, index = np.unique(group, return_index=True, return_inverse=True)
     return np.asarray(total - (total - chosen)[first][index])

@@ -1,4 +1,4 @@
-"""SymPy expressions of a description as CasADi expressions: the witness's own reading of them."""
+"""SymPy expressions of a description as CasADi expressions, independently of the derivation."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Every mechanism of the catalogue through every test, held against its closure equations alone."""
+"""Every mechanism of the catalogue in every test, checked against its closure equations alone."""

@@ -1,4 +1,4 @@
-"""Batch calls that every row is also asked of the scalar call: where an edge is at stake, both must see it the same."""
+"""Batch calls whose rows are compared with scalar calls: at every boundary both must decide the same."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from softkin import KinematicsError, Status
 from tests.catalogue.closure import Array
 
 SAME = 1e-4
-"""Degrees or lengths: at a stretched arm rounding takes half of the digits."""
+"""Tolerance in degrees or lengths: at a stretched arm rounding costs half of the digits."""
 
 
 def forward(robot: softkin.Mechanism, axes: Array) -> tuple[Array, Array, Array, Array]:

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 STEP = 1e-30
 ONE_DEGREE = np.pi / 180.0
 COLUMNS = {Turning.NONE: [], Turning.ABOUT_Z: [0, 1, 2], Turning.DIRECTION: [2], Turning.FULL: [0, 1, 2]}
-"""What of the commanded rotation is followed: its columns."""
+"""The columns of the commanded rotation that the task prescribes."""
 POSITION = (X.symbol, Y.symbol, Z.symbol)
 
 
@@ -80,7 +80,7 @@ class Closure:
         return product[:, :3, 3], product[:, :3, :3]
 
     def residual(self, joints: Array, positions: Array, rotations: Array) -> Array:
-        """How far a pose is from the closure: lengths, then entries of the rotation."""
+        """The residual of the closure at a pose: lengths, then entries of the rotation."""
         if self.mechanism.chain is None:
             lengths = self._stated(joints, positions)
             if 2 not in self.task:
@@ -90,7 +90,7 @@ class Closure:
         return np.hstack([position - positions, (rotation - rotations).reshape(-1, 9)])
 
     def equations(self, joints: Array, positions: Array, rotations: Array) -> Array:
-        """The part of the closure that is commanded: what the inverse has to solve."""
+        """The commanded part of the closure, which the inverse has to solve."""
         if self.mechanism.chain is None:
             return self._stated(joints, positions)
         position, rotation = self.frames(joints)
@@ -120,7 +120,7 @@ class Closure:
         return self.at_joints([b.signs[0] * b.indicator for b in self.mechanism.branches], joints)
 
     def positive(self, joints: Array) -> Array:
-        """The quantities whose negative mirror the machine does not have."""
+        """The quantities that are positive in this machine."""
         return self.at_joints(list(self.mechanism.positive), joints)
 
     def limited(self, joints: Array) -> Array:

@@ -1,4 +1,4 @@
-"""The machines whose corners are searched: dimensions with which more vanishes at once, random ones, and both assembly modes."""
+"""The machines of the tests of corners: special dimensions with coinciding singularities, random ones, both assembly modes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.catalogue.robots import KR6_R900, PUMA_560, UR5
 from tests.mechanisms import catalogue
 
 PLACES = 2
-"""Places of every combination of factors."""
+"""The number of corners of every combination of factors."""
 KR6_D3 = {**KR6_R900, "d3": 40.0}
 SPECIAL: dict[str, dict[str, Mapping[str, float]]] = {
     "Kin_Ac6_ThreeParallel": {
@@ -38,7 +38,7 @@ SPECIAL: dict[str, dict[str, Mapping[str, float]]] = {
         "equal links": {**KR6_R900, "a1": 0.0, "a3": 0.0, "a2": 420.0, "j6_offset_x": 0.0},
     },
 }
-"""Dimensions that are sold, and those with which more vanishes at once."""
+"""Dimensions of robots that are sold, and dimensions with coinciding singularities."""
 SPECIAL["Kin_Pos_RRR"] = {
     name: {k: v for k, v in given.items() if k != "d6"} for name, given in SPECIAL["Kin_ArticulatedRobot_6DOF"].items()
 }

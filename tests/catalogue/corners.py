@@ -1,7 +1,7 @@
 """Corners: poses where two or three singular factors vanish together, and poses beside them at every decade of distance.
 
-The factors are what the inverse derivation divides by or takes the root of, branch by branch and measure by measure; here they
-are functions of axis values that Newton's method drives to zero. Whether an answer is right is not asked of them.
+The factors are the slopes and measures of the inverse derivation, by which it divides or of which it takes roots. Here they are
+functions of axis values whose zeros Newton's method finds. They do not decide whether an answer is right.
 """
 
 from __future__ import annotations
@@ -41,17 +41,17 @@ from tests.catalogue.machines import Machine
 
 Factors = Callable[[Array], Array]
 DISTANCES = (0.0, *(sign * 10.0**-k for k in range(2, 17) for sign in (1, -1)))
-"""How far a factor is from zero."""
+"""Distances of a factor from zero."""
 STARTS, PASSES = 24, 32
 AT = 1e-14
-"""A factor that small is zero."""
+"""A factor smaller than this is zero."""
 STEP = 1e-6
 LONGEST = 0.4
 """Radians, or reaches, of one step of Newton's method."""
 CONTROLLED = 2e-3
 """A pose of a loop is refused where its type 2 margin is below 1e-3: such poses are no corners."""
 ENDS = 1e-6
-"""Quantities of a description that have an end are kept this far from it, per reach: they end, they are not singular there."""
+"""Quantities with a boundary keep this distance from it, per reach: the workspace ends there, which is no singularity."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ def _slopes(machine: Machine, functions: Factors, axes: Array) -> Array:
 
 
 def _places(machine: Machine, functions: Factors, count: int, rng: Generator) -> Array:
-    """Where Newton's method ends that starts anywhere, if all factors vanish there and the machine can be there."""
+    """The end of Newton's method from any start, if all factors vanish there and the machine can be there."""
     axes = _starts(machine, rng)
     for _ in range(PASSES):
         moving = np.flatnonzero((functions(axes) != 0.0).any(axis=1))
@@ -153,7 +153,7 @@ def _places(machine: Machine, functions: Factors, count: int, rng: Generator) ->
 
 
 def _ways(machine: Machine, functions: Factors, axes: Array) -> Array:
-    """The pseudo-inverse of the slopes, seen a little beside the corner: lengths have no slope where they vanish."""
+    """The pseudo-inverse of the slopes close to the corner: at the corner itself a length has no slope."""
     aside = axes + 1e-5 * _units(machine) * np.random.default_rng(1).uniform(-1.0, 1.0, axes.shape)
     return np.linalg.pinv(np.nan_to_num(_slopes(machine, functions, aside)), rcond=1e-2) * _units(machine)[:, None]
 
@@ -166,7 +166,7 @@ def _least(slopes: Array, values: Array) -> Array:
 
 
 def _starts(machine: Machine, rng: Generator) -> Array:
-    """Random axis values, of a loop such as can be assembled."""
+    """Random axis values; for a loop, values that close it."""
     if machine.mechanism.rods:
         return machine.draw(STARTS, rng, farthest=360.0)
     ranges = [machine._range(j, 170.0) for j in machine.mechanism.joints]
@@ -175,7 +175,7 @@ def _starts(machine: Machine, rng: Generator) -> Array:
 
 
 def can_be_at(machine: Machine, axes: Array) -> Array:
-    """Whether the machine can be at axis values: assembled and controlled, and nothing ends there that has an end."""
+    """Whether the machine can be at axis values: closed, controlled, and away from every boundary."""
     with np.errstate(all="ignore"):
         status = machine.robot.forward_batch(axes)[3]
     possible = status == 0

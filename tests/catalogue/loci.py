@@ -1,4 +1,4 @@
-"""Where a mechanism is singular, read off its description: branch indicators and positive quantities that vanish."""
+"""The singular loci of a mechanism, from its description: zeros of branch indicators and of positive quantities."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
 
 OFTEN = 0.9
-"""A quantity c + h cos(u - centre) is taken to vanish somewhere where |c| is less than this share of h."""
+"""A quantity c + h cos(u - centre) has zeros where |c| is less than this fraction of h."""
 
 
 SHIFTS = (0.0, 1e-12, -1e-9, 1e-6, -1e-4, 1e-3)

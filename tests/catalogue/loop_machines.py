@@ -29,7 +29,7 @@ PASSES = 20
 
 
 class LoopClosure(Closure):
-    """The closure of a closed loop. Which solution is this machine's is said by the assembly's indicator alone."""
+    """The closure of a closed loop. The indicator of the assembly alone decides which solution belongs to this machine."""
 
     def __init__(self, mechanism: Mechanism, parameters: Mapping[str, float], reach: float) -> None:
         super().__init__(mechanism, parameters)
@@ -56,7 +56,7 @@ class LoopClosure(Closure):
         return found, np.tile(np.eye(3), (len(axes), 1, 1))
 
     def assembly_from(self, joints: Array, direction: Array) -> tuple[Array, Array]:
-        """Where Newton's method ends that starts far away in a direction, and whether the loop closes there."""
+        """The end of Newton's method from a far start in a direction, and whether the loop closes there."""
         positions = np.zeros((len(joints), 3))
         positions[:, self.task] = FAR * self.reach * direction[self.task]
         moving = np.arange(len(joints))
@@ -84,7 +84,7 @@ class LoopClosure(Closure):
         return self._mode * self.at(joints, positions, [self._side])[:, 0]
 
     def room(self, joints: Array, positions: Array) -> Array:
-        """By how much the nearest bound (the swing of a ball joint) is kept; 1 where there is none."""
+        """The distance from the nearest bound (the swing of a ball joint); 1 where there is none."""
         return self.at(joints, positions, self._room).min(axis=1, initial=1.0)
 
     def indicators(self, joints: Array) -> Array:
@@ -148,7 +148,7 @@ class LoopMachine(Machine):
 
     @cached_property
     def _assembled(self) -> Array:
-        """What the package can assemble: only a short cut, the closure is asked again."""
+        """The axis values that the package can close: only a short cut, because the closure decides afterwards."""
         axes = self.candidates(CANDIDATES, np.random.default_rng(23))
         return axes[self.robot.forward_batch(axes)[3] == softkin.Status.OK][:600]
 

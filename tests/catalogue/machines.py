@@ -22,9 +22,9 @@ kinematics in `coupling`."""
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths."""
 TURNS = 1000.0
-"""How far an axis turns that turns more than once, in degrees."""
+"""The range of an axis with several turns, in degrees."""
 CLIMBING_TURNS = 720.0
-"""The same of an axis that carries another one along: it is limited."""
+"""The range of an axis with a pitch, which is limited."""
 REGULAR = 0.05
 """Branch indicators (those that are lengths: per their largest) and positive quantities (per reach) are at least this."""
 UNEQUAL = (320.0, 80.0, 20.0)
@@ -34,7 +34,7 @@ LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH)
 
 @dataclass(frozen=True)
 class Machine:
-    """A mechanism with parameters: the generated class, and the closure that it is held against."""
+    """A mechanism with parameters: the generated class, and the closure with which it is compared."""
 
     label: str
     mechanism: Mechanism
@@ -65,7 +65,7 @@ class Machine:
 
     @cached_property
     def largest(self) -> Array:
-        """How large the indicator of every branch can be: 1, or a length that random joint values tell."""
+        """The largest value of every branch indicator: 1, or a length found with random joint values."""
         lengths = {p.symbol for p in self.mechanism.parameters if p.role in (*LENGTHS, Role.DISTANCE)}
         lengths |= {j.symbol for j in self.mechanism.joints if not j.is_angle}
         is_length = np.array([bool(b.indicator.free_symbols & lengths) for b in self.mechanism.branches], dtype=bool)
@@ -112,7 +112,7 @@ class Machine:
         return equations.max(axis=1)
 
     def size(self, axes: Array) -> Array:
-        """The size of the motion in every row: the reach, and how far linear axes are out."""
+        """The size of the motion in every row: the reach, and the extension of linear axes."""
         return self.reach + np.abs(axes - self.closure.offsets)[:, ~self.closure.angles].sum(axis=1)
 
     def is_possible(self, axes: Array) -> NDArray[np.bool_]:
@@ -181,7 +181,7 @@ def machines_of(mechanism: Mechanism) -> tuple[Machine, ...]:
 
 @cache
 def bare_machine(mechanism: Mechanism) -> Machine:
-    """Equal links and nothing else: folded it is nowhere, and all that can be free is free at once."""
+    """Equal links and nothing else: folded, its reach is zero, and every angle that can be free is."""
     return machine(mechanism, "bare", {p.name: 250.0 for p in mechanism.parameters if p.role in LENGTHS})
 
 

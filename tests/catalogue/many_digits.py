@@ -1,4 +1,4 @@
-"""Execute a program with as many digits as wanted: what its formulas say, without the rounding of doubles."""
+"""Execute a program with any number of digits: the values of its formulas without the rounding of doubles."""
 
 from __future__ import annotations
 

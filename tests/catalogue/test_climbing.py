@@ -1,4 +1,4 @@
-"""A helical axis, which carries a linear one along: not periodic while it has a pitch, and so always limited."""
+"""A helical axis moves a linear one along by its pitch: then it has no period, and is always limited."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What forward kinematics writes into the configuration, and what the inverse reads from it."""
+"""The configuration that forward kinematics writes, and that the inverse reads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is no pose, no axes and no numbers: a status and one clear message, and in a batch the neighbours unharmed."""
+"""Invalid poses, axes and numbers: a status and one clear message; in a batch the other rows are unaffected."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def test_positions_and_references_of_no_reasonable_size(machines: tuple[Machine,
 
 @pytest.mark.parametrize("what", [*NO_ROTATIONS, *(f"{n}" for n in NUMBERS)])
 def test_frames_that_are_no_rotation(machines: tuple[Machine, ...], what: str) -> None:
-    """Refused where the rotation is read; not looked at where it is not."""
+    """Refused where the rotation is read; accepted where it is not."""
     machine, axes, positions, rotations = some(machines)
     robot, own = machine.robot, machine.own(axes)
     wrongs = [NO_ROTATIONS[what] @ rotations[3]] if what in NO_ROTATIONS else []

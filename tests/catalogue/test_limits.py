@@ -1,4 +1,4 @@
-"""Axis limits, and limits that no axis can see: tested last, with a tolerance, and never a reason to choose again."""
+"""Limits of axes and of other quantities: tested last, with a tolerance; they never choose another solution."""
 
 from __future__ import annotations
 

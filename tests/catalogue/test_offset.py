@@ -1,4 +1,4 @@
-"""The offset interface: a point off the flange is brought to a place, with no word on the orientation."""
+"""The offset interface: the position of a point off the flange is commanded, without the orientation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A commanded rotation that the flange cannot have: the nearest that it can, tool direction first."""
+"""A commanded rotation that the flange cannot take: it takes the nearest one, tool direction first."""
 
 from __future__ import annotations
 

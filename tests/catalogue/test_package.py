@@ -1,4 +1,4 @@
-"""The package as a whole: what it offers, what it costs to import, and what its classes say about themselves."""
+"""The package as a whole: its names, the time of its import, and the properties of its classes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pairs of singular factors driven together, at every decade of distance: no pose is lost, and every answer is met."""
+"""Pairs of singular factors close to zero, at every decade of distance: no pose is lost, and every answer is right."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Machines that cannot be: one clear message that names the parameter, and no robot."""
+"""Impossible machines: one clear message that names the parameter, and no robot."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Machines with lengths a million times apart, against the same formulas with sixty digits and against the closure.
 
-An answer may be wrong by what the last digits of parameters and positions change it, and no more than some of that: a formula
-that squares lengths and then subtracts loses the square of their ratio, which was a thousand times as much and more.
+The error of an answer may be a small multiple of the change that the last digits of parameters and positions cause. A formula
+that squares lengths and then subtracts loses the square of their ratio, a thousand times as much and more.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The emitted Structured Text: its form, its contract, and its answers, every method of every unit against its Python twin.
+"""The emitted Structured Text: its form, its contract, and its answers; every method is compared with its twin in Python.
 
 Units of serial machines stand here, those of closed loops in `loops`, orientation kinematics in `coupling`, the plate that moves
 with its whole pose in `hexapod`, the self-test for a controller in `selftest`.

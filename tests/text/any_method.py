@@ -1,4 +1,4 @@
-"""Any method of a block, called with arguments that fit a pose, without knowing what it does."""
+"""A call of any method of a block, with arguments that fit a pose."""
 
 from __future__ import annotations
 

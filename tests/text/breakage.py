@@ -1,4 +1,4 @@
-"""Ways to break a unit: what stands in the text of a method, and what is put there instead."""
+"""Ways to break a unit: a text in a method, and the wrong text that replaces it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Break:
     right: str
     wrong: str
     said: str = ""
-    """What the harness must say; nothing where a comparison must fail."""
+    """The message of the harness; empty where a comparison must fail."""
 
 
 def texts(change: Break | None = None, mechanism: Mechanism = MECHANISM) -> Mapping[str, str]:
@@ -37,7 +37,7 @@ def texts(change: Break | None = None, mechanism: Mechanism = MECHANISM) -> Mapp
 
 
 def declared(text: str) -> str:
-    """The lines that declare something, cut behind the name."""
+    """The lines of declarations, up to the name."""
     words = ("METHOD ", "FUNCTION", "PROPERTY ")
     lines = [line for line in text.split("\n") if line.startswith(words)]
     return "\n".join(line.split(" :")[0].removesuffix(" IMPLEMENTS") for line in lines) + "\n"

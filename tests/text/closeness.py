@@ -14,7 +14,7 @@ TOLERANCE = 1e-12
 
 
 def asked(call: Callable[..., Any], *arguments: Any) -> Answer:
-    """What a call in Python answers, as a status and a value."""
+    """The answer of a call in Python, as a status and a value."""
     try:
         return OK, call(*arguments)
     except KinematicsError as refusal:

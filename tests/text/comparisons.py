@@ -1,4 +1,4 @@
-"""What every method of a block must answer: for each, a comparison with its Python twin or with the description.
+"""The comparisons: by method of a block, its expected answer, from its twin in Python or from the description.
 
 A test runs for every method that stands in the emitted text, and looks it up here: one that is missing fails.
 """

@@ -26,7 +26,7 @@ Answer = tuple[str, Any]
 class Controller:
     """A block, called as a controller calls it.
 
-    A variable that a method writes holds what means nothing before the call, and must hold the same after a refusal.
+    A variable that a method writes holds an arbitrary value before the call, and must hold the same after a refusal.
     """
 
     def __init__(self, library: Library, mechanism: Mechanism) -> None:

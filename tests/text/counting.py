@@ -1,4 +1,4 @@
-"""A count of the arithmetic that Structured Text does while it runs: the translated source, with every operation counted."""
+"""The number of operations of running Structured Text: the translated source counts each of them."""
 
 from __future__ import annotations
 

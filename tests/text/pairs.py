@@ -22,5 +22,5 @@ def pairs_of(mechanism: Mechanism) -> tuple[Pair, ...]:
 
 
 def comparisons_of(mechanism: Mechanism) -> Mapping[str, Comparison]:
-    """What every method of its block must answer."""
+    """The expected answers of all methods of its block."""
     return answers.COMPARISONS if mechanism.rods else comparisons.COMPARISONS

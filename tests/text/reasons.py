@@ -1,4 +1,4 @@
-"""Every reason that Diagnose has, provoked: one number after the other is none, one condition after the other does not hold."""
+"""Every reason of Diagnose, provoked: each number is made NaN in turn, and each condition violated in turn."""
 
 from __future__ import annotations
 

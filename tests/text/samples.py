@@ -1,4 +1,4 @@
-"""What methods are called with: poses of a machine, and commands that may be far from them."""
+"""The arguments of methods: poses of a machine, and commands that may be far from them."""
 
 from __future__ import annotations
 

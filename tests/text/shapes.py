@@ -1,4 +1,4 @@
-"""What a text is to a grammar: which names and numbers stand in it does not matter, nor what has been parsed before."""
+"""The shape of a text for a grammar: names and numbers do not matter, and a shape is parsed once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a block must do whatever Python does: its methods agree with one another."""
+"""Properties of a block by itself: its methods agree with one another."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An emitted unit, broken in every way: the harness refuses it, it faults while it runs, or a comparison fails.
+"""Broken units: the harness refuses them, they fault while they run, or a comparison fails.
 
 Without this, all other tests of the folder could pass for the wrong reason.
 """

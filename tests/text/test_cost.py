@@ -1,4 +1,4 @@
-"""The header of every unit states what its calls cost at most: counted while the emitted text runs."""
+"""The costs in the header of every unit are upper bounds of the operations counted while the text runs."""
 
 from __future__ import annotations
 

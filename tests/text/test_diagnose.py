@@ -1,4 +1,4 @@
-"""What Diagnose says, against what is known of a machine by definition. That both languages say the same is tested elsewhere."""
+"""The answers of Diagnose against known properties of a machine. Other tests compare both languages."""
 
 from __future__ import annotations
 

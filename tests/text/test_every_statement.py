@@ -129,8 +129,8 @@ def run_the_tests(mechanism: Mechanism, twins: tuple[Twins, ...]) -> None:
 
 
 def unreachable(mechanism: Mechanism, lines: list[str]) -> set[int]:
-    """The lines that no input reaches: an axis whose closure allows an interval only is never without limits, a
-    CONFIGDATA of no bytes does not exist, and a divisor that was refused already is not replaced any more."""
+    """The lines that no input reaches: an axis whose closure allows only an interval always has limits, a CONFIGDATA
+    without bytes does not exist, and a divisor that has been refused is not replaced."""
     keys = [capitalized(joint.key) for joint in mechanism.joints if joint.domain is not None]
     dead = {f"{word}{key} := {value};" for key in keys for word, value in (("lowest", "-1.0E12"), ("highest", "1.0E12"))}
     found = {number for number, line in enumerate(lines, 1) if line.strip() in dead}

@@ -1,4 +1,4 @@
-"""Garbage in every input of every method: a status and outputs untouched, or never read; nothing stops a controller."""
+"""Invalid values in every input of every method: refused with outputs unchanged, or not read; nothing stops a controller."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Initialize: what it refuses, and that nothing else reads the inputs."""
+"""Initialize: its refusals; no other method reads the inputs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The amounts that Diagnose gives, against geometry that knows no inverse. Both languages say the same by other tests."""
+"""The amounts of Diagnose, against geometry without an inverse. Other tests compare both languages."""
 
 from __future__ import annotations
 

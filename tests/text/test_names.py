@@ -1,4 +1,4 @@
-"""Names that mean something else are refused when they are generated, with one sentence that says what to do."""
+"""Names with another meaning are refused by the generator, with one sentence that says what to do."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every emitted object keeps to the portable subset; and the lint that says so sees every way not to."""
+"""Every emitted object is in the portable subset; and the lint finds every kind of exception."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where branches meet and angles are free, and close to there, the twins still answer the same."""
+"""At and near poses where branches meet or angles are free, block and Python give the same answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Values of the controller's types: made from plain numbers, read back, and filled with what means nothing."""
+"""Values of the controller's types: made from numbers, read back, and filled with arbitrary values."""
 
 from __future__ import annotations
 

@@ -61,13 +61,13 @@ def direction(
 
 def free_angle(problem: Problem, angle: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     """Cosine and sine of the angle where nothing determines it."""
-    free = _free(problem, angle)
-    return sp.cos(free), sp.sin(free)
+    reference = _reference(problem, angle)
+    return sp.cos(reference), sp.sin(reference)
 
 
-def _free(problem: Problem, angle: sp.Symbol) -> sp.Expr:
+def _reference(problem: Problem, angle: sp.Symbol) -> sp.Expr:
     """The reference, moved onto the half circle that the machine has."""
-    reference = problem.free[angle]
+    reference = problem.references[angle]
     if sine(angle) in problem.positive:
         return NearestOnArc(reference, sp.pi / 2, sp.pi / 2)
     if cosine(angle) in problem.positive:

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.ir.passes import bare_expression
+from derive.ir.passes import plain
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let
 from derive.ir.reason import Reason, Unit, Why, about, about_joint
@@ -30,11 +30,11 @@ def cannot_reach(what: str, radicand: sp.Expr, known: Iterable[Let]) -> Reason:
 
 
 def _with_amount(reason: Reason, radicand: sp.Expr, known: Iterable[Let]) -> Reason:
-    values = {real(let.name.name): bare_expression(let.value) for let in known}
+    values = {real(let.name.name): plain(let.value) for let in known}
     positive = {real(s.name) for s in radicand.free_symbols if s.is_positive}
     positive |= {real(s.name) for let in known for s in let.value.free_symbols if s.is_positive}
     lengths = frozenset(positive - values.keys())
-    missing = _missing(_factors(bare_expression(radicand)), values, lengths)
+    missing = _missing(_factors(plain(radicand)), values, lengths)
     return reason if missing is None else replace(reason, amount=missing, unit=Unit.LENGTH)
 
 

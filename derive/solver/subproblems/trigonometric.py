@@ -43,7 +43,7 @@ from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.origin import from_origin
 from derive.solver.subproblems.shortfall import out_of_reach
 
-_ADDITION = "addition theorem: plus the angle of the direction from which it is measured"
+_ADDITION = "addition theorem: plus the angle of the direction from which the cosine is measured"
 
 
 def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
@@ -222,7 +222,7 @@ def _is_square(value: sp.Expr) -> bool:
 def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _Amplitude) -> Binding:
     sigma = sign_of(angle)
     turned = (amplitude.cos_unit, amplitude.sin_unit) != (1, 0)
-    words = ("one_less_cos", "one_plus_cos", "sine_square", "sum_of_cos", "divisor_of_cos")
+    words = ("one_less_cos", "one_plus_cos", "sine_square", "sum", "divisor_of_cos")
     less_cos, plus_cos, square, twice, divisor = (real(f"{word}_{angle.name}") for word in words)
     cos_name = real(f"cos_swing_{angle.name}") if turned else cosine(angle)
     sin_name = real(f"sin_swing_{angle.name}") if turned else sine(angle)

@@ -12,9 +12,9 @@ from softkin._types import Configuration, Diagnosis, Numbers, Reals, Signs, Stat
 
 
 class OffsetKinematics(Mechanism):
-    """A mechanism that can be told where a point off its flange shall be, with no word on the orientation.
+    """A mechanism for which the position of a point off its flange can be commanded, without the orientation.
 
-    Joints that this leaves undetermined stay at the reference. A zero offset gives the same as `inverse`.
+    Joints that this does not determine stay at the reference. A zero offset gives the same as `inverse`.
     """
 
     __slots__ = ()
@@ -26,9 +26,9 @@ class OffsetKinematics(Mechanism):
         configuration: Iterable[int] | None = None,
         reference: Numbers | None = None,
     ) -> Reals:
-        """The axis values that bring a point of the flange to a place.
+        """The axis values at which a point of the flange is at a position.
 
-        point: where it shall be (3), in the frame of the machine. offset: where it is (3), in the frame of the flange.
+        point: this position (3), in the frame of the machine. offset: the point (3), in the frame of the flange.
         configuration: as `configuration_offset` gives it, which need not be that of `forward`.
         reference, errors: as `inverse`.
         """

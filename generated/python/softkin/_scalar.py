@@ -28,7 +28,7 @@ RADIAN = 180.0 / pi
 """One radian in degrees."""
 _TURN = 2.0 * pi
 _MOST_TURNS = 1e18
-"""More turns are no number of turns: then there is no nearest angle."""
+"""With more turns than this there is no nearest angle."""
 _HALF_AND_EDGE = 180.0 + 1e-9
 
 
@@ -41,7 +41,7 @@ def are_usable(*numbers: float) -> bool:
 
 
 def root(x: float) -> float:
-    """The square root of x, and 0 for what is negative."""
+    """The square root of x, and 0 for a negative x."""
     return sqrt(x) if x > 0.0 else 0.0
 
 
@@ -53,7 +53,7 @@ def atan2(y: float, x: float) -> float:
 def nearest_period(value: float, centre: float) -> float:
     """value + 360 k in [centre - 180, centre + 180), in degrees; the interval is shifted down by 1e-9.
 
-    A value on an edge so stays on its side in spite of rounding.
+    So a value on an edge stays on its side in spite of rounding.
     """
     turns = (value - centre + _HALF_AND_EDGE) / 360.0
     return value - 360.0 * floor(turns) if -_MOST_TURNS < turns < _MOST_TURNS else nan
@@ -72,7 +72,7 @@ def nearest_on_arc(angle: float, centre: float, half: float) -> float:
 def solve(matrix: Sequence[Sequence[float]], right: Sequence[Sequence[float]]) -> tuple[float, ...]:
     """The determinant, then the solution by rows: LU decomposition with partial pivoting.
 
-    Zeros where the matrix is singular, and where a number is none, or beyond 1e30 in size.
+    Zeros where the matrix is singular, and where a number is NaN or beyond 1e30 in size.
     matrix, right: by rows; without right-hand sides the determinant alone.
     """
     rows = [[*row, *more] for row, more in zip(matrix, right or [()] * len(matrix), strict=True)]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class IterativeForward(Mechanism):
     """A mechanism whose axes have several poses: forward kinematics finds the one of the machine's assembly mode.
 
-    Calls leave no trace: without a start every one begins at the home pose, which is a parameter.
+    A call does not affect the next one: without a start every call begins at the home pose, which is a parameter.
     """
 
     __slots__ = ()
@@ -29,7 +29,7 @@ class IterativeForward(Mechanism):
         """The frame at axis values, and their configuration. Axis limits are not tested.
 
         axes: one value an axis. start: a frame nearby, the one before on a path; without one, the home pose.
-        Raises BAD_INPUT for what are no such numbers, IMPOSSIBLE where no frame is found.
+        Raises BAD_INPUT for invalid numbers, IMPOSSIBLE where no frame is found.
         """
         if start is None:
             return super().forward(axes)

@@ -12,20 +12,20 @@ def plus(first: Vector, second: Vector, sign: float = 1.0) -> Vector:
 
 
 def turned(rotation: Rotation, vector: Reals) -> Vector:
-    """A vector, turned."""
+    """The product of a rotation and a vector."""
     x, y, z = vector
     a, b, c = rotation
     return a[0] * x + a[1] * y + a[2] * z, b[0] * x + b[1] * y + b[2] * z, c[0] * x + c[1] * y + c[2] * z
 
 
 def product(first: Rotation, second: Rotation) -> Rotation:
-    """One rotation after the other."""
+    """The product of two rotations."""
     a, b, c = (turned(first, column) for column in zip(*second, strict=True))
     return (a[0], b[0], c[0]), (a[1], b[1], c[1]), (a[2], b[2], c[2])
 
 
 def seen_from(base: Rotation, rotation: Rotation) -> Rotation:
-    """A rotation as another one sees it."""
+    """A rotation in the frame of another one."""
     (a, b, c), (d, e, f), (g, h, i) = base
     return product(((a, d, g), (b, e, h), (c, f, i)), rotation)
 

@@ -1,1 +1,1 @@
-"""Orientation kinematics, and what carries them."""
+"""Orientation kinematics, and their coupling with position kinematics."""

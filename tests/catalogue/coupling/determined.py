@@ -8,16 +8,16 @@ from derive.description.mechanism import Turning
 from tests.catalogue.coupling.parts import Part, frames
 
 _MET = {Turning.NONE: (), Turning.ABOUT_Z: (), Turning.DIRECTION: (2,), Turning.FULL: (0, 1, 2)}
-"""The columns of the commanded rotation that are met whatever the flange is turned to (a turn about z: see below)."""
+"""The columns of the commanded rotation that are met for every turn of the flange (a turn about z: see below)."""
 
 
 def is_determined(carrier: Part, wrist: Part) -> bool:
-    """Whether the way from the flange to the end point is known before the position axes are.
+    """Whether the vector from the flange to the end point is known before the position axes are.
 
-    Known are what is the same for all axes (a fixed direction of the machine) and the columns of the rotation that are
-    met. If the flange keeps its orientation, everything is. A turn about z counts as not known on a flange that turns:
-    so it is documented of CODESYS's own (a C axis with an X or Y offset on a SCARA). A position kinematics that
-    follows a turn itself shares it with any axis behind it.
+    Directions that are fixed in the machine are known, and so are the columns of the rotation that are met. If the flange
+    keeps its orientation, every direction is known. A rotation about z counts as unknown on a flange that turns, as
+    documented for CODESYS's own kinematics (a C axis with an X or Y offset on a SCARA). A position kinematics that follows a
+    rotation itself shares it with any axis behind it.
     """
     if carrier.mechanism.task.turning is not Turning.NONE and wrist.mechanism.joints:
         return False

@@ -1,4 +1,4 @@
-"""The tests of this folder can fail: a unit, or a program, with one thing wrong is noticed by what they compare."""
+"""The tests of this folder can fail: their comparisons notice a unit, or a program, with one fault."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _SEARCH, _INVERSE, _JACOBIAN = "PRIVATE FindPlatform", "PRIVATE SolveBranch", "P
 
 @dataclass(frozen=True)
 class Fault:
-    """What stands in a method, and what is put there instead."""
+    """A text in a method, and the wrong text that replaces it."""
 
     method: str
     right: str

@@ -1,4 +1,4 @@
-"""What is refused: numbers that are none, machines that cannot work, legs beyond their limits, joints beyond their cones."""
+"""Refusals: invalid numbers, machines that cannot work, legs beyond their limits, joints beyond their cones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The search itself: how many passes it takes, that it ends, and what it does where roll, pitch and yaw are singular."""
+"""Newton's iteration: the number of its passes, its end, and the singularity of roll, pitch and yaw."""
 
 from __future__ import annotations
 

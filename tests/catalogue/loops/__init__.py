@@ -1,1 +1,1 @@
-"""What closed loops alone have: assembly modes, two types of singularities, bounds, machines that cannot be assembled."""
+"""Closed loops: assembly modes, two types of singularities, bounds, machines that cannot be assembled."""

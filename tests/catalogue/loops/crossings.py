@@ -1,4 +1,4 @@
-"""Straight ways of the plate through a type 2 singularity: one working mode, from one assembly mode into the other."""
+"""Straight lines of the plate through a type 2 singularity: in one working mode, from one assembly mode into the other."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Crossing:
     start: Array
     end: Array
     at: float
-    """Where on the line, from 0 to 1, the plate is lost: no machine knows this alone, the change from one to the other tells."""
+    """The place of the singularity on the line, from 0 to 1, where the assembly mode changes."""
 
     def positions(self, shares: Array) -> Array:
         """Points of the line."""

@@ -1,4 +1,4 @@
-"""Packages with one formula wrong: the text of a generated module, changed and loaded, and what must notice it."""
+"""Packages with one wrong formula: the text of a generated module, changed and loaded, and the test that must fail."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.catalogue.loop_machines import LOOPS, LoopMachine, loop_machines_of
 
 @dataclass(frozen=True)
 class Fault:
-    """What stands in the text of a mechanism, and what is put there instead, wherever it stands."""
+    """A text in a generated module, and the wrong text that replaces it everywhere."""
 
     mechanism: str
     right: str

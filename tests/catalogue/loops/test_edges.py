@@ -1,4 +1,4 @@
-"""Where a loop ends: rods that meet flat, rods that do not meet, centres that coincide, legs that have nothing to aim at."""
+"""Boundaries of a loop: rods that meet flat, rods that do not meet, centres that coincide, legs without a direction."""
 
 from __future__ import annotations
 

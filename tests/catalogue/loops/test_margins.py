@@ -11,7 +11,7 @@ from tests.catalogue.loop_machines import LoopMachine
 ROUNDING = 1e-10
 HALVINGS = 70
 LEG, PLATE, BOUND = range(3)
-"""What a way out can end at."""
+"""The boundaries at which a straight path may end."""
 
 
 def matrices(machine: LoopMachine, axes: Array) -> tuple[Array, Array]:

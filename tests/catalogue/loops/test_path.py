@@ -10,7 +10,7 @@ from tests.catalogue.test_path import TOLERANCE, follow
 
 STEPS = 800
 SIZES = (60.0, 30.0, 15.0, 8.0, 4.0, 2.0, 1.0)
-"""How far axes swing, in degrees or lengths: as far as the way stays regular."""
+"""The amplitude of the axes, in degrees or lengths: the path stays regular."""
 
 
 def swing(machine: LoopMachine, axis: int) -> Array:

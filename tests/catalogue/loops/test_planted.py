@@ -1,4 +1,4 @@
-"""These tests would notice: each planted fault makes the test fail that is named for it, and the unchanged text does not."""
+"""Planted faults: each makes the test fail that is named for it, and the unchanged text does not."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_a_wrong_formula_is_noticed(what: str) -> None:
 
 @pytest.mark.parametrize("what", {f.noticed_by: name for name, f in FAULTS.items()}.values())
 def test_the_same_text_unchanged_passes(what: str) -> None:
-    """It is the fault that is noticed, and not that the text was loaded from elsewhere."""
+    """The test fails because of the fault, and not because the text is loaded from elsewhere."""
     fault = FAULTS[what]
     same = tuple((right, right) for right, _ in fault.elsewhere)
     unchanged = Fault(fault.mechanism, fault.right, fault.right, fault.noticed_by, same)

@@ -1,4 +1,4 @@
-"""Type 2 singularities: refused before the plate is lost, sharply, and never a step into the other assembly mode."""
+"""Type 2 singularities: poses are refused at the least margin, and no step leads into the other assembly mode."""
 
 from __future__ import annotations
 

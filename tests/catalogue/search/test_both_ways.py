@@ -1,4 +1,4 @@
-"""Forward and inverse of arms that are searched along, on every branch, and how many solutions they find."""
+"""Forward and inverse kinematics of arms with a root scan, on every branch, and the number of solutions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nothing is lost where robots stand: poses planted near A4 = 0 and 180 degrees and near a straight elbow, and paths there."""
+"""No solution is lost at common poses: near A4 = 0 and 180 degrees and near a straight elbow, and on paths there."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ LOST = {
         (102.38847764684363, -175.14384556208714, 94.76364659324585, -6.650570097147176e-11, 64.26025663, -109.14666664),
     ),
 }
-"""Poses with a guard or a value that turns twice between two trials: a dent that tangents, a cubic or both do not see."""
+"""Poses whose guard or value has two extrema between two trials, which tangents, the cubic, or both do not show."""
 
 
 @pytest.mark.parametrize(("lateral", "axes"), [(lateral, axes) for lateral, poses in LOST.items() for axes in poses])
@@ -149,7 +149,7 @@ def scanned(robot: softkin.Ac6RZRYRYRXRYRZJ6Offset, frame: softkin.Frame, trials
             pose = dict(zip("xyz", frame.position, strict=True)) | {
                 f"r{i + 1}{j + 1}": frame.rotation[i][j] for i, j in product(range(3), repeat=2)
             }
-            given = {"free_a1": 0.0, "free_a2": 0.0, "freed": -1.0, "freed_angle": 0.0, "side": side, "tried": t}
+            given = {"reference_a1": 0.0, "reference_a2": 0.0, "freed": -1.0, "freed_angle": 0.0, "side": side, "tried": t}
             given |= {f"goal_{n}": v for n, v in pose.items()} | {"wanted_elbow": 1.0, "wanted_shoulder": shoulder}
             values = tuple(given[name] for name in sorted(given))
             with np.errstate(all="ignore"):

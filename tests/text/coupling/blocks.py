@@ -1,4 +1,4 @@
-"""Orientation kinematics as function blocks beside their Python twins, and what a coupling asks them."""
+"""Orientation kinematics as function blocks and in Python, with the calls of a coupling."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Descriptions that cannot be right, or not yet: refused with a sentence that names the thing."""
+"""Descriptions that are wrong or not supported: refused with a sentence that names the fault."""
 
 from __future__ import annotations
 

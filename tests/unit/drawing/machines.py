@@ -1,4 +1,4 @@
-"""Machines whose drawings are looked into: one of every kind of chain and loop, with the closure as the truth about them."""
+"""Machines whose drawings are tested: one of every kind of chain and loop; the truth is their closure."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ KINDS = (
 
 CHAINS = tuple(name for name in KINDS if CATALOGUE[name].chain is not None)
 RODS = tuple(name for name in KINDS if CATALOGUE[name].rods and not CATALOGUE[name].bars)
-"""Loops whose rods are what is drawn."""
+"""Loops whose bars are their rods."""
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """A mechanism, what is drawn of it, and its closure at nominal parameters."""
+    """A mechanism, its drawing, and its closure at nominal parameters."""
 
     mechanism: Mechanism
     drawing: Drawing

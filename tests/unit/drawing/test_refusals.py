@@ -1,4 +1,4 @@
-"""A description whose drawing would lie is refused, with a sentence that says what is wrong."""
+"""A description whose drawing would be wrong is refused, with a sentence that names the fault."""
 
 from __future__ import annotations
 

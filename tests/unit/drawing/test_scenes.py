@@ -1,4 +1,4 @@
-"""What is drawn is the machine: the closure holds at the drawn tool frame, bars are as long as stated, arrows point right."""
+"""The drawing is right: the closure holds at the drawn tool frame, bars have their lengths, arrows their directions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`Call`: a program that several programs share, what passes do to it, and what the verifier refuses."""
+"""`Call`: a program that several programs share, in all passes and in the verifier."""
 
 from __future__ import annotations
 

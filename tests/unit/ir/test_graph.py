@@ -1,4 +1,4 @@
-"""The graph of values: what is one node, and where its sign stands."""
+"""The graph of values: which values are one node, and where its sign stands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`Solve` and `Iterate`: their meaning, what the verifier refuses, and the same answers in every language."""
+"""`Solve` and `Iterate`: their semantics, their verification, and equal answers in every language."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Programs as data: what they read, and what their primitives decide by themselves."""
+"""Programs as data: the names that they read, and the simplifications of primitives."""
 
 from __future__ import annotations
 

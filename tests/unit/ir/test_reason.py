@@ -1,4 +1,4 @@
-"""Reasons through the passes: what a refusal tells is right wherever it ends up, and costs nothing where nothing refuses."""
+"""Reasons in the passes: an amount is right wherever its refusal is moved, and costs nothing where nothing refuses."""
 
 from __future__ import annotations
 

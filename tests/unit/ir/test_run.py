@@ -1,4 +1,4 @@
-"""The reference semantics: what every primitive means, and how a program is carried out."""
+"""The reference interpreter: the meaning of every primitive, and the execution of a program."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The search for a root, on trials whose roots are known: on arrays, and on plain numbers."""
+"""The root scan, on trials with known roots: on arrays, and on plain numbers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Trial = Callable[[Array, Array, Array, Array], tuple[Array, ...]]
 
 
 def on_arrays(trial: Trial, start: float) -> list[tuple[float, float, float]]:
-    """Joint, side and free angle of all that is offered."""
+    """Joint, side and free angle of all candidates."""
 
     def at(place: At) -> Array:
         said = trial(place.joint, place.side, place.freed.astype(float), place.angle)
@@ -51,7 +51,7 @@ def free_of_guard(value: Callable[[Array], Array], slope: Callable[[Array], Arra
 
 
 def roots_of(found: list[tuple[float, float, float]], value: Callable[[Array], Array]) -> list[float]:
-    """The joints around the circle, each once; what is offered must be a root."""
+    """The joints around the circle, each once; every candidate must be a root."""
     joints = sorted(t % (2 * np.pi) for t, _, _ in found)
     assert all(abs(value(np.float64(t))) < 1e-11 for t in joints)
     kept: list[float] = []
@@ -163,7 +163,7 @@ def test_a_direction_that_turns_fast(search: Callable[[Trial, float], list[tuple
 
 
 def test_both_searches_offer_the_same() -> None:
-    """What is seen between two cells does not depend on how the numbers are arranged."""
+    """The trials between two cells do not depend on how the numbers are arranged."""
     rng = np.random.default_rng(5)
     for _ in range(20):
         a, b, c, d = rng.uniform(-1, 1, 4)

@@ -1,4 +1,4 @@
-"""Types: what an expression is, and which mixtures are refused."""
+"""Types: the type of an expression, and the mixtures that are refused."""
 
 from __future__ import annotations
 

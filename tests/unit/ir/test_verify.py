@@ -1,4 +1,4 @@
-"""The verifier refuses every program that some language could not print, and says which and where."""
+"""The verifier refuses every program that some language could not print, and names program and place."""
 
 from __future__ import annotations
 

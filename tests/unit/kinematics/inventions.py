@@ -1,4 +1,4 @@
-"""Mechanisms nobody tuned the derivation for, each with its forward kinematics written by hand."""
+"""Mechanisms for which the derivation was not tuned, each with its forward kinematics written by hand."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ ELBOW = branch("elbow", sin(A2), right=+1, left=-1)
 
 @dataclass(frozen=True)
 class Invention:
-    """A description, and what it means."""
+    """A description with its forward kinematics."""
 
     mechanism: Mechanism
     hand: Hand

@@ -86,7 +86,7 @@ class Machine:
 
 @cache
 def derived(mechanism: Mechanism) -> Kinematics:
-    """Derived once, however many tests ask."""
+    """The programs of a mechanism, derived once for all tests."""
     return build(mechanism)
 
 

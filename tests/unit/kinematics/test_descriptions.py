@@ -153,7 +153,7 @@ def everything(program: Program) -> Program:
 @EVERY
 @pytest.mark.parametrize("kind", ["forward", "branch", "singularity", "jacobian", "offset_branch", "offset_configuration"])
 def test_total(name: str, kind: str) -> None:
-    """No input makes anything that is no number, whatever the status: nothing that would stop a controller."""
+    """No input gives NaN or infinity, whatever the status: nothing that would stop a controller."""
     program = getattr(built(name).kinematics, kind)
     if program is None:
         assert kind.startswith("offset") and name not in OFFERED

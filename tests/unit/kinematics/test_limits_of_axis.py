@@ -32,7 +32,7 @@ drives = st.tuples(st.one_of(numbers, huge), st.one_of(numbers, huge)).filter(la
 
 
 def both(own: Range, drive: Range) -> tuple[dict[str, float], Status]:
-    """What the program answers. The ends of no range of the block are zeros, those of the drive mean nothing."""
+    """The outputs of the program. Without a range the ends of the block are zeros, and those of the drive are NaN."""
     low, high = own or (0.0, 0.0)
     lower, upper = drive or (NOT_A_NUMBER, NOT_A_NUMBER)
     values = {"own_unlimited": float(own is None), "own_lower": low, "own_upper": high}

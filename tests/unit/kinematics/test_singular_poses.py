@@ -18,7 +18,7 @@ def built(name: str, **settings: float) -> Machine:
 
 
 def turn_between(first: np.ndarray, second: np.ndarray | float) -> float:
-    """How far two angles are apart in degrees, turns not counted."""
+    """The difference of two angles in degrees, modulo a turn."""
     return float(np.degrees(distance(np.radians(first), np.radians(second))))
 
 
@@ -42,7 +42,7 @@ def values(own: Machine, **axes: float) -> Values:
 @pytest.mark.parametrize("elbow", [0.0, 180.0])
 @pytest.mark.parametrize("name", ["all turns clockwise", "a motor of either sense", "a lift between the joints"])
 def test_a_stretched_or_folded_arm_is_one_solution(name: str, elbow: float) -> None:
-    """To half the digits: that is what rounding leaves of a double root."""
+    """To half of the digits: a double root has no more."""
     own = built(name)
     axes = values(own, A1=20.0, A2=elbow, A3=-50.0, P1=5.0)
     margins = own.forward(axes)

@@ -1,4 +1,4 @@
-"""Arms in space that nobody tuned the derivation for: built, and held against the closure by the witness."""
+"""Spatial arms for which the derivation was not tuned: built, and checked against the closure by the witness."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The cones of a rod's joints: what a description may say, and that each rod has its own."""
+"""The cones of a rod's joints: valid descriptions, and cones that differ from rod to rod."""
 
 from __future__ import annotations
 

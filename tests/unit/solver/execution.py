@@ -1,4 +1,4 @@
-"""Small problems put to one rule, and the statements of its answer carried out on numbers."""
+"""Small problems for one rule, and the execution of its statements on numbers."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SCALE = sp.Symbol("scale", positive=True)
 ORDINALS = ("first", "second", "third", "fourth")
 
 few = settings(max_examples=25)
-"""For a property that is put to many problems."""
+"""Settings of Hypothesis for a property of many problems."""
 
 ANGLES = st.floats(-4.0, 4.0)
 """Angles in radians, more than one turn."""
@@ -39,7 +39,7 @@ LENGTHS = st.floats(0.01, 1e3)
 NUMBERS = st.floats(-1e3, 1e3).map(lambda x: x if abs(x) > 1e-100 else 0.0)
 """Numbers of either sign whose squares do not vanish."""
 ANYTHING = st.one_of(st.floats(-1e9, 1e9), st.sampled_from([0.0, 1e-300, -1e-12, 1e-6, -1.0, 1e9, -1e9]))
-"""Any input that a program has to bear."""
+"""Any input that a program must accept."""
 
 
 def problem(
@@ -58,7 +58,7 @@ def problem(
         lengths=tuple(lengths),
         equations=tuple(equations),
         units=units,
-        free={a: reference(a) for a in units},
+        references={a: reference(a) for a in units},
         scale=SCALE,
         signs=tuple(signs),
         positive=tuple(polynomial(e, units, signs) for e in positive),
@@ -71,12 +71,12 @@ def reference(angle: sp.Symbol) -> sp.Symbol:
 
 
 def answers(rule: Rule, given: Problem) -> list[Binding]:
-    """All that a rule makes of the problem's equations."""
+    """All bindings that a rule finds in the equations of a problem."""
     return list(rule(given, given.equations))
 
 
 def answer(rule: Rule, given: Problem) -> Binding:
-    """The one thing that a rule makes of the problem's equations."""
+    """The one binding that a rule finds in the equations of a problem."""
     (binding,) = answers(rule, given)
     return binding
 
@@ -107,7 +107,7 @@ def trigonometry(**angles: float) -> dict[sp.Symbol, float]:
 
 
 def distance(first: float, second: float) -> float:
-    """How far two angles are apart, turns not counted."""
+    """The difference of two angles modulo a turn."""
     return float(abs(np.angle(np.exp(1j * (first - second)))))
 
 

@@ -1,4 +1,4 @@
-"""Affine: k v + c = 0 has one root; where k can vanish the rule keeps away."""
+"""Affine: k v + c = 0 has one root; where k can vanish the rule does not apply."""
 
 from __future__ import annotations
 

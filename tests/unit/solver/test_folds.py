@@ -1,7 +1,8 @@
-"""The rules for what follows a two-root step near its fold, put to small derivations.
+"""Folds and sweeps, on small derivations.
 
-An angle v aims a point, and a later step needs |e| <= size of e = p cos v + q sin v: it turns as far as e asks where that leaves
-its own equation met to rounding, and not at all where e asks for nothing, for more than rounding, or far from the fold.
+An angle v points an arm at a point, and a later step needs |e| <= size with e = p cos v + q sin v. Near the fold v turns until e
+is within its size, if its own equation then holds to rounding. It stays where e is within its size, where the turn would be more
+than rounding, and far from the fold.
 """
 
 from __future__ import annotations
@@ -31,16 +32,16 @@ P, Q, SIZE, LEVEL = (real(n) for n in ("p", "q", "size", "level"))
 X1, X2, Y1, Y2, NEEDED = (real(n) for n in ("x1", "x2", "y1", "y2", "needed"))
 SCALE = sp.Symbol("scale", positive=True)
 UNIT, ALLOWED = 1000.0, 1000.0 * float(ROUNDING)
-"""The machine's length, and what of it is rounding."""
+"""The characteristic length, and the rounding error of a length."""
 ROUNDED = 1e-15
-"""What rounding leaves of v; of a u that v turns fast, that much more."""
+"""The rounding error of v; of a u that v turns fast, a multiple of it."""
 many = settings(max_examples=150)
 ANGLES = st.floats(-3.1, 3.1)
 SIDES = st.sampled_from((1.0, -1.0))
 
 
 def decades(lowest: float, highest: float) -> st.SearchStrategy[float]:
-    """Numbers of every decade alike."""
+    """Numbers from every decade with the same probability."""
     return st.floats(lowest, highest).map(lambda x: 10.0**x)
 
 
@@ -98,13 +99,13 @@ def outputs(chosen: Program, values: Values) -> Values:
 
 
 def point(angle: float, ahead: float, beside: float) -> dict[str, float]:
-    """The point that lies so far ahead of an angle, and beside it."""
+    """The point at a distance ahead of an angle, and beside it."""
     c, s = np.cos(angle), np.sin(angle)
     return {"x": ahead * c - beside * s, "y": ahead * s + beside * c, "beside": beside, "scale": UNIT}
 
 
 def left(values: Values, found: Values) -> float:
-    """What is left of the step's own equation."""
+    """The residual of the step's own equation."""
     return abs(values["y"] * found["cos_v"] - values["x"] * found["sin_v"] - values["beside"])
 
 
@@ -147,7 +148,7 @@ def test_it_stays_where_the_later_step_reaches(
 
 
 def swinging(base: float, aside: float, turned: float) -> dict[str, float]:
-    """x, y of which u is the direction: at v = base + d they are (sin d, aside cos d), turned."""
+    """The vector (x, y) with polar angle u: at v = base + d it is (sin d, aside cos d), rotated."""
     c, s = np.cos(turned), np.sin(turned)
     x, y = np.array([-np.sin(base), np.cos(base)]), aside * np.array([np.cos(base), np.sin(base)])
     first, second = c * x - s * y, s * x + c * y
@@ -163,7 +164,7 @@ def test_a_later_angle_that_sweeps_ends_where_its_step_reaches(
     base: float, beside: float, side: float, aside: float, turned: float, later: float,
     sign: float, size: float, share: float, free: float,
 ) -> None:  # fmt: skip
-    """A pose that exists: v is where u is `turned + later`, and rounding has lost both."""
+    """A valid pose: there u is `turned + later`, and rounding has changed both angles."""
     true = base + aside / np.tan(later)
     values = point(true, 0.0, beside) | swinging(base, aside, turned)
     values |= {"sigma_v": side, "free_v": 0.0, "free_u": free, "size": size}
@@ -195,7 +196,7 @@ def test_what_no_later_angle_reaches_stays_refused(
 def test_at_the_threshold_of_a_free_angle_it_points_to_what_the_next_step_takes(
     base: float, beside: float, side: float, above: float, turned: float, apart: float, lean: float, free: float
 ) -> None:
-    """u reaches `apart` on both sides of a centre, and one alone is ahead of v; on the other rounding decides if u is free."""
+    """u may be `apart` on both sides of a centre; only one of them points ahead; on the other rounding decides if u is free."""
     aside, centre = 1e-11 * np.sin(apart + lean) * (1.0 + above), turned - lean
     values = point(base + aside / np.tan(apart - lean), 0.0, beside) | swinging(base, aside, turned)
     values |= {"sigma_v": side, "free_v": 0.0, "free_u": free}

@@ -1,4 +1,4 @@
-"""The rule for an arm that aims at a commanded point, beside it or not."""
+"""Lateral: an arm, with or without a lateral offset, that must reach a commanded point."""
 
 from __future__ import annotations
 

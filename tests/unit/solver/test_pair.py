@@ -109,7 +109,7 @@ def test_an_arm_of_length_one_has_no_degenerate_case(w: float, u: float) -> None
 @few
 @given(link_1=LENGTHS, link_2=LENGTHS, b=NUMBERS, u=ANGLES)
 def test_cramer(link_1: float, link_2: float, b: float, u: float) -> None:
-    """Rows that are no turned vector, with a slope that never vanishes: two lengths of the machine."""
+    """Rows that are no rotated vector, with a slope that never vanishes: two lengths of the machine."""
     oblique = problem(L1 * sp.cos(U) - E, B * sp.cos(U) + L2 * sp.sin(U) - F, angles=(U,))
     binding = answer(pair, oblique)
     assert binding.measure is binding.slope is None

@@ -42,7 +42,7 @@ K = sp.Symbol("k", positive=True)
 SIGMA = real("sigma_v")
 FREE = reference(V)
 AT_CENTRE = 2.001e-11
-"""Within 1e-11 of the centre any direction will do: the point is missed by twice that at most."""
+"""Within 1e-11 of the centre every direction is right: the error of the point is at most twice that."""
 
 PLAIN = problem(F * sp.cos(V) - A, F * sp.sin(V) - B, angles=(V,), lengths=(F,))
 RADIUS = problem(F * sp.cos(V) - A, F * sp.sin(V) - B, angles=(V,), lengths=(F,), positive=(F,))
@@ -114,7 +114,7 @@ def test_the_centre_leaves_the_reference(given_problem: object, size: float, is_
 @few
 @given(f=LENGTHS, w=ANGLES, v=ANGLES, sigma=st.sampled_from([1.0, -1.0]))
 def test_a_product_becomes_known(f: float, w: float, v: float, sigma: float) -> None:
-    """f sin w is found as one number: the equation that says so goes back to the driver."""
+    """f sin w is found as one number, in a new equation for the driver."""
     sphere = problem(F * sp.sin(W) * sp.cos(V) - A, F * sp.sin(W) * sp.sin(V) - B, angles=(V, W), lengths=(F,))
     binding = answer(polar, sphere)
     assert binding.unknowns == (V,)

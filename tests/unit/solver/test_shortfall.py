@@ -1,4 +1,4 @@
-"""How much is missing where a two-root step has no root, against the triangle that would have to close."""
+"""The missing amount where a two-root step has no root, against the triangle that does not close."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_in_whatever_signs_the_factors_are_written(rod: float, x: float, first: 
 
 @given(LENGTH, LENGTH, LENGTH, st.floats(-300.0, 300.0))
 def test_a_rod_in_a_product_that_has_a_name(arm: float, distance: float, rod: float, aside: float) -> None:
-    """The third side is what the rod spans in the plane of the arm: sqrt(rod^2 - aside^2), which the name stands for."""
+    """The third side is the rod's projection on the plane of the arm, sqrt(rod^2 - aside^2), under a name."""
     square = rod * rod - aside * aside
     assume(square > 1.0)
     assume(abs(arm - distance) - square**0.5 > 1e-3)

@@ -1,4 +1,4 @@
-"""The driver: problems that no mechanism of the catalogue has, solved as a whole or refused with what is left."""
+"""The driver: problems that no mechanism of the catalogue has, solved, or refused with the equations left."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from derive.ir.symbols import (
     real,
 )
 from derive.ir.verify import BrokenProgram
-from derive.solver.derivation_record import Ledger
+from derive.solver.derivation_record import DerivationRecord
 from derive.solver.solve import Derivation, Unsolved, solve
 from tests.unit.solver.execution import at, distance, problem, reference
 
@@ -48,7 +48,7 @@ COUNT = 40
 
 @dataclass(frozen=True)
 class Case:
-    """Sides that equal x, y, ...; the unknowns; what else the sides hold; the rules that are expected."""
+    """Sides that equal x, y, ...; the unknowns; the other symbols in the sides; the expected rules."""
 
     sides: Mapping[str, sp.Expr]
     angles: tuple[sp.Symbol, ...] = ()
@@ -182,7 +182,7 @@ def test_all_solutions(name: str) -> None:
             assert np.abs(sampled(side, numbers) - given[side_name]).max() <= 1e-12
     for i in range(COUNT):
         apart = [_apart(case, {k: v[i] for k, v in given.items()}, {k: v[i] for k, v in f.items()}) for f in found]
-        assert sum(d < 1e-9 for d in apart) == 1  # what the pose was made from is one of them, and only one
+        assert sum(d < 1e-9 for d in apart) == 1  # exactly one is the solution from which the pose was made
         for first, second in product(range(len(found)), repeat=2):
             both = ({k: v[i] for k, v in found[n].items()} for n in (first, second))
             assert first == second or _apart(case, *both) > 1e-6
@@ -199,7 +199,7 @@ def test_by_these_rules(name: str) -> None:
 
 
 def test_what_cannot_vanish_is_preferred() -> None:
-    """The turn that is commanded directly, though the arm of the wrist stands first; then the shorter formula."""
+    """First the rotation that is commanded directly, although the wrist stands first; then the shorter formula."""
     turn = {"cos_turn": sp.cos(A1 + HEADING), "sin_turn": sp.sin(A1 + HEADING)}
     assert Case({**plane((L1, A1)), **turn}, (A1,)).derivation.measures == ()
     long, short = Case({"x": 2 * P + L1 * L2 - K * TOOL_X, "y": P}, (), (P,)), Case({"y": P}, (), (P,))
@@ -233,14 +233,14 @@ def test_unsolved_says_what_is_left(name: str) -> None:
 
 
 def test_a_step_binds_a_name_once() -> None:
-    ledger = Ledger()
-    ledger.append((Let(P, X), Let(P, X), Let(Q, P + Y)))
+    record = DerivationRecord()
+    record.append((Let(P, X), Let(P, X), Let(Q, P + Y)))
     with pytest.raises(BrokenProgram, match="a step binds p twice, to x and to y"):
-        ledger.append((Let(P, X), Let(P, Y)))
+        record.append((Let(P, X), Let(P, Y)))
 
 
 def test_turns_count_once_they_are_chosen() -> None:
-    """An equation that holds an angle itself waits until `resolve_angle` has chosen its turn."""
+    """An equation in which an angle stands outside sines and cosines waits until `resolve_angle` has chosen its turns."""
     case = Case({"x": sp.cos(A1), "y": sp.sin(A1), "z": P - K * A1}, (A1,), (P,))
     turned: list[sp.Symbol] = []
 

@@ -45,7 +45,7 @@ MOST = (1 - 1e-6, 1 + 1e-6)
 
 @dataclass(frozen=True)
 class Kind:
-    """A problem with its a, b and e, and what binds it."""
+    """A problem with its a, b and e, and the binding that solves it."""
 
     problem: Problem
     a: sp.Expr
@@ -100,7 +100,7 @@ def test_both_roots(name: str, link_1: float, link_2: float, p: float, q: float,
     roots = {}
     for sigma in (1.0, -1.0):
         found, status = solved(case, values, sigma)
-        if h < 1e-8 * link_1 * max(1.0, link_1):  # too short to be aimed, or nearly
+        if h < 1e-8 * link_1 * max(1.0, link_1):  # refused as too short, or nearly
             assert all_finite(found)
             return
         assert status is Status.OK
@@ -120,7 +120,7 @@ def test_both_roots(name: str, link_1: float, link_2: float, p: float, q: float,
 
 @given(link_1=LENGTHS, p=NUMBERS, q=NUMBERS, w=ANGLES, sigma=SIGNS)
 def test_law_of_cosines(link_1: float, p: float, q: float, w: float, sigma: float) -> None:
-    """The squares of the offset are written through its length: the radicand stays a product of lengths."""
+    """The radicand stays a product of lengths: the squares of the offset are expressed by its length."""
     case = KINDS["law of cosines"]
     tip = link_1 + np.exp(1j * w) * complex(p, -q)
     found, status = solved(case, {**machine(link_1, 1.0, p, q), REACH: abs(tip)}, sigma)

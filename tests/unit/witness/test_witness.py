@@ -1,4 +1,4 @@
-"""The witness accepts what is right and refuses every kind of wrong formula, by name."""
+"""The witness accepts right formulas, and refuses every kind of wrong one by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Consequences: every solution of the equations solves them too, with fewer unknowns."""
+"""Eliminations: every solution of the equations solves the new ones, too, which have fewer unknowns."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Given = tuple[Problem, Mapping[str, sp.Expr]]
 
 
 def closure(**sides: sp.Expr) -> Given:
-    """Equations side - x = 0 with the sides by the names of what they are equal to."""
+    """Equations side - x = 0, by the names of their right sides."""
     expressions = [side - real(name) for name, side in sides.items()]
     return problem(*expressions, angles=(A1, A2), lengths=(P, Q), known=(W,)), sides
 
@@ -51,7 +51,7 @@ def residual(case: Given, equation: Equation, **numbers: float) -> float:
 
 @few
 @pytest.mark.parametrize(
-    "case, consequence, count",
+    "case, elimination, count",
     [
         (ARM, squares, 1),
         (TURNED_BASE, squares, 1),
@@ -63,17 +63,17 @@ def residual(case: Given, equation: Equation, **numbers: float) -> float:
 )
 @given(a1=ANGLES, a2=ANGLES, w=ANGLES, p=NUMBERS, q=NUMBERS, link_1=st.floats(1, 9), link_2=st.floats(1, 9), k=st.floats(1, 9))
 def test_solutions_are_kept(
-    case: Given, consequence: Callable[[Problem], tuple[Equation, ...]], count: int, **numbers: float
+    case: Given, elimination: Callable[[Problem], tuple[Equation, ...]], count: int, **numbers: float
 ) -> None:
-    found = consequence(case[0])
+    found = elimination(case[0])
     assert len(found) == count
     size = 1 + max(abs(v) for v in numbers.values())
     for equation in found:
         assert abs(residual(case, equation, **numbers)) <= 1e-12 * size**2
 
 
-def unknowns(case: Given, consequence: Callable[[Problem], tuple[Equation, ...]]) -> list[tuple[sp.Symbol, ...]]:
-    return [case[0].unknowns_of(e.expression) for e in consequence(case[0])]
+def unknowns(case: Given, elimination: Callable[[Problem], tuple[Equation, ...]]) -> list[tuple[sp.Symbol, ...]]:
+    return [case[0].unknowns_of(e.expression) for e in elimination(case[0])]
 
 
 def test_a_difference_loses_a_length() -> None:
@@ -87,7 +87,7 @@ def test_squares_lose_an_angle() -> None:
 
 
 def test_squares_that_lose_nothing_are_no_consequence() -> None:
-    """The squares of absolute angles hold both: their difference has to be the unknown first."""
+    """The squares depend on both absolute angles: their difference must become the unknown first."""
     assert unknowns(ABSOLUTE, squares) == []
 
 

@@ -1,4 +1,4 @@
-"""Axis values of a platform that moves freely: poses around its home pose, the closure solved for the joints there."""
+"""Axis values of a platform that moves freely: the closure solved for the joints at poses around its home pose."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from derive.ir.interpret import Array, evaluate
 from derive.witness.closure import Closure
 
 _SHIFT = 0.02
-"""How far the platform leaves home, in reaches: a reach is the sum of all coordinates."""
+"""The largest distance of the platform from its home pose, in reaches: a reach is the sum of all coordinates."""
 _TURN = np.radians(20.0)
 _ITERATIONS = 60
 

@@ -1,4 +1,4 @@
-"""Sums of angles: their names, and finding them again in products."""
+"""Sums of angles: their names, and the addition theorems read backwards."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from itertools import combinations, product
 import pytest
 import sympy as sp
 
-from derive.algebra.angle_sums import Terms, composite, name_of, recognise, terms_of
+from derive.algebra.angle_sums import Terms, name_of, recognise, symbol_of_sum, terms_of
 from derive.algebra.normal_form import polynomial
 from derive.ir.symbols import (
     real,
@@ -30,7 +30,7 @@ L = sp.Symbol("link", positive=True)
 )
 def test_names(terms: Terms, name: str) -> None:
     assert name_of(terms) == name
-    assert composite(terms) == real(name)
+    assert symbol_of_sum(terms) == real(name)
 
 
 @pytest.mark.parametrize(

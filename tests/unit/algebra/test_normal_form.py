@@ -1,4 +1,4 @@
-"""The normal form: the same function, with sin^2 + cos^2 = 1 and s^2 = 1 used up."""
+"""The normal form: the same function, reduced modulo sin^2 + cos^2 = 1 and s^2 = 1."""
 
 from __future__ import annotations
 

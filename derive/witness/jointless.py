@@ -13,8 +13,8 @@ from derive.witness.disagreement import Disagreement
 from derive.witness.samples import SEED, random_machines
 
 
-def check_still(kin: Kinematics, closure: Closure) -> tuple[int, float]:
-    """The frame of every random machine, how many there were, and the largest error; there is nothing to solve."""
+def check_jointless(kin: Kinematics, closure: Closure) -> tuple[int, float]:
+    """Check the frame of every random machine. Returns the number of machines and the largest error."""
     values = random_machines(kin, np.random.default_rng(SEED))
     parameters = np.stack([values[name] for name in closure.parameters], axis=1)
     outputs, status = run(kin.forward, values)

@@ -1,4 +1,4 @@
-"""Parallel axes: a sum of angles in place of one of them, and that one found again at the end."""
+"""Parallel axes: a sum of angles takes the place of one of them, which follows at the end."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.algebra.angle_sums import composite
+from derive.algebra.angle_sums import symbol_of_sum
 from derive.algebra.normal_form import cosine, polynomial
 from derive.equations.problem import Problem
 from derive.ir.symbols import (
@@ -61,7 +61,7 @@ def test_the_same_equations(name: str, turns: tuple[float, ...], x: float, y: fl
 
 @pytest.mark.parametrize("name", SUMS)
 def test_the_replaced_angle_leaves_all_but_plain_equations(name: str) -> None:
-    """An equation that holds the angle itself counts its turns: it waits."""
+    """An equation in which the angle stands outside sines and cosines waits for its whole turns."""
     total = the_sum(name)
     changed = substitute(CLOSURE, total)
     assert total.replaced not in changed.angles
@@ -102,17 +102,17 @@ def _with_unknowns(given_problem: Problem, angles: tuple[sp.Symbol, ...]) -> Pro
 
 
 def test_the_reference_of_a_sum_is_the_sum_of_the_references() -> None:
-    free = substitute(CLOSURE, the_sum("a1 - a2 - a3")).free[real("total")]
+    free = substitute(CLOSURE, the_sum("a1 - a2 - a3")).references[real("total")]
     assert sp.expand(free - (reference(A1) - reference(A2) - reference(A3))) == 0
 
 
 def test_candidates() -> None:
-    """Arguments with several unknown angles first, then differences; a fixed turn of the base does not count."""
+    """Arguments with several unknown angles first, then differences; a fixed rotation of the base does not matter."""
     arguments = [A1, A1 + A2, A1 + A2 + A3 + sp.pi / 6]
     found = candidate_sums(CLOSURE, arguments)
     assert [t.symbol.name for t in found] == ["a12", "a123", "a23"]
     assert [t.replaced for t in found] == [A2, A3, A3]
-    assert found[0].symbol == composite(((A1, 1), (A2, 1)))
+    assert found[0].symbol == symbol_of_sum(((A1, 1), (A2, 1)))
 
 
 def test_known_angles_make_no_sum() -> None:
