@@ -16,33 +16,33 @@ Flags = NDArray[np.bool_]
 NARROW = 1e-10
 """A cell narrower than this, over which a direction turns, is a jump (radians)."""
 FLAT = 1e-7
-"""Where the guard is on the other side for a shorter part of a cell than this, it is not noticed."""
+"""A change of the guard's sign over a shorter part of a cell than this is not noticed."""
 FINEST = 1e-15
-"""No cell is cut that is shorter than this share of it."""
+"""A cell shorter than this fraction of the first one is not cut."""
 GAP = 1e-6
-"""A jump is looked at where the guard is not farther beyond zero at both ends."""
+"""A jump may hold roots where the guard is above minus this at one end."""
 NEAR_ZERO = 0.5
-"""A cubic hides two roots where it turns back below this share of the values at the ends."""
+"""A cubic may hide two roots where its extremum is below this fraction of the values at the ends."""
 BENT = 0.125
-"""So much of how slopes differ over a cell their tangents may stay away from zero where a root may be: it has kinks."""
+"""Tangents that miss zero by this fraction of the change of slope may still hide a root, because the value has kinks."""
 SEAM = 1e-3
-"""No cell is cut nearer to where the two sides meet: there a slope has no digits."""
+"""A cell is not cut closer than this to the point where the two sides join: there a slope has no digits."""
 ASIDE = 0.47
-"""Where a cell is halved: not quite in the middle, where the two sides may meet and a slope has no size."""
+"""A cell is bisected here, not quite in the middle, where the two sides may join and a slope has no digits."""
 TURNED = 0.7
-"""The cosine of how far a direction may turn over a cell."""
+"""The cosine of the largest angle by which a direction may turn over a cell."""
 TOUCHED = 1e-12
-"""A value of this size may be zero where it only touches zero."""
+"""A value up to this size counts as zero where it only touches zero."""
 
 
 class At(NamedTuple):
-    """Where to try: the rows of the problem, the joint, the side (+1 is the wanted one), and what is free."""
+    """The places of trials: rows of the problem, joint, side (+1 is the wanted one), and the free direction."""
 
     rows: Rows
     joint: Reals
     side: Rows
     freed: Rows
-    """The number of the direction that is given by `angle` instead, or -1."""
+    """The number of the free direction, whose angle is `angle`; -1: none."""
     angle: Reals
 
 
@@ -53,14 +53,14 @@ VALUE, SLOPE, GUARD, GUARD_SLOPE, DIRECTIONS = range(5)
 
 @dataclass(frozen=True)
 class Cells:
-    """Intervals low < high of s, and what the trial says at both ends; slopes by s."""
+    """Intervals low < high of s, with the trials at both ends; slopes are by s."""
 
     rows: Rows
     base: Reals
     scale: Reals
     curved: NDArray[np.bool_]
     cuts: Rows
-    """How often it was cut."""
+    """The number of cuts that led to the cell."""
     low: Reals
     high: Reals
     first: Reals
@@ -82,7 +82,7 @@ class Cells:
         return np.where(self.curved & (s < 0.0), -1, 1)
 
     def at(self, trial: Trial, s: Reals) -> Reals:
-        """What the trial says at s."""
+        """The trial at s."""
         if not len(self):
             return self.first
         columns = trial(At(self.rows, self.joint(s), self.side(s), np.full(len(self), -1), np.zeros(len(self))))
@@ -100,12 +100,12 @@ class Cells:
 
 
 def joined(*parts: Cells) -> Cells:
-    """All of them."""
+    """All cells of several batches in one."""
     return Cells(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Cells)))
 
 
 class Verdicts(NamedTuple):
-    """What becomes of every cell: at most one of these; none where it has no root."""
+    """The kind of every cell: at most one of these is true, none where the cell has no root."""
 
     jumps: Flags
     ends: Flags
@@ -115,7 +115,7 @@ class Verdicts(NamedTuple):
     touches: Flags
     cut: Flags
     by_guard: Flags
-    """Cut where the slopes of the guard say, not those of the value."""
+    """Whether it is cut by the tangents of the guard, not by those of the value."""
 
 
 def look(cells: Cells) -> Verdicts:
@@ -141,24 +141,23 @@ def look(cells: Cells) -> Verdicts:
 
 
 def turned_over(cells: Cells) -> Reals:
-    """The cosine of how far every direction turns over a cell: (cells, directions)."""
+    """The cosine of the angle by which every direction turns over a cell: (cells, directions)."""
     a, b = cells.first[:, DIRECTIONS:], cells.last[:, DIRECTIONS:]
     return np.asarray(a[:, ::2] * b[:, ::2] + a[:, 1::2] * b[:, 1::2])
 
 
 def _hides_roots(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Flags:
-    """Whether there may be more roots within a cell than its ends tell."""
+    """Whether there may be more roots within a cell than the signs at its ends tell."""
     sign = np.where(f < 0.0, -1.0, 1.0)
     crosses = (sign * (f + df * width) < 0.0) | (sign * (f1 - df1 * width) < 0.0)
-    waves = (f * f1 > 0.0) & (df * df1 > 0.0) & crosses  # a tangent leads to zero, and the value turns before and after
+    waves = (f * f1 > 0.0) & (df * df1 > 0.0) & crosses  # a tangent reaches zero, extrema on both sides
     return waves | _comes_back(f, df, f1, df1, width) | _doubtful(f, df * width, f1, df1 * width)
 
 
 def _comes_back(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Flags:
-    """Whether a value that has one sign at both ends heads for zero at both, and its tangents meet beyond,
-    or nearly there.
+    """Whether a value with one sign at both ends falls towards zero from both, and its tangents meet beyond zero, or nearly.
 
-    Where they do not meet in between it is bent both ways, and nobody knows. It has kinks, too: tangents are no bound.
+    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks tangents are no bound.
     """
     margin = TOUCHED + NEAR_ZERO * np.minimum(np.abs(f), np.abs(f1)) + BENT * np.abs(df1 - df) * width
     sign = np.where(f < 0.0, -1.0, 1.0)
@@ -169,14 +168,14 @@ def _comes_back(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Fla
 
 
 def _between(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Reals:
-    """How far behind the first end its tangent meets that of the last; half way where they do not."""
+    """The distance from the first end at which the tangents of both ends meet; half of the cell where they do not."""
     apart = df - df1
     met = (f1 - f - df1 * width) / np.where(apart == 0.0, 1.0, apart)
     return np.where((apart != 0.0) & (met > 0.0) & (met < width), met, ASIDE * width)
 
 
 def _doubtful(f: Reals, a: Reals, f1: Reals, b: Reals) -> Flags:
-    """Whether the cubic through values and slopes turns within the cell where it may hide two roots."""
+    """Whether the cubic with these values and slopes has an extremum in the cell that may hide two roots."""
     rise = f1 - f
     sign = np.where(np.where(f * f1 < 0.0, rise, f) < 0.0, -1.0, 1.0)
     cube, square = a + b - 2.0 * rise, 3.0 * rise - 2.0 * a - b
@@ -193,7 +192,7 @@ def _doubtful(f: Reals, a: Reals, f1: Reals, b: Reals) -> Flags:
 
 
 def where_to_cut(cells: Cells, by_guard: Flags) -> Reals:
-    """Where to cut: where tangents meet, every third time in the middle, and always where a direction turns."""
+    """The place of the cut: where tangents meet; near the middle in every third step, and where a direction turns."""
     width = cells.high - cells.low
     column = np.where(by_guard, GUARD, VALUE)
     f, df, f1, df1 = (e[np.arange(len(cells)), column + k] for e in (cells.first, cells.last) for k in (0, 1))

@@ -31,37 +31,37 @@ from softkin._cells import (
 
 T = TypeVar("T")
 CELLS = 72
-"""The circle is cut into so many cells at first."""
+"""The number of cells into which the circle is cut at first."""
 SHIFTS = (0.5, 0.25)
-"""How far behind the start the first cell begins, in cells; where no root fits, the circle is cut again, otherwise."""
+"""The shift of the first cell from the start, in cells: at first, and where no root fits, for the second search."""
 ROUNDS = 50
-"""Cells are cut again at most so often."""
+"""The largest number of rounds in which cells are cut."""
 CLOSING = 60
 """Trials that close in on one root at most."""
 RESERVE = 2 * CLOSING + 6
-"""What the last cell may take, where trials are counted."""
+"""The number of trials that the last cell may need beyond the limit."""
 NEXT = 1e-6
-"""A trial next to where the guard vanishes that leaves no more than this is offered, too."""
+"""Close to where the guard vanishes a trial with a value up to this is a candidate for a root, too."""
 CROWDED = 4 * CELLS
-"""A row that has more cells than this to be cut is cut no more: what is cut there is rounding."""
+"""Where a row has more cells to be cut than this, no cell of it is cut any more: only rounding is being cut."""
 _THIRD = 2.0 * np.pi / 3.0
 RIM = 0.999
-"""How much of the strip on which the two sides are one is looked at."""
+"""The part of the strip, on which the two sides are one curve, that is searched."""
 VANISHING = 1e-10
-"""A trial that leaves no more than this is offered as a root, whatever is around it: the reference itself, for one."""
+"""A trial with a value up to this is a candidate for a root, whatever its neighbours are: for example the reference."""
 Finish = Callable[[At], tuple[Flags, Reals]]
-"""Whether a root fits, and what is said of it."""
+"""The finishing program: whether a root fits, and its results."""
 
 
 def find_roots(trial: Trial, start: Reals, shift: float = SHIFTS[0]) -> At:
-    """Every root of every row, and more that only a look at the whole closure tells from roots; in no order."""
+    """Candidates for the roots of all rows, in no order; only the whole closure tells whether a candidate is a root."""
     if not len(start):
         none = np.zeros(0, dtype=int)
         return At(none, start, none, none, start)
     cells = _around(trial, start, shift)
     found = [_start(trial, start)]
     ends, holding = [cells.take(np.zeros(0, dtype=int))], [cells.take(np.zeros(0, dtype=int))]
-    for _ in range(2 * ROUNDS):  # what is closed in on waits until nothing is cut any more: it is one loop for all rows
+    for _ in range(2 * ROUNDS):  # roots are refined when no cell is cut any more: in one loop for all rows
         if not len(cells):
             cells, ends = _over_the_end(trial, joined(*ends)), ends[:1]
             found.append(_vanishing(cells))
@@ -79,7 +79,7 @@ def find_roots(trial: Trial, start: Reals, shift: float = SHIFTS[0]) -> At:
 
 
 def nearest(trial: Trial, finish: Finish, start: Reals) -> tuple[Flags, Reals]:
-    """Whether a row has a root that fits, and what `finish` says at the nearest of them."""
+    """Whether a row has a root that fits, and the results of `finish` at the nearest one."""
     found, answer = _nearest(trial, finish, start, SHIFTS[0])
     for shift in SHIFTS[1:]:
         rows = np.flatnonzero(~found)
@@ -90,7 +90,7 @@ def nearest(trial: Trial, finish: Finish, start: Reals) -> tuple[Flags, Reals]:
 
 
 def _of_rows(asked: Callable[[At], T], rows: Rows) -> Callable[[At], T]:
-    """What is asked, of some rows alone."""
+    """The problem for some of the rows."""
     return lambda place: asked(place._replace(rows=rows[place.rows]))
 
 
@@ -108,19 +108,19 @@ def _nearest(trial: Trial, finish: Finish, start: Reals, shift: float) -> tuple[
 
 
 def _vanishing(cells: Cells) -> At:
-    """The beginnings of cells where the value is zero already."""
+    """The beginnings of cells at which the value is zero."""
     is_root = _vanishes(cells.first)
     return _places(cells.take(is_root), cells.low[is_root])
 
 
 def _vanishes(said: Reals) -> Flags:
-    """Whether a trial is next to a root, whatever is around it: where the guard vanishes half the digits are lost."""
+    """Whether a trial is at a root by its value alone. Where the guard vanishes, the value has half of its digits."""
     value, guard = np.abs(said[:, VALUE]), said[:, GUARD]
     return np.asarray((value <= VANISHING) & (guard >= 0.0) | (value <= NEXT) & (np.abs(guard) <= VANISHING))
 
 
 def _start(trial: Trial, start: Reals) -> At:
-    """The starts that are roots themselves: a path stands there."""
+    """The starts that are roots themselves, as on a path that stands still."""
     rows = np.arange(len(start))
     place = At(rows, start, np.ones(len(rows), dtype=int), np.full(len(rows), -1), np.zeros(len(rows)))
     said = trial(place)
@@ -131,7 +131,7 @@ def _start(trial: Trial, start: Reals) -> At:
 def _around(trial: Trial, start: Reals, shift: float) -> Cells:
     """The first cells: number 0 of every row, then number 1, and so on.
 
-    None ends at the start, where value and guard may vanish.
+    No cell ends at the start, where value and guard may vanish.
     """
     count, width = len(start), 2.0 * np.pi / CELLS
     rows = np.tile(np.arange(count), CELLS)
@@ -144,13 +144,16 @@ def _around(trial: Trial, start: Reals, shift: float) -> Cells:
 
 
 def _over_the_end(trial: Trial, cells: Cells) -> Cells:
-    """The cells around the place where the guard vanishes: from the end that is within to the other side.
+    """The cells around a zero of the guard: from the end with solutions to the other side.
 
-    The sides meet where the guard is a touch above zero; on the strip from there to zero they are one.
+    The sides join where the guard is slightly above zero; on the strip from there to zero they are one curve.
     """
     swap = cells.first[:, GUARD] < 0.0
     within, beyond = (cells.joint(np.where(swap == flag, cells.low, cells.high)) for flag in (False, True))
-    low, high = np.zeros(len(cells)), np.ones(len(cells))  # of the way from within to beyond
+    low, high = (
+        np.zeros(len(cells)),
+        np.ones(len(cells)),
+    )  # as fractions of the way from the end with solutions to the other
     path = Cells(cells.rows, within, beyond - within, cells.curved, cells.cuts, low, high, *_ordered(cells, swap))
     level = np.where(path.first[:, GUARD] > TOUCHED, TOUCHED, 0.0)
     meet, rim = (_closing(trial, path, GUARD, at)[2] for at in (level, 0.0 * level))
@@ -167,7 +170,7 @@ def _part(trial: Trial, cells: Cells, low: float, high: float) -> Cells:
 
 
 def _ordered(cells: Cells, swap: Flags) -> tuple[Reals, Reals]:
-    """What is said at the end within and at the end beyond, slopes along the way from the one to the other."""
+    """The trials at the end with solutions and at the other end, with slopes along the way between them."""
     first, last = (np.where(swap[:, None], a, b) for a, b in ((cells.last, cells.first), (cells.first, cells.last)))
     turn = np.where(swap, -1.0, 1.0) * (cells.high - cells.low)
     for columns in (first, last):
@@ -177,9 +180,9 @@ def _ordered(cells: Cells, swap: Flags) -> tuple[Reals, Reals]:
 
 
 def _closing(trial: Trial, cells: Cells, column: int, level: Reals) -> tuple[Reals, Reals, Reals]:
-    """Close in on where a column passes a level: the end on the side of the first, the other end, and the better one.
+    """Find the place where a column equals a level. Returns the end on the side of the first, the other end, and the better one.
 
-    Newton's method from the end that is nearer to zero; halved where that leads out of the cell, and every third time.
+    Newton's method from the end that is nearer to zero; bisection where that leads out of the cell, and in every third step.
     """
     low, high = cells.low.copy(), cells.high.copy()
     first, last = cells.first[:, column : column + 2].copy(), cells.last[:, column : column + 2].copy()
@@ -210,7 +213,7 @@ def _closing(trial: Trial, cells: Cells, column: int, level: Reals) -> tuple[Rea
 
 
 def _closed_in(trial: Trial, cells: Cells) -> list[At]:
-    """The roots of cells that hold one; where the value jumps there, what a free angle makes of it."""
+    """The roots of cells that hold one; where the value jumps, those with a free angle."""
     if not len(cells):
         return []
     low, high, best = _closing(trial, cells, VALUE, np.zeros(len(cells)))
@@ -227,7 +230,7 @@ def _touched(cells: Cells) -> At:
 
 
 def _jumps(trial: Trial, cells: Cells) -> At:
-    """Where the joint stands still and the angle that turns most is free: both angles that let the value vanish."""
+    """The roots at a constant joint, with the angle that turns most free: both angles at which the value vanishes."""
     turned = turned_over(cells)
     if not turned.size:  # no cells, or no directions
         return _places(cells.take(np.zeros(0, dtype=int)), np.zeros(0))
@@ -253,7 +256,7 @@ def _all(places: Sequence[At]) -> At:
 
 
 _ROWS = 1024
-"""Rows at a time: what belongs to a trial stays in the cache."""
+"""The number of rows at a time: the arrays of a trial then stay in the cache of the processor."""
 Values = tuple[Any, ...]
 
 
@@ -267,11 +270,10 @@ def nearest_root(
     finish_given: Values,
     count: int,
 ) -> Values:
-    """True and what `finish` says at the root that fits and is nearest to the start; else False and zeros.
+    """True and the results of `finish` at the root that fits and is nearest to the start; False and zeros where there is none,
+    or none is wanted.
 
-    That is where there is none, or none is wanted.
-
-    What is given are values for every row, or one for all; the parts of a place stand there by their names.
+    given: the arguments, a value for every row or one for all; the parts of a place by their names.
     """
     shape = np.shape(status)
     there, answer = np.zeros(shape, np.bool_), np.zeros((count - 1, *shape))
@@ -292,7 +294,7 @@ def _tried(says: Callable[[At], list[Any]]) -> Trial:
 
 
 def _finished(says: Callable[[At], list[Any]], count: int) -> Finish:
-    """Whether a root fits, and a table of what is said of it."""
+    """Whether a root fits, and a table of its results."""
 
     def finish(place: At) -> tuple[Flags, Reals]:
         if not len(place.rows):
@@ -306,7 +308,7 @@ def _finished(says: Callable[[At], list[Any]], count: int) -> Finish:
 def _of(
     program: Callable[[Values, Any], Values], given: Values, shape: tuple[int, ...], rows: Rows
 ) -> Callable[[At], list[Any]]:
-    """What a program says at places, for these rows."""
+    """The outputs of a program at places, for these rows."""
     fixed = [v if isinstance(v, str | float | int) else np.broadcast_to(v, shape).ravel()[rows] for v in given]
 
     def at(place: At) -> list[Any]:

@@ -28,9 +28,9 @@ Singularities:
     determinant: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 142 additions, 186 multiplications, 21 divisions, 0 square roots, 14 sines
-    inverse: 76175 additions, 124235 multiplications, 6665 divisions, 3138 square roots, 5304 sines
-    inverse, all 16 branches open: 1218785 additions, 1987760 multiplications, 106640 divisions, 50208 square
+    forward: 142 additions, 201 multiplications, 12 divisions, 0 square roots, 14 sines
+    inverse: 76175 additions, 125423 multiplications, 5837 divisions, 3138 square roots, 5304 sines
+    inverse, all 16 branches open: 1218785 additions, 2006768 multiplications, 93392 divisions, 50208 square
     roots, 84864 sines
     repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 28 additions, 50 multiplications, 11 divisions, 3 square roots, 12
@@ -236,8 +236,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _try_joint(self, given: Values) -> Values | Status:
         """The residual of the closure at a trial, its slope, and the angles that may turn fast."""
         (
-            free_a1,
-            free_a2,
             freed,
             freed_angle,
             goal_r11,
@@ -252,6 +250,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             goal_x,
             goal_y,
             goal_z,
+            reference_a1,
+            reference_a2,
             side,
             tried,
             wanted_elbow,
@@ -265,7 +265,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x_tried = goal_x + (goal_r12 * sin_q6_tried - goal_r11 * cos_q6_tried) * j6_offset_x - d6 * goal_r13
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * j6_offset_x - d6 * goal_r23
         # distance of the point from the axis of q1
@@ -300,7 +300,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 slope_across_q1_tried - slope_length_q1_tried * sin_q1_tried
             ) * one_by_distance_q1_tried
         else:
-            chosen_q1 = freed_angle if freed == 0 else free_a1  # q1 where the pose leaves it free
+            chosen_q1 = freed_angle if freed == 0 else reference_a1  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
             slope_cos_q1_tried = 0.0
@@ -322,7 +322,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried * part_of_one_plus_cos_q3_tried_2
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried * cos_q1_tried
@@ -342,28 +342,28 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_one_plus_cos_q3_tried = (
             part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried
         ) * slope_reach_tried
-        if sum_of_cos_q3_tried > 0.0:
-            divisor_of_cos_q3_tried = sum_of_cos_q3_tried
-            slope_sum_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-            slope_divisor_of_cos_q3_tried = slope_sum_of_cos_q3_tried
+        if sum_q3_tried > 0.0:
+            divisor_of_cos_q3_tried = sum_q3_tried
+            slope_sum_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+            slope_divisor_of_cos_q3_tried = slope_sum_q3_tried
         else:
             divisor_of_cos_q3_tried = 1.0
             slope_divisor_of_cos_q3_tried = 0.0
-        one_by_sum_of_cos_q3_tried = 1.0 / divisor_of_cos_q3_tried
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_of_cos_q3_tried
+        one_by_sum_q3_tried = 1.0 / divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_q3_tried
         sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         root_of_sin_swing_q3_tried = sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0
-        sin_swing_q3_tried = 2.0 * one_by_sum_of_cos_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
-        # addition theorem: plus the angle of the direction from which it is measured
+        sin_swing_q3_tried = 2.0 * one_by_sum_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
             slope_one_plus_cos_q3_tried
             - slope_one_less_cos_q3_tried
             - slope_divisor_of_cos_q3_tried * cos_swing_q3_tried
-        ) * one_by_sum_of_cos_q3_tried
+        ) * one_by_sum_q3_tried
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried * slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried * slope_one_less_cos_q3_tried
         )
@@ -375,7 +375,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_sin_swing_q3_tried = (
             2.0 * sign_elbow_tried * slope_root_of_sin_swing_q3_tried
             - slope_divisor_of_cos_q3_tried * sin_swing_q3_tried
-        ) * one_by_sum_of_cos_q3_tried
+        ) * one_by_sum_q3_tried
         slope_cos_q3_tried = (
             a3_by_effective_q3_tried * slope_cos_swing_q3_tried + d4_by_effective_q3_tried * slope_sin_swing_q3_tried
         )
@@ -427,7 +427,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 slope_across_q2_tried - slope_length_q2_tried * sin_q2_tried
             ) * one_by_root_of_length_q2_tried
         else:
-            chosen_q2 = freed_angle if freed == 1 else free_a2  # q2 where the pose leaves it free
+            chosen_q2 = freed_angle if freed == 1 else reference_a2  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
             slope_cos_q2_tried = 0.0
@@ -482,8 +482,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _finish_root(self, given: Values) -> Values | Status:
         """The joints at a root, improved by Newton's method, and whether they are on the branch."""
         (
-            free_a1,
-            free_a2,
             freed,
             freed_angle,
             goal_r11,
@@ -498,6 +496,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             goal_x,
             goal_y,
             goal_z,
+            reference_a1,
+            reference_a2,
             side,
             tried,
             wanted_crossing,
@@ -514,7 +514,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         part_of_fits, size_of_j6_offset_x = k.part_of_fits, k.size_of_j6_offset_x
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x_tried = goal_x + (goal_r12 * sin_q6_tried - goal_r11 * cos_q6_tried) * j6_offset_x - d6 * goal_r13
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * j6_offset_x - d6 * goal_r23
         # distance of the point from the axis of q1
@@ -527,7 +527,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             across_q1_tried = wanted_shoulder * wrist_y_tried
             sin_q1_tried = across_q1_tried / length_q1_tried
         else:
-            chosen_q1 = freed_angle if freed == 0 else free_a1  # q1 where the pose leaves it free
+            chosen_q1 = freed_angle if freed == 0 else reference_a1  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
         # coordinate of the point that the remaining links must reach
@@ -545,8 +545,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             a2_minus_effective_q3_tried + reach_tried
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        divisor_of_cos_q3_tried = sum_of_cos_q3_tried if sum_of_cos_q3_tried > 0.0 else 1.0
+        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        divisor_of_cos_q3_tried = sum_q3_tried if sum_q3_tried > 0.0 else 1.0
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
         sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
@@ -557,7 +557,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             * sign_elbow_tried
             / divisor_of_cos_q3_tried
         )
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
         # in the singularity: the angle of the reference
@@ -576,7 +576,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             cos_q2_tried = along_q2_tried / length_q2_tried
             sin_q2_tried = across_q2_tried / length_q2_tried
         else:
-            chosen_q2 = freed_angle if freed == 1 else free_a2  # q2 where the pose leaves it free
+            chosen_q2 = freed_angle if freed == 1 else reference_a2  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
         r21_from_q1_tried = goal_r21 * cos_q1_tried - goal_r11 * sin_q1_tried
@@ -889,8 +889,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _find_root(self, given: Values) -> Values | Status:
         """The joints at the root that is nearest to the start; zeros where the machine needs no scan."""
         (
-            free_a1,
-            free_a2,
             goal_r11,
             goal_r12,
             goal_r13,
@@ -904,6 +902,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             goal_y,
             goal_z,
             looked_for,
+            reference_a1,
+            reference_a2,
             start,
             wanted_crossing,
             wanted_elbow,
@@ -917,8 +917,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             start,
             looked_for,
             (
-                free_a1,
-                free_a2,
                 "freed",
                 "freed_angle",
                 goal_r11,
@@ -933,14 +931,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 goal_x,
                 goal_y,
                 goal_z,
+                reference_a1,
+                reference_a2,
                 "side",
                 "tried",
                 wanted_elbow,
                 wanted_shoulder,
             ),
             (
-                free_a1,
-                free_a2,
                 "freed",
                 "freed_angle",
                 goal_r11,
@@ -955,6 +953,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 goal_x,
                 goal_y,
                 goal_z,
+                reference_a1,
+                reference_a2,
                 "side",
                 "tried",
                 wanted_crossing,
@@ -982,12 +982,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r11, r12, r13, r21, r22, r23, r31, r32, r33, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, x, y, z
         ):
             return Status.BAD_INPUT
-        free_a1 = (ref_a1 - offset_a1) * DEGREE
-        free_a2 = (ref_a2 - offset_a2) * DEGREE
-        free_a6 = (ref_a6 - offset_a6) * DEGREE
+        reference_a1 = (ref_a1 - offset_a1) * DEGREE
+        reference_a2 = (ref_a2 - offset_a2) * DEGREE
+        reference_a6 = (ref_a6 - offset_a6) * DEGREE
         return (
-            free_a1,
-            free_a2,
             r11,
             r12,
             r13,
@@ -1001,7 +999,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             y,
             z,
             searched,
-            free_a6,
+            reference_a1,
+            reference_a2,
+            reference_a6,
             sigma_crossing,
             sigma_elbow,
             sigma_shoulder,
@@ -1163,13 +1163,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
         r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
         r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
-        wrist_x_closed = x - d6_times_r13_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x_closed = x - d6_times_r13_at_q5  # wrist centre: the last joints do not move this point
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
         margin_elbow_closed = a3_by_effective_q3_tried * sin_q3_closed + d4_by_effective_q3_tried * cos_q3_closed
         if searched:
-            # wrist centre: the point in which the last axes intersect
+            # wrist centre: the last joints do not move this point
             wrist_x_tried = wrist_x_closed + (r12_at_q6 * sin_q6 - r11_at_q6 * cos_q6) * j6_offset_x
             wrist_y_tried = wrist_y_closed + (r22_at_q6 * sin_q6 - r21_at_q6 * cos_q6) * j6_offset_x
             margin_shoulder_tried = one_by_machine_scale * (wrist_x_tried * cos_q1 + wrist_y_tried * sin_q1)
@@ -1262,7 +1262,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         single_a6 = k.single_a6
         if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x_closed = x - d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_x_closed = x - d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y_closed = y - d6 * r23
         # distance of the point from the axis of q1
         distance_q1_closed = sqrt(wrist_x_closed * wrist_x_closed + wrist_y_closed * wrist_y_closed)
@@ -1284,8 +1284,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             a2_minus_effective_q3_tried + reach_closed
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-        divisor_of_cos_q3_closed = sum_of_cos_q3_closed if sum_of_cos_q3_closed > 0.0 else 1.0
+        sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+        divisor_of_cos_q3_closed = sum_q3_closed if sum_q3_closed > 0.0 else 1.0
         cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
         # q3: out of reach
         if not (searched or (-1.0000000000005 <= cos_swing_q3_closed <= 1.0000000000005)):
@@ -1304,14 +1304,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # without the offset there is no second crossing
         if not (searched or (sigma_crossing > 0)):
             return Diagnosis(Status.UNREACHABLE, "without the offset there is no second crossing", 0.0)
-        free_a1 = (ref_a1 - offset_a1) * DEGREE
-        free_a2 = (ref_a2 - offset_a2) * DEGREE
-        free_a6 = (ref_a6 - offset_a6) * DEGREE
+        reference_a1 = (ref_a1 - offset_a1) * DEGREE
+        reference_a2 = (ref_a2 - offset_a2) * DEGREE
+        reference_a6 = (ref_a6 - offset_a6) * DEGREE
         # root scan along A6
         found = self._find_root(
             (
-                free_a1,
-                free_a2,
                 r11,
                 r12,
                 r13,
@@ -1325,7 +1323,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 y,
                 z,
                 searched,
-                free_a6,
+                reference_a1,
+                reference_a2,
+                reference_a6,
                 sigma_crossing,
                 sigma_elbow,
                 sigma_shoulder,
@@ -1353,8 +1353,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 across_q1_closed = sigma_shoulder * wrist_y_closed
                 sin_q1_closed = across_q1_closed / distance_q1_closed
             else:
-                cos_q1_closed = cos(free_a1)
-                sin_q1_closed = sin(free_a1)
+                cos_q1_closed = cos(reference_a1)
+                sin_q1_closed = sin(reference_a1)
             q1 = arctan2(sin_q1_closed + 0.0, cos_q1_closed + 0.0)
             # sine squared, times the squared scale
             sine_square_q3_closed = one_less_cos_q3_closed * one_plus_cos_q3_closed
@@ -1380,10 +1380,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 cos_q2_closed = along_q2_closed / length_q2_closed
                 sin_q2_closed = across_q2_closed / length_q2_closed
             else:
-                cos_q2_closed = cos(free_a2)
-                sin_q2_closed = sin(free_a2)
+                cos_q2_closed = cos(reference_a2)
+                sin_q2_closed = sin(reference_a2)
             q2 = arctan2(sin_q2_closed + 0.0, cos_q2_closed + 0.0)
-            # addition theorem: plus the angle of the direction from which it is measured
+            # addition theorem: plus the angle of the direction from which the cosine is measured
             cos_q3_closed = (
                 a3_by_effective_q3_tried * cos_swing_q3_closed + d4_by_effective_q3_tried * sin_swing_q3_closed
             )
@@ -1406,9 +1406,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
                 direction_y_q4_closed = -sigma_wrist * r23_from_q1_closed
             else:
-                free_a4 = (ref_a4 - offset_a4) * DEGREE
-                direction_x_q4_closed = cos(free_a4)
-                direction_y_q4_closed = sin(free_a4)
+                reference_a4 = (ref_a4 - offset_a4) * DEGREE
+                direction_x_q4_closed = cos(reference_a4)
+                direction_y_q4_closed = sin(reference_a4)
             q4 = arctan2(direction_y_q4_closed + 0.0, direction_x_q4_closed + 0.0)
             r13_from_q123_closed = r13_from_q1_closed * cos_q23_closed - r33 * sin_q23_closed
             q4_radius_of_q5_closed = sigma_wrist * radius_q4_closed
@@ -1687,8 +1687,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _all_joints(self, given: Values) -> list[Reals]:
         """The joints at every root of a search."""
         (
-            free_a1,
-            free_a2,
             goal_r11,
             goal_r12,
             goal_r13,
@@ -1702,6 +1700,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             goal_y,
             goal_z,
             looked_for,
+            reference_a1,
+            reference_a2,
             start,
             wanted_crossing,
             wanted_elbow,
@@ -1714,8 +1714,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             start,
             looked_for,
             (
-                free_a1,
-                free_a2,
                 "freed",
                 "freed_angle",
                 goal_r11,
@@ -1730,14 +1728,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 goal_x,
                 goal_y,
                 goal_z,
+                reference_a1,
+                reference_a2,
                 "side",
                 "tried",
                 wanted_elbow,
                 wanted_shoulder,
             ),
             (
-                free_a1,
-                free_a2,
                 "freed",
                 "freed_angle",
                 goal_r11,
@@ -1752,6 +1750,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 goal_x,
                 goal_y,
                 goal_z,
+                reference_a1,
+                reference_a2,
                 "side",
                 "tried",
                 wanted_crossing,

@@ -290,7 +290,7 @@ class Ac6ThreeParallel(Mechanism):
         r31_at_q5 = cos_q5 * sin_q234
         r31_at_q6 = cos_q234 * sin_q6 + r31_at_q5 * cos_q6
         r32_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         wrist_y = y - d6_times_r22_at_q5
         branch_shoulder = (-wrist_x * cos_q1 - wrist_y * sin_q1) / machine_scale
         sin_q3 = sin(q3)
@@ -367,7 +367,7 @@ class Ac6ThreeParallel(Mechanism):
         size_q1_for_q3_times_rounding, twice_d5 = k.size_q1_for_q3_times_rounding, k.twice_d5
         if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x = x - d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6 * r23
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -384,9 +384,9 @@ class Ac6ThreeParallel(Mechanism):
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d4 * wrist_y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d4 * wrist_x) / distance_q1_squared
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
         wrist_z = z - d6 * r33
         wrist_y_from_q1_fixed = wrist_z - d1
         # turned, within rounding, to where q3 has a solution
@@ -395,9 +395,9 @@ class Ac6ThreeParallel(Mechanism):
             cos_q1 = cos_q1_before_q1_for_q3
             sin_q1 = sin_q1_before_q1_for_q3
         else:
-            free_a6 = (ref_a6 - offset_a6) * DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = sin(free_a6)
+            reference_a6 = (ref_a6 - offset_a6) * DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = sin(reference_a6)
             r21_from_q1_before_q1_for_q3 = r21 * cos_q1_before_q1_for_q3 - r11 * sin_q1_before_q1_for_q3
             r22_from_q1_before_q1_for_q3 = r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3
             radius_q6_before_q1_for_q3 = sqrt(
@@ -429,8 +429,8 @@ class Ac6ThreeParallel(Mechanism):
                     across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3 * radius_q6_rate_q1_for_q3
                 ) * one_by_radius_q6_before_q1_for_q3
             else:
-                cos_q6_before_q1_for_q3 = cos_of_free_a6
-                sin_q6_before_q1_for_q3 = sin_of_free_a6
+                cos_q6_before_q1_for_q3 = cos_of_reference_a6
+                sin_q6_before_q1_for_q3 = sin_of_reference_a6
                 if radius_q6_before_q1_for_q3 > 0.0:
                     radius_q6_rate_q1_for_q3 = (
                         r21_from_q1_before_q1_for_q3 * r21_from_q1_rate_q1_for_q3
@@ -679,11 +679,11 @@ class Ac6ThreeParallel(Mechanism):
             across_q6 = sigma_wrist * r22_from_q1
             sin_q6_before_q6_of_q3 = across_q6 / radius_q6
         else:
-            free_a6 = (ref_a6 - offset_a6) * DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = sin(free_a6)
-            cos_q6_before_q6_of_q3 = cos_of_free_a6
-            sin_q6_before_q6_of_q3 = sin_of_free_a6
+            reference_a6 = (ref_a6 - offset_a6) * DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = sin(reference_a6)
+            cos_q6_before_q6_of_q3 = cos_of_reference_a6
+            sin_q6_before_q6_of_q3 = sin_of_reference_a6
         r21_from_q1_before_q6_before_q6_of_q3 = r31 * cos_q6_before_q6_of_q3 - r32 * sin_q6_before_q6_of_q3
         r21_from_q1_before_q56_before_q6_of_q3 = (
             r21_from_q1_before_q6_before_q6_of_q3 * cos_q5 - q6_radius_of_q5_times_r33
@@ -793,8 +793,8 @@ class Ac6ThreeParallel(Mechanism):
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):
@@ -826,9 +826,9 @@ class Ac6ThreeParallel(Mechanism):
             direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
             direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            direction_x_q2 = cos(free_a2)
-            direction_y_q2 = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            direction_x_q2 = cos(reference_a2)
+            direction_y_q2 = sin(reference_a2)
         angle_q2 = arctan2(direction_y_q2 + 0.0, direction_x_q2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
@@ -915,7 +915,7 @@ class Ac6ThreeParallel(Mechanism):
         x_at_q5 = x_at_q4 + d4 * sin_q1
         x_at_q6 = x_at_q5 - d5 * r12_at_q234
         x = d6_times_r12_at_q5 + x_at_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         r21_at_q234 = cos_q234 * sin_q1
         r22_at_q5 = -cos_q1 * cos_q5 - r21_at_q234 * sin_q5
         d6_times_r22_at_q5 = d6 * r22_at_q5

@@ -264,7 +264,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         single_a5, single_a6 = k.single_a5, k.single_a6
         if not are_usable(x, y, z, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x = x - flange_x * r11 - flange_y * r12 - flange_z * r13
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x * r21 - flange_y * r22 - flange_z * r23
@@ -278,9 +278,9 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
             direction_x_a4 = sigma_wrist * r33
             direction_y_a4 = sigma_wrist * r13
         else:
-            free_a4 = (ref_a4 - offset_a4) * DEGREE
-            direction_x_a4 = cos(free_a4)
-            direction_y_a4 = sin(free_a4)
+            reference_a4 = (ref_a4 - offset_a4) * DEGREE
+            direction_x_a4 = cos(reference_a4)
+            direction_y_a4 = sin(reference_a4)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4 + 0.0) / DEGREE  # A4: whole turns added

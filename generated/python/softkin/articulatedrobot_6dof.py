@@ -295,7 +295,7 @@ class ArticulatedRobot6DOF(Mechanism):
         r31_at_q5 = r31_at_q4 * cos_q5 + sin_q23 * sin_q5
         r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
         r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         wrist_y = y - d6_times_r22_at_q5
         branch_arm = (wrist_x * cos_q1 + wrist_y * sin_q1) / machine_scale
         sin_q3 = sin(q3)
@@ -381,7 +381,7 @@ class ArticulatedRobot6DOF(Mechanism):
         twice_d3 = k.twice_d3
         if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x = x - d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6 * r23
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -401,9 +401,9 @@ class ArticulatedRobot6DOF(Mechanism):
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d3 * wrist_y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d3 * wrist_x) / distance_q1_squared
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
         # turned, within rounding, to where q3 has a solution
         if ahead_squared_q1 > machine_scale_squared_times_plane:
             ahead_q1 = ahead_q1_before_q1_for_q3
@@ -462,8 +462,8 @@ class ArticulatedRobot6DOF(Mechanism):
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
@@ -500,15 +500,15 @@ class ArticulatedRobot6DOF(Mechanism):
             cos_q2 = along_q2 / length_q2
             sin_q2 = across_q2 / length_q2
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            cos_q2 = cos(free_a2)
-            sin_q2 = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            cos_q2 = cos(reference_a2)
+            sin_q2 = sin(reference_a2)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = a3_by_effective_q3 * cos_swing_q3 - d4_by_effective_q3 * sin_swing_q3
         sin_q3 = a3_by_effective_q3 * sin_swing_q3 + d4_by_effective_q3 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
@@ -529,9 +529,9 @@ class ArticulatedRobot6DOF(Mechanism):
             direction_x_q4 = -sigma_hand * r13_from_q123
             direction_y_q4 = sigma_hand * r23_from_q1
         else:
-            free_a4 = (ref_a4 - offset_a4) * DEGREE
-            direction_x_q4 = cos(free_a4)
-            direction_y_q4 = sin(free_a4)
+            reference_a4 = (ref_a4 - offset_a4) * DEGREE
+            direction_x_q4 = cos(reference_a4)
+            direction_y_q4 = sin(reference_a4)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4 + 0.0) / DEGREE  # A4: whole turns added
@@ -616,7 +616,7 @@ class ArticulatedRobot6DOF(Mechanism):
         x_at_q4 = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1
         x_at_q5 = x_at_q4 - d4 * r12_at_q23
         x = d6_times_r12_at_q5 + x_at_q5
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         r22_at_q23 = -cos_q23 * sin_q1
         r21_at_q23 = -sin_q1 * sin_q23
         r21_at_q4 = r21_at_q23 * cos_q4 - cos_q1 * sin_q4

@@ -317,8 +317,8 @@ class BipodRotary(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1) * (effective_a1 - inner_arm_minus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -341,8 +341,8 @@ class BipodRotary(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm) * (effective_a2 + inner_arm_plus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -357,7 +357,7 @@ class BipodRotary(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_1_x * cos_swing_a1 - y * sin_swing_a1) / effective_a1
         rod_1_x = span_1_x + inner_arm * cos_a1
         sin_a1 = (y * cos_swing_a1 + span_1_x * sin_swing_a1) / effective_a1
@@ -365,7 +365,7 @@ class BipodRotary(OffsetKinematics):
         rod_1_y = y - pivot_1_y
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (span_2_x * cos_swing_a2 + y * sin_swing_a2) / effective_a2
         rod_2_x = span_2_x - inner_arm * cos_a2
         sin_a2 = (span_2_x * sin_swing_a2 - y * cos_swing_a2) / effective_a2
@@ -568,8 +568,8 @@ class BipodRotary(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1) * (effective_a1 - inner_arm_minus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -592,8 +592,8 @@ class BipodRotary(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm) * (effective_a2 + inner_arm_plus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -608,7 +608,7 @@ class BipodRotary(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_1_x * cos_swing_a1 - flange_y * sin_swing_a1) / effective_a1
         rod_1_x = span_1_x + inner_arm * cos_a1
         sin_a1 = (flange_y * cos_swing_a1 + span_1_x * sin_swing_a1) / effective_a1
@@ -616,7 +616,7 @@ class BipodRotary(OffsetKinematics):
         rod_1_y = flange_y - pivot_1_y
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (span_2_x * cos_swing_a2 + flange_y * sin_swing_a2) / effective_a2
         rod_2_x = span_2_x - inner_arm * cos_a2
         sin_a2 = (span_2_x * sin_swing_a2 - flange_y * cos_swing_a2) / effective_a2

@@ -191,9 +191,9 @@ class Crane(OffsetKinematics):
             direction_x_theta = x
             direction_y_theta = y
         else:
-            free_theta = (ref_theta - offset_theta) * DEGREE
-            direction_x_theta = cos(free_theta)
-            direction_y_theta = sin(free_theta)
+            reference_theta = (ref_theta - offset_theta) * DEGREE
+            direction_x_theta = cos(reference_theta)
+            direction_y_theta = sin(reference_theta)
         # Theta: without a commanded turn, the value nearest to this
         open_theta = mid_theta if single_theta else ref_theta
         near_theta = 360.0 * (turn_theta - 1 if turn_theta > 0 else turn_theta) if turn_theta != 0 else open_theta
@@ -206,8 +206,8 @@ class Crane(OffsetKinematics):
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
-            free_phi = (ref_phi - offset_phi) * DEGREE
-            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0 * DEGREE, 90.0 * DEGREE)
+            reference_phi = (ref_phi - offset_phi) * DEGREE
+            part_of_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
             direction_x_phi = cos(part_of_direction_y_phi)
             direction_y_phi = sin(part_of_direction_y_phi)
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0) / DEGREE
@@ -318,9 +318,9 @@ class Crane(OffsetKinematics):
             direction_x_theta = flange_x
             direction_y_theta = flange_y
         else:
-            free_theta = (ref_theta - offset_theta) * DEGREE
-            direction_x_theta = cos(free_theta)
-            direction_y_theta = sin(free_theta)
+            reference_theta = (ref_theta - offset_theta) * DEGREE
+            direction_x_theta = cos(reference_theta)
+            direction_y_theta = sin(reference_theta)
         # Theta: without a commanded turn, the value nearest to this
         open_theta = mid_theta if single_theta else ref_theta
         near_theta = 360.0 * (turn_theta - 1 if turn_theta > 0 else turn_theta) if turn_theta != 0 else open_theta
@@ -333,8 +333,8 @@ class Crane(OffsetKinematics):
             direction_x_phi = flange_z
             direction_y_phi = radius_theta
         else:
-            free_phi = (ref_phi - offset_phi) * DEGREE
-            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0 * DEGREE, 90.0 * DEGREE)
+            reference_phi = (ref_phi - offset_phi) * DEGREE
+            part_of_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
             direction_x_phi = cos(part_of_direction_y_phi)
             direction_y_phi = sin(part_of_direction_y_phi)
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0) / DEGREE
@@ -375,9 +375,9 @@ class Crane(OffsetKinematics):
             direction_x_theta = x
             direction_y_theta = y
         else:
-            free_theta = (ref_theta - offset_theta) * DEGREE
-            direction_x_theta = cos(free_theta)
-            direction_y_theta = sin(free_theta)
+            reference_theta = (ref_theta - offset_theta) * DEGREE
+            direction_x_theta = cos(reference_theta)
+            direction_y_theta = sin(reference_theta)
         # in the singularity: the angle of the reference
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z

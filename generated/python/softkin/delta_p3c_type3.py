@@ -623,8 +623,8 @@ class DeltaP3CType3(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_a1 = effective_a1_plus_inner_arm_1 * effective_a1_plus_inner_arm_1 - third_square_a1
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -660,8 +660,8 @@ class DeltaP3CType3(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = effective_a2_plus_inner_arm_2 * effective_a2_plus_inner_arm_2 - third_square_a2
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -697,8 +697,8 @@ class DeltaP3CType3(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_a3 = effective_a3_plus_inner_arm_3 * effective_a3_plus_inner_arm_3 - third_square_a3
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
@@ -719,7 +719,7 @@ class DeltaP3CType3(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (along_a1 * cos_swing_a1 + z * sin_swing_a1) / effective_a1
         rod_1_x = span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1
         rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1 * cos_a1
@@ -728,7 +728,7 @@ class DeltaP3CType3(OffsetKinematics):
         rod_1_z = z - pivot_1_z
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 + z * sin_swing_a2) / effective_a2
         rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2
         rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2 * cos_a2
@@ -737,7 +737,7 @@ class DeltaP3CType3(OffsetKinematics):
         rod_2_z = z - pivot_2_z
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_knee_3 / divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (along_a3 * cos_swing_a3 + z * sin_swing_a3) / effective_a3
         rod_3_x = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3
         rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3 * cos_a3
@@ -1131,8 +1131,8 @@ class DeltaP3CType3(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_a1 = effective_a1_plus_inner_arm_1 * effective_a1_plus_inner_arm_1 - third_square_a1
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -1168,8 +1168,8 @@ class DeltaP3CType3(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = effective_a2_plus_inner_arm_2 * effective_a2_plus_inner_arm_2 - third_square_a2
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -1205,8 +1205,8 @@ class DeltaP3CType3(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_a3 = effective_a3_plus_inner_arm_3 * effective_a3_plus_inner_arm_3 - third_square_a3
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
@@ -1227,7 +1227,7 @@ class DeltaP3CType3(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (along_a1 * cos_swing_a1 + flange_z * sin_swing_a1) / effective_a1
         rod_1_x = span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1
         rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1 * cos_a1
@@ -1236,7 +1236,7 @@ class DeltaP3CType3(OffsetKinematics):
         rod_1_z = flange_z - pivot_1_z
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 + flange_z * sin_swing_a2) / effective_a2
         rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2
         rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2 * cos_a2
@@ -1245,7 +1245,7 @@ class DeltaP3CType3(OffsetKinematics):
         rod_2_z = flange_z - pivot_2_z
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_knee_3 / divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (along_a3 * cos_swing_a3 + flange_z * sin_swing_a3) / effective_a3
         rod_3_x = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3
         rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3 * cos_a3

@@ -274,9 +274,9 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         if not (abs(point_z - z) <= machine_scale_times_plane):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        free_r = (ref_r - offset_r) * DEGREE
-        cos_r = cos(free_r)
-        sin_r = sin(free_r)
+        reference_r = (ref_r - offset_r) * DEGREE
+        cos_r = cos(reference_r)
+        sin_r = sin(reference_r)
         direction_r_times_sin_r = direction_r * sin_r
         # commanded point, in the frame of the last moving joint
         tool_x = point_x * cos_r - direction_r_times_sin_r * point_y

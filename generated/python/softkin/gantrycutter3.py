@@ -282,9 +282,9 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         offset_z = k.offset_z
         if not are_usable(x, y, z, point_x, point_y, point_z, ref_r):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        free_r = (ref_r - offset_r) * DEGREE
-        cos_r = cos(free_r)
-        sin_r = sin(free_r)
+        reference_r = (ref_r - offset_r) * DEGREE
+        cos_r = cos(reference_r)
+        sin_r = sin(reference_r)
         direction_r_times_sin_r = direction_r * sin_r
         # commanded point, in the frame of the last moving joint
         tool_x = point_x * cos_r - direction_r_times_sin_r * point_y

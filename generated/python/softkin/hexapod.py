@@ -19,8 +19,8 @@ Singularities:
     rods_dependent: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 4280 additions, 5562 multiplications, 600 divisions, 140 square roots, 120 sines
-    inverse: 224 additions, 303 multiplications, 21 divisions, 8 square roots, 2 sines
+    forward: 4280 additions, 5982 multiplications, 300 divisions, 140 square roots, 120 sines
+    inverse: 224 additions, 317 multiplications, 7 divisions, 8 square roots, 2 sines
     repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
     Newton's method: every pass improves the pose until all legs have their lengths: at most 20 passes, all of
     which are counted
@@ -862,7 +862,7 @@ class Hexapod(IterativeForward):
         # the other assembly mode
         if not (assembly_sign * determinant > 0.0):
             return Status.IMPOSSIBLE
-        r11 = start_r11 * turned_11 + start_r21 * turned_12 + start_r31 * turned_13  # the start, turned
+        r11 = start_r11 * turned_11 + start_r21 * turned_12 + start_r31 * turned_13  # orientation of the platform
         r12 = start_r12 * turned_11 + start_r22 * turned_12 + start_r32 * turned_13
         r13 = start_r13 * turned_11 + start_r23 * turned_12 + start_r33 * turned_13
         r21 = start_r11 * turned_21 + start_r21 * turned_22 + start_r31 * turned_23
@@ -1137,174 +1137,170 @@ class Hexapod(IterativeForward):
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 6: without length it has no direction", 0.0)
-        one_by_l1 = 1.0 / l1
-        along_1_x = one_by_l1 * span_1_x
-        along_1_y = one_by_l1 * span_1_y
-        along_1_z = one_by_l1 * span_1_z
-        cos_base_lean_1 = along_1_x * home_along_1_x + along_1_y * home_along_1_y + along_1_z * home_along_1_z
+        # leg 1: how far it reaches along the axis of its cone on the base
+        along_base_cone_1 = home_along_1_x * span_1_x + home_along_1_y * span_1_y + home_along_1_z * span_1_z
         # leg 1: its joint on the base bends beyond its cone
-        if not (cos_base_lean_1 >= least_cos_base):
+        if not (along_base_cone_1 >= l1 * least_cos_base):
             missing = (
-                arctan2(root(1.0 - cos_base_lean_1 * cos_base_lean_1) + 0.0, cos_base_lean_1 + 0.0)
-                - arctan2(root(1.0 - least_cos_base * least_cos_base) + 0.0, least_cos_base + 0.0)
+                arctan2(root((l1 - along_base_cone_1) * (along_base_cone_1 + l1)) + 0.0, along_base_cone_1 + 0.0)
+                - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 1: its joint on the base bends beyond its cone [deg]", missing)
-        one_by_l2 = 1.0 / l2
-        along_2_x = one_by_l2 * span_2_x
-        along_2_y = one_by_l2 * span_2_y
-        along_2_z = one_by_l2 * span_2_z
-        cos_base_lean_2 = along_2_x * home_along_2_x + along_2_y * home_along_2_y + along_2_z * home_along_2_z
+        # leg 2: how far it reaches along the axis of its cone on the base
+        along_base_cone_2 = home_along_2_x * span_2_x + home_along_2_y * span_2_y + home_along_2_z * span_2_z
         # leg 2: its joint on the base bends beyond its cone
-        if not (cos_base_lean_2 >= least_cos_base):
+        if not (along_base_cone_2 >= l2 * least_cos_base):
             missing = (
-                arctan2(root(1.0 - cos_base_lean_2 * cos_base_lean_2) + 0.0, cos_base_lean_2 + 0.0)
-                - arctan2(root(1.0 - least_cos_base * least_cos_base) + 0.0, least_cos_base + 0.0)
+                arctan2(root((l2 - along_base_cone_2) * (along_base_cone_2 + l2)) + 0.0, along_base_cone_2 + 0.0)
+                - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 2: its joint on the base bends beyond its cone [deg]", missing)
-        one_by_l3 = 1.0 / l3
-        along_3_x = one_by_l3 * span_3_x
-        along_3_y = one_by_l3 * span_3_y
-        along_3_z = one_by_l3 * span_3_z
-        cos_base_lean_3 = along_3_x * home_along_3_x + along_3_y * home_along_3_y + along_3_z * home_along_3_z
+        # leg 3: how far it reaches along the axis of its cone on the base
+        along_base_cone_3 = home_along_3_x * span_3_x + home_along_3_y * span_3_y + home_along_3_z * span_3_z
         # leg 3: its joint on the base bends beyond its cone
-        if not (cos_base_lean_3 >= least_cos_base):
+        if not (along_base_cone_3 >= l3 * least_cos_base):
             missing = (
-                arctan2(root(1.0 - cos_base_lean_3 * cos_base_lean_3) + 0.0, cos_base_lean_3 + 0.0)
-                - arctan2(root(1.0 - least_cos_base * least_cos_base) + 0.0, least_cos_base + 0.0)
+                arctan2(root((l3 - along_base_cone_3) * (along_base_cone_3 + l3)) + 0.0, along_base_cone_3 + 0.0)
+                - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 3: its joint on the base bends beyond its cone [deg]", missing)
-        one_by_l4 = 1.0 / l4
-        along_4_x = one_by_l4 * span_4_x
-        along_4_y = one_by_l4 * span_4_y
-        along_4_z = one_by_l4 * span_4_z
-        cos_base_lean_4 = along_4_x * home_along_4_x + along_4_y * home_along_4_y + along_4_z * home_along_4_z
+        # leg 4: how far it reaches along the axis of its cone on the base
+        along_base_cone_4 = home_along_4_x * span_4_x + home_along_4_y * span_4_y + home_along_4_z * span_4_z
         # leg 4: its joint on the base bends beyond its cone
-        if not (cos_base_lean_4 >= least_cos_base):
+        if not (along_base_cone_4 >= l4 * least_cos_base):
             missing = (
-                arctan2(root(1.0 - cos_base_lean_4 * cos_base_lean_4) + 0.0, cos_base_lean_4 + 0.0)
-                - arctan2(root(1.0 - least_cos_base * least_cos_base) + 0.0, least_cos_base + 0.0)
+                arctan2(root((l4 - along_base_cone_4) * (along_base_cone_4 + l4)) + 0.0, along_base_cone_4 + 0.0)
+                - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 4: its joint on the base bends beyond its cone [deg]", missing)
-        one_by_l5 = 1.0 / l5
-        along_5_x = one_by_l5 * span_5_x
-        along_5_y = one_by_l5 * span_5_y
-        along_5_z = one_by_l5 * span_5_z
-        cos_base_lean_5 = along_5_x * home_along_5_x + along_5_y * home_along_5_y + along_5_z * home_along_5_z
+        # leg 5: how far it reaches along the axis of its cone on the base
+        along_base_cone_5 = home_along_5_x * span_5_x + home_along_5_y * span_5_y + home_along_5_z * span_5_z
         # leg 5: its joint on the base bends beyond its cone
-        if not (cos_base_lean_5 >= least_cos_base):
+        if not (along_base_cone_5 >= l5 * least_cos_base):
             missing = (
-                arctan2(root(1.0 - cos_base_lean_5 * cos_base_lean_5) + 0.0, cos_base_lean_5 + 0.0)
-                - arctan2(root(1.0 - least_cos_base * least_cos_base) + 0.0, least_cos_base + 0.0)
+                arctan2(root((l5 - along_base_cone_5) * (along_base_cone_5 + l5)) + 0.0, along_base_cone_5 + 0.0)
+                - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 5: its joint on the base bends beyond its cone [deg]", missing)
-        one_by_l6 = 1.0 / l6
-        along_6_x = one_by_l6 * span_6_x
-        along_6_y = one_by_l6 * span_6_y
-        along_6_z = one_by_l6 * span_6_z
-        cos_base_lean_6 = along_6_x * home_along_6_x + along_6_y * home_along_6_y + along_6_z * home_along_6_z
+        # leg 6: how far it reaches along the axis of its cone on the base
+        along_base_cone_6 = home_along_6_x * span_6_x + home_along_6_y * span_6_y + home_along_6_z * span_6_z
         # leg 6: its joint on the base bends beyond its cone
-        if not (cos_base_lean_6 >= least_cos_base):
+        if not (along_base_cone_6 >= l6 * least_cos_base):
             missing = (
-                arctan2(root(1.0 - cos_base_lean_6 * cos_base_lean_6) + 0.0, cos_base_lean_6 + 0.0)
-                - arctan2(root(1.0 - least_cos_base * least_cos_base) + 0.0, least_cos_base + 0.0)
+                arctan2(root((l6 - along_base_cone_6) * (along_base_cone_6 + l6)) + 0.0, along_base_cone_6 + 0.0)
+                - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 6: its joint on the base bends beyond its cone [deg]", missing)
         cone_axis_1_x = plate_axis_1_x * r11 + plate_axis_1_y * r12 + plate_axis_1_z * r13
         cone_axis_1_y = plate_axis_1_x * r21 + plate_axis_1_y * r22 + plate_axis_1_z * r23
         cone_axis_1_z = plate_axis_1_x * r31 + plate_axis_1_y * r32 + plate_axis_1_z * r33
-        cos_plate_lean_1 = along_1_x * cone_axis_1_x + along_1_y * cone_axis_1_y + along_1_z * cone_axis_1_z
+        # leg 1: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_1 = cone_axis_1_x * span_1_x + cone_axis_1_y * span_1_y + cone_axis_1_z * span_1_z
         # leg 1: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_1 >= least_cos_plate):
+        if not (along_plate_cone_1 >= l1 * least_cos_plate):
             missing = (
-                arctan2(root(1.0 - cos_plate_lean_1 * cos_plate_lean_1) + 0.0, cos_plate_lean_1 + 0.0)
-                - arctan2(root(1.0 - least_cos_plate * least_cos_plate) + 0.0, least_cos_plate + 0.0)
+                arctan2(root((l1 - along_plate_cone_1) * (along_plate_cone_1 + l1)) + 0.0, along_plate_cone_1 + 0.0)
+                - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 1: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_2_x = plate_axis_2_x * r11 + plate_axis_2_y * r12 + plate_axis_2_z * r13
         cone_axis_2_y = plate_axis_2_x * r21 + plate_axis_2_y * r22 + plate_axis_2_z * r23
         cone_axis_2_z = plate_axis_2_x * r31 + plate_axis_2_y * r32 + plate_axis_2_z * r33
-        cos_plate_lean_2 = along_2_x * cone_axis_2_x + along_2_y * cone_axis_2_y + along_2_z * cone_axis_2_z
+        # leg 2: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_2 = cone_axis_2_x * span_2_x + cone_axis_2_y * span_2_y + cone_axis_2_z * span_2_z
         # leg 2: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_2 >= least_cos_plate):
+        if not (along_plate_cone_2 >= l2 * least_cos_plate):
             missing = (
-                arctan2(root(1.0 - cos_plate_lean_2 * cos_plate_lean_2) + 0.0, cos_plate_lean_2 + 0.0)
-                - arctan2(root(1.0 - least_cos_plate * least_cos_plate) + 0.0, least_cos_plate + 0.0)
+                arctan2(root((l2 - along_plate_cone_2) * (along_plate_cone_2 + l2)) + 0.0, along_plate_cone_2 + 0.0)
+                - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 2: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_3_x = plate_axis_3_x * r11 + plate_axis_3_y * r12 + plate_axis_3_z * r13
         cone_axis_3_y = plate_axis_3_x * r21 + plate_axis_3_y * r22 + plate_axis_3_z * r23
         cone_axis_3_z = plate_axis_3_x * r31 + plate_axis_3_y * r32 + plate_axis_3_z * r33
-        cos_plate_lean_3 = along_3_x * cone_axis_3_x + along_3_y * cone_axis_3_y + along_3_z * cone_axis_3_z
+        # leg 3: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_3 = cone_axis_3_x * span_3_x + cone_axis_3_y * span_3_y + cone_axis_3_z * span_3_z
         # leg 3: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_3 >= least_cos_plate):
+        if not (along_plate_cone_3 >= l3 * least_cos_plate):
             missing = (
-                arctan2(root(1.0 - cos_plate_lean_3 * cos_plate_lean_3) + 0.0, cos_plate_lean_3 + 0.0)
-                - arctan2(root(1.0 - least_cos_plate * least_cos_plate) + 0.0, least_cos_plate + 0.0)
+                arctan2(root((l3 - along_plate_cone_3) * (along_plate_cone_3 + l3)) + 0.0, along_plate_cone_3 + 0.0)
+                - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 3: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_4_x = plate_axis_4_x * r11 + plate_axis_4_y * r12 + plate_axis_4_z * r13
         cone_axis_4_y = plate_axis_4_x * r21 + plate_axis_4_y * r22 + plate_axis_4_z * r23
         cone_axis_4_z = plate_axis_4_x * r31 + plate_axis_4_y * r32 + plate_axis_4_z * r33
-        cos_plate_lean_4 = along_4_x * cone_axis_4_x + along_4_y * cone_axis_4_y + along_4_z * cone_axis_4_z
+        # leg 4: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_4 = cone_axis_4_x * span_4_x + cone_axis_4_y * span_4_y + cone_axis_4_z * span_4_z
         # leg 4: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_4 >= least_cos_plate):
+        if not (along_plate_cone_4 >= l4 * least_cos_plate):
             missing = (
-                arctan2(root(1.0 - cos_plate_lean_4 * cos_plate_lean_4) + 0.0, cos_plate_lean_4 + 0.0)
-                - arctan2(root(1.0 - least_cos_plate * least_cos_plate) + 0.0, least_cos_plate + 0.0)
+                arctan2(root((l4 - along_plate_cone_4) * (along_plate_cone_4 + l4)) + 0.0, along_plate_cone_4 + 0.0)
+                - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 4: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_5_x = plate_axis_5_x * r11 + plate_axis_5_y * r12 + plate_axis_5_z * r13
         cone_axis_5_y = plate_axis_5_x * r21 + plate_axis_5_y * r22 + plate_axis_5_z * r23
         cone_axis_5_z = plate_axis_5_x * r31 + plate_axis_5_y * r32 + plate_axis_5_z * r33
-        cos_plate_lean_5 = along_5_x * cone_axis_5_x + along_5_y * cone_axis_5_y + along_5_z * cone_axis_5_z
+        # leg 5: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_5 = cone_axis_5_x * span_5_x + cone_axis_5_y * span_5_y + cone_axis_5_z * span_5_z
         # leg 5: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_5 >= least_cos_plate):
+        if not (along_plate_cone_5 >= l5 * least_cos_plate):
             missing = (
-                arctan2(root(1.0 - cos_plate_lean_5 * cos_plate_lean_5) + 0.0, cos_plate_lean_5 + 0.0)
-                - arctan2(root(1.0 - least_cos_plate * least_cos_plate) + 0.0, least_cos_plate + 0.0)
+                arctan2(root((l5 - along_plate_cone_5) * (along_plate_cone_5 + l5)) + 0.0, along_plate_cone_5 + 0.0)
+                - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 5: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_6_x = plate_axis_6_x * r11 + plate_axis_6_y * r12 + plate_axis_6_z * r13
         cone_axis_6_y = plate_axis_6_x * r21 + plate_axis_6_y * r22 + plate_axis_6_z * r23
         cone_axis_6_z = plate_axis_6_x * r31 + plate_axis_6_y * r32 + plate_axis_6_z * r33
-        cos_plate_lean_6 = along_6_x * cone_axis_6_x + along_6_y * cone_axis_6_y + along_6_z * cone_axis_6_z
+        # leg 6: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_6 = cone_axis_6_x * span_6_x + cone_axis_6_y * span_6_y + cone_axis_6_z * span_6_z
         # leg 6: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_6 >= least_cos_plate):
+        if not (along_plate_cone_6 >= l6 * least_cos_plate):
             missing = (
-                arctan2(root(1.0 - cos_plate_lean_6 * cos_plate_lean_6) + 0.0, cos_plate_lean_6 + 0.0)
-                - arctan2(root(1.0 - least_cos_plate * least_cos_plate) + 0.0, least_cos_plate + 0.0)
+                arctan2(root((l6 - along_plate_cone_6) * (along_plate_cone_6 + l6)) + 0.0, along_plate_cone_6 + 0.0)
+                - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 6: its joint on the plate bends beyond its cone [deg]", missing)
-        moment_1_x = (along_1_z * arm_1_y - along_1_y * arm_1_z) * one_by_platform_radius
-        moment_1_y = (along_1_x * arm_1_z - along_1_z * arm_1_x) * one_by_platform_radius
-        moment_1_z = (along_1_y * arm_1_x - along_1_x * arm_1_y) * one_by_platform_radius
-        moment_2_x = (along_2_z * arm_2_y - along_2_y * arm_2_z) * one_by_platform_radius
-        moment_2_y = (along_2_x * arm_2_z - along_2_z * arm_2_x) * one_by_platform_radius
-        moment_2_z = (along_2_y * arm_2_x - along_2_x * arm_2_y) * one_by_platform_radius
-        moment_3_x = (along_3_z * arm_3_y - along_3_y * arm_3_z) * one_by_platform_radius
-        moment_3_y = (along_3_x * arm_3_z - along_3_z * arm_3_x) * one_by_platform_radius
-        moment_3_z = (along_3_y * arm_3_x - along_3_x * arm_3_y) * one_by_platform_radius
-        moment_4_x = (along_4_z * arm_4_y - along_4_y * arm_4_z) * one_by_platform_radius
-        moment_4_y = (along_4_x * arm_4_z - along_4_z * arm_4_x) * one_by_platform_radius
-        moment_4_z = (along_4_y * arm_4_x - along_4_x * arm_4_y) * one_by_platform_radius
-        moment_5_x = (along_5_z * arm_5_y - along_5_y * arm_5_z) * one_by_platform_radius
-        moment_5_y = (along_5_x * arm_5_z - along_5_z * arm_5_x) * one_by_platform_radius
-        moment_5_z = (along_5_y * arm_5_x - along_5_x * arm_5_y) * one_by_platform_radius
-        moment_6_x = (along_6_z * arm_6_y - along_6_y * arm_6_z) * one_by_platform_radius
-        moment_6_y = (along_6_x * arm_6_z - along_6_z * arm_6_x) * one_by_platform_radius
-        moment_6_z = (along_6_y * arm_6_x - along_6_x * arm_6_y) * one_by_platform_radius
-        # determinant of the legs as lines: zero in a type 2 singularity
-        (determinant,) = solve(
+        # leg 1: the moment of its span about the platform's origin
+        moment_1_x = (arm_1_y * span_1_z - arm_1_z * span_1_y) * one_by_platform_radius
+        moment_1_y = (arm_1_z * span_1_x - arm_1_x * span_1_z) * one_by_platform_radius
+        moment_1_z = (arm_1_x * span_1_y - arm_1_y * span_1_x) * one_by_platform_radius
+        # leg 2: the moment of its span about the platform's origin
+        moment_2_x = (arm_2_y * span_2_z - arm_2_z * span_2_y) * one_by_platform_radius
+        moment_2_y = (arm_2_z * span_2_x - arm_2_x * span_2_z) * one_by_platform_radius
+        moment_2_z = (arm_2_x * span_2_y - arm_2_y * span_2_x) * one_by_platform_radius
+        # leg 3: the moment of its span about the platform's origin
+        moment_3_x = (arm_3_y * span_3_z - arm_3_z * span_3_y) * one_by_platform_radius
+        moment_3_y = (arm_3_z * span_3_x - arm_3_x * span_3_z) * one_by_platform_radius
+        moment_3_z = (arm_3_x * span_3_y - arm_3_y * span_3_x) * one_by_platform_radius
+        # leg 4: the moment of its span about the platform's origin
+        moment_4_x = (arm_4_y * span_4_z - arm_4_z * span_4_y) * one_by_platform_radius
+        moment_4_y = (arm_4_z * span_4_x - arm_4_x * span_4_z) * one_by_platform_radius
+        moment_4_z = (arm_4_x * span_4_y - arm_4_y * span_4_x) * one_by_platform_radius
+        # leg 5: the moment of its span about the platform's origin
+        moment_5_x = (arm_5_y * span_5_z - arm_5_z * span_5_y) * one_by_platform_radius
+        moment_5_y = (arm_5_z * span_5_x - arm_5_x * span_5_z) * one_by_platform_radius
+        moment_5_z = (arm_5_x * span_5_y - arm_5_y * span_5_x) * one_by_platform_radius
+        # leg 6: the moment of its span about the platform's origin
+        moment_6_x = (arm_6_y * span_6_z - arm_6_z * span_6_y) * one_by_platform_radius
+        moment_6_y = (arm_6_z * span_6_x - arm_6_x * span_6_z) * one_by_platform_radius
+        moment_6_z = (arm_6_x * span_6_y - arm_6_y * span_6_x) * one_by_platform_radius
+        # determinant of the spans of the legs and their moments
+        (determinant_of_spans,) = solve(
             (
-                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
-                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
-                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
-                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
-                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
-                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+                (span_1_x, span_1_y, span_1_z, moment_1_x, moment_1_y, moment_1_z),
+                (span_2_x, span_2_y, span_2_z, moment_2_x, moment_2_y, moment_2_z),
+                (span_3_x, span_3_y, span_3_z, moment_3_x, moment_3_y, moment_3_z),
+                (span_4_x, span_4_y, span_4_z, moment_4_x, moment_4_y, moment_4_z),
+                (span_5_x, span_5_y, span_5_z, moment_5_x, moment_5_y, moment_5_z),
+                (span_6_x, span_6_y, span_6_z, moment_6_x, moment_6_y, moment_6_z),
             ),
             (),
         )
+        # the same of unit vectors: margin of the platform, zero in a type 2 singularity
+        determinant = determinant_of_spans / (l1 * l2 * l3 * l4 * l5 * l6)
         # rods_dependent: the other assembly mode, or too near to losing the plate
         if not (assembly_sign * determinant >= min_type2_margin):
             missing = min_type2_margin - assembly_sign * determinant
@@ -1658,162 +1654,158 @@ class Hexapod(IterativeForward):
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link):
             return None
-        # leg 1 as a line: unit vector, and its moment about the platform's origin
-        divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
-        one_by_l1 = 1.0 / divisor_1
-        along_1_x = one_by_l1 * span_1_x
-        along_1_y = one_by_l1 * span_1_y
-        along_1_z = one_by_l1 * span_1_z
-        cos_base_lean_1 = along_1_x * home_along_1_x + along_1_y * home_along_1_y + along_1_z * home_along_1_z
+        # leg 1: how far it reaches along the axis of its cone on the base
+        along_base_cone_1 = home_along_1_x * span_1_x + home_along_1_y * span_1_y + home_along_1_z * span_1_z
         # leg 1: its joint on the base bends beyond its cone
-        if not (cos_base_lean_1 >= least_cos_base):
+        if not (along_base_cone_1 >= l1 * least_cos_base):
             return None
-        # leg 2 as a line: unit vector, and its moment about the platform's origin
-        divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
-        one_by_l2 = 1.0 / divisor_2
-        along_2_x = one_by_l2 * span_2_x
-        along_2_y = one_by_l2 * span_2_y
-        along_2_z = one_by_l2 * span_2_z
-        cos_base_lean_2 = along_2_x * home_along_2_x + along_2_y * home_along_2_y + along_2_z * home_along_2_z
+        # leg 2: how far it reaches along the axis of its cone on the base
+        along_base_cone_2 = home_along_2_x * span_2_x + home_along_2_y * span_2_y + home_along_2_z * span_2_z
         # leg 2: its joint on the base bends beyond its cone
-        if not (cos_base_lean_2 >= least_cos_base):
+        if not (along_base_cone_2 >= l2 * least_cos_base):
             return None
-        # leg 3 as a line: unit vector, and its moment about the platform's origin
-        divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
-        one_by_l3 = 1.0 / divisor_3
-        along_3_x = one_by_l3 * span_3_x
-        along_3_y = one_by_l3 * span_3_y
-        along_3_z = one_by_l3 * span_3_z
-        cos_base_lean_3 = along_3_x * home_along_3_x + along_3_y * home_along_3_y + along_3_z * home_along_3_z
+        # leg 3: how far it reaches along the axis of its cone on the base
+        along_base_cone_3 = home_along_3_x * span_3_x + home_along_3_y * span_3_y + home_along_3_z * span_3_z
         # leg 3: its joint on the base bends beyond its cone
-        if not (cos_base_lean_3 >= least_cos_base):
+        if not (along_base_cone_3 >= l3 * least_cos_base):
             return None
-        # leg 4 as a line: unit vector, and its moment about the platform's origin
-        divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
-        one_by_l4 = 1.0 / divisor_4
-        along_4_x = one_by_l4 * span_4_x
-        along_4_y = one_by_l4 * span_4_y
-        along_4_z = one_by_l4 * span_4_z
-        cos_base_lean_4 = along_4_x * home_along_4_x + along_4_y * home_along_4_y + along_4_z * home_along_4_z
+        # leg 4: how far it reaches along the axis of its cone on the base
+        along_base_cone_4 = home_along_4_x * span_4_x + home_along_4_y * span_4_y + home_along_4_z * span_4_z
         # leg 4: its joint on the base bends beyond its cone
-        if not (cos_base_lean_4 >= least_cos_base):
+        if not (along_base_cone_4 >= l4 * least_cos_base):
             return None
-        # leg 5 as a line: unit vector, and its moment about the platform's origin
-        divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
-        one_by_l5 = 1.0 / divisor_5
-        along_5_x = one_by_l5 * span_5_x
-        along_5_y = one_by_l5 * span_5_y
-        along_5_z = one_by_l5 * span_5_z
-        cos_base_lean_5 = along_5_x * home_along_5_x + along_5_y * home_along_5_y + along_5_z * home_along_5_z
+        # leg 5: how far it reaches along the axis of its cone on the base
+        along_base_cone_5 = home_along_5_x * span_5_x + home_along_5_y * span_5_y + home_along_5_z * span_5_z
         # leg 5: its joint on the base bends beyond its cone
-        if not (cos_base_lean_5 >= least_cos_base):
+        if not (along_base_cone_5 >= l5 * least_cos_base):
             return None
-        # leg 6 as a line: unit vector, and its moment about the platform's origin
-        divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
-        one_by_l6 = 1.0 / divisor_6
-        along_6_x = one_by_l6 * span_6_x
-        along_6_y = one_by_l6 * span_6_y
-        along_6_z = one_by_l6 * span_6_z
-        cos_base_lean_6 = along_6_x * home_along_6_x + along_6_y * home_along_6_y + along_6_z * home_along_6_z
+        # leg 6: how far it reaches along the axis of its cone on the base
+        along_base_cone_6 = home_along_6_x * span_6_x + home_along_6_y * span_6_y + home_along_6_z * span_6_z
         # leg 6: its joint on the base bends beyond its cone
-        if not (cos_base_lean_6 >= least_cos_base):
+        if not (along_base_cone_6 >= l6 * least_cos_base):
             return None
         cone_axis_1_x = plate_axis_1_x * r11 + plate_axis_1_y * r12 + plate_axis_1_z * r13
         cone_axis_1_y = plate_axis_1_x * r21 + plate_axis_1_y * r22 + plate_axis_1_z * r23
         cone_axis_1_z = plate_axis_1_x * r31 + plate_axis_1_y * r32 + plate_axis_1_z * r33
-        cos_plate_lean_1 = along_1_x * cone_axis_1_x + along_1_y * cone_axis_1_y + along_1_z * cone_axis_1_z
+        # leg 1: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_1 = cone_axis_1_x * span_1_x + cone_axis_1_y * span_1_y + cone_axis_1_z * span_1_z
         # leg 1: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_1 >= least_cos_plate):
+        if not (along_plate_cone_1 >= l1 * least_cos_plate):
             return None
         cone_axis_2_x = plate_axis_2_x * r11 + plate_axis_2_y * r12 + plate_axis_2_z * r13
         cone_axis_2_y = plate_axis_2_x * r21 + plate_axis_2_y * r22 + plate_axis_2_z * r23
         cone_axis_2_z = plate_axis_2_x * r31 + plate_axis_2_y * r32 + plate_axis_2_z * r33
-        cos_plate_lean_2 = along_2_x * cone_axis_2_x + along_2_y * cone_axis_2_y + along_2_z * cone_axis_2_z
+        # leg 2: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_2 = cone_axis_2_x * span_2_x + cone_axis_2_y * span_2_y + cone_axis_2_z * span_2_z
         # leg 2: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_2 >= least_cos_plate):
+        if not (along_plate_cone_2 >= l2 * least_cos_plate):
             return None
         cone_axis_3_x = plate_axis_3_x * r11 + plate_axis_3_y * r12 + plate_axis_3_z * r13
         cone_axis_3_y = plate_axis_3_x * r21 + plate_axis_3_y * r22 + plate_axis_3_z * r23
         cone_axis_3_z = plate_axis_3_x * r31 + plate_axis_3_y * r32 + plate_axis_3_z * r33
-        cos_plate_lean_3 = along_3_x * cone_axis_3_x + along_3_y * cone_axis_3_y + along_3_z * cone_axis_3_z
+        # leg 3: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_3 = cone_axis_3_x * span_3_x + cone_axis_3_y * span_3_y + cone_axis_3_z * span_3_z
         # leg 3: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_3 >= least_cos_plate):
+        if not (along_plate_cone_3 >= l3 * least_cos_plate):
             return None
         cone_axis_4_x = plate_axis_4_x * r11 + plate_axis_4_y * r12 + plate_axis_4_z * r13
         cone_axis_4_y = plate_axis_4_x * r21 + plate_axis_4_y * r22 + plate_axis_4_z * r23
         cone_axis_4_z = plate_axis_4_x * r31 + plate_axis_4_y * r32 + plate_axis_4_z * r33
-        cos_plate_lean_4 = along_4_x * cone_axis_4_x + along_4_y * cone_axis_4_y + along_4_z * cone_axis_4_z
+        # leg 4: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_4 = cone_axis_4_x * span_4_x + cone_axis_4_y * span_4_y + cone_axis_4_z * span_4_z
         # leg 4: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_4 >= least_cos_plate):
+        if not (along_plate_cone_4 >= l4 * least_cos_plate):
             return None
         cone_axis_5_x = plate_axis_5_x * r11 + plate_axis_5_y * r12 + plate_axis_5_z * r13
         cone_axis_5_y = plate_axis_5_x * r21 + plate_axis_5_y * r22 + plate_axis_5_z * r23
         cone_axis_5_z = plate_axis_5_x * r31 + plate_axis_5_y * r32 + plate_axis_5_z * r33
-        cos_plate_lean_5 = along_5_x * cone_axis_5_x + along_5_y * cone_axis_5_y + along_5_z * cone_axis_5_z
+        # leg 5: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_5 = cone_axis_5_x * span_5_x + cone_axis_5_y * span_5_y + cone_axis_5_z * span_5_z
         # leg 5: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_5 >= least_cos_plate):
+        if not (along_plate_cone_5 >= l5 * least_cos_plate):
             return None
         cone_axis_6_x = plate_axis_6_x * r11 + plate_axis_6_y * r12 + plate_axis_6_z * r13
         cone_axis_6_y = plate_axis_6_x * r21 + plate_axis_6_y * r22 + plate_axis_6_z * r23
         cone_axis_6_z = plate_axis_6_x * r31 + plate_axis_6_y * r32 + plate_axis_6_z * r33
-        cos_plate_lean_6 = along_6_x * cone_axis_6_x + along_6_y * cone_axis_6_y + along_6_z * cone_axis_6_z
+        # leg 6: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_6 = cone_axis_6_x * span_6_x + cone_axis_6_y * span_6_y + cone_axis_6_z * span_6_z
         # leg 6: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_6 >= least_cos_plate):
+        if not (along_plate_cone_6 >= l6 * least_cos_plate):
             return None
-        # determinant of the legs as lines: zero in a type 2 singularity
-        (determinant,) = solve(
+        # leg 1: the moment of its span about the platform's origin
+        moment_1_x = (arm_1_y * span_1_z - arm_1_z * span_1_y) * one_by_platform_radius
+        # leg 2: the moment of its span about the platform's origin
+        moment_2_x = (arm_2_y * span_2_z - arm_2_z * span_2_y) * one_by_platform_radius
+        # leg 3: the moment of its span about the platform's origin
+        moment_3_x = (arm_3_y * span_3_z - arm_3_z * span_3_y) * one_by_platform_radius
+        # leg 4: the moment of its span about the platform's origin
+        moment_4_x = (arm_4_y * span_4_z - arm_4_z * span_4_y) * one_by_platform_radius
+        # leg 5: the moment of its span about the platform's origin
+        moment_5_x = (arm_5_y * span_5_z - arm_5_z * span_5_y) * one_by_platform_radius
+        # leg 6: the moment of its span about the platform's origin
+        moment_6_x = (arm_6_y * span_6_z - arm_6_z * span_6_y) * one_by_platform_radius
+        # determinant of the spans of the legs and their moments
+        (determinant_of_spans,) = solve(
             (
                 (
-                    along_1_x,
-                    along_1_y,
-                    along_1_z,
-                    (along_1_z * arm_1_y - along_1_y * arm_1_z) * one_by_platform_radius,
-                    (along_1_x * arm_1_z - along_1_z * arm_1_x) * one_by_platform_radius,
-                    (along_1_y * arm_1_x - along_1_x * arm_1_y) * one_by_platform_radius,
+                    span_1_x,
+                    span_1_y,
+                    span_1_z,
+                    moment_1_x,
+                    (arm_1_z * span_1_x - arm_1_x * span_1_z) * one_by_platform_radius,
+                    (arm_1_x * span_1_y - arm_1_y * span_1_x) * one_by_platform_radius,
                 ),
                 (
-                    along_2_x,
-                    along_2_y,
-                    along_2_z,
-                    (along_2_z * arm_2_y - along_2_y * arm_2_z) * one_by_platform_radius,
-                    (along_2_x * arm_2_z - along_2_z * arm_2_x) * one_by_platform_radius,
-                    (along_2_y * arm_2_x - along_2_x * arm_2_y) * one_by_platform_radius,
+                    span_2_x,
+                    span_2_y,
+                    span_2_z,
+                    moment_2_x,
+                    (arm_2_z * span_2_x - arm_2_x * span_2_z) * one_by_platform_radius,
+                    (arm_2_x * span_2_y - arm_2_y * span_2_x) * one_by_platform_radius,
                 ),
                 (
-                    along_3_x,
-                    along_3_y,
-                    along_3_z,
-                    (along_3_z * arm_3_y - along_3_y * arm_3_z) * one_by_platform_radius,
-                    (along_3_x * arm_3_z - along_3_z * arm_3_x) * one_by_platform_radius,
-                    (along_3_y * arm_3_x - along_3_x * arm_3_y) * one_by_platform_radius,
+                    span_3_x,
+                    span_3_y,
+                    span_3_z,
+                    moment_3_x,
+                    (arm_3_z * span_3_x - arm_3_x * span_3_z) * one_by_platform_radius,
+                    (arm_3_x * span_3_y - arm_3_y * span_3_x) * one_by_platform_radius,
                 ),
                 (
-                    along_4_x,
-                    along_4_y,
-                    along_4_z,
-                    (along_4_z * arm_4_y - along_4_y * arm_4_z) * one_by_platform_radius,
-                    (along_4_x * arm_4_z - along_4_z * arm_4_x) * one_by_platform_radius,
-                    (along_4_y * arm_4_x - along_4_x * arm_4_y) * one_by_platform_radius,
+                    span_4_x,
+                    span_4_y,
+                    span_4_z,
+                    moment_4_x,
+                    (arm_4_z * span_4_x - arm_4_x * span_4_z) * one_by_platform_radius,
+                    (arm_4_x * span_4_y - arm_4_y * span_4_x) * one_by_platform_radius,
                 ),
                 (
-                    along_5_x,
-                    along_5_y,
-                    along_5_z,
-                    (along_5_z * arm_5_y - along_5_y * arm_5_z) * one_by_platform_radius,
-                    (along_5_x * arm_5_z - along_5_z * arm_5_x) * one_by_platform_radius,
-                    (along_5_y * arm_5_x - along_5_x * arm_5_y) * one_by_platform_radius,
+                    span_5_x,
+                    span_5_y,
+                    span_5_z,
+                    moment_5_x,
+                    (arm_5_z * span_5_x - arm_5_x * span_5_z) * one_by_platform_radius,
+                    (arm_5_x * span_5_y - arm_5_y * span_5_x) * one_by_platform_radius,
                 ),
                 (
-                    along_6_x,
-                    along_6_y,
-                    along_6_z,
-                    (along_6_z * arm_6_y - along_6_y * arm_6_z) * one_by_platform_radius,
-                    (along_6_x * arm_6_z - along_6_z * arm_6_x) * one_by_platform_radius,
-                    (along_6_y * arm_6_x - along_6_x * arm_6_y) * one_by_platform_radius,
+                    span_6_x,
+                    span_6_y,
+                    span_6_z,
+                    moment_6_x,
+                    (arm_6_z * span_6_x - arm_6_x * span_6_z) * one_by_platform_radius,
+                    (arm_6_x * span_6_y - arm_6_y * span_6_x) * one_by_platform_radius,
                 ),
             ),
             (),
         )
+        divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
+        divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
+        divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
+        divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
+        divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
+        divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
+        # the same of unit vectors: margin of the platform, zero in a type 2 singularity
+        determinant = determinant_of_spans / (divisor_1 * divisor_2 * divisor_3 * divisor_4 * divisor_5 * divisor_6)
         # rods_dependent: the other assembly mode, or too near to losing the plate
         if not (assembly_sign * determinant >= min_type2_margin):
             return None

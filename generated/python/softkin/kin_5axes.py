@@ -238,7 +238,7 @@ class Kin5Axes(Mechanism):
         tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
         if not are_usable(x, y, z, ref_a, ref_b):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x = x - r13 * tool_length_times_tool_side  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - r13 * tool_length_times_tool_side  # wrist centre: the last joints do not move this point
         axis_x = offset_x + wrist_x
         wrist_y = y - r23 * tool_length_times_tool_side
         axis_y = offset_y + wrist_y
@@ -253,9 +253,9 @@ class Kin5Axes(Mechanism):
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a
         else:
-            free_a = (ref_a - offset_a) * DEGREE
-            direction_x_a = cos(free_a)
-            direction_y_a = sin(free_a)
+            reference_a = (ref_a - offset_a) * DEGREE
+            direction_x_a = cos(reference_a)
+            direction_y_a = sin(reference_a)
         open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
         near_a = 360.0 * (turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
         axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0) / DEGREE  # A: whole turns added

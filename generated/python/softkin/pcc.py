@@ -201,8 +201,8 @@ class PCC(OffsetKinematics):
             link_length_1_minus_link_length_2 + reach
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
+        sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = sum_a2_from_a1 if sum_a2_from_a1 > 0.0 else 1.0
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / divisor_of_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
@@ -234,9 +234,9 @@ class PCC(OffsetKinematics):
             direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
             direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            direction_x_a1 = cos(free_a1)
-            direction_y_a1 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            direction_x_a1 = cos(reference_a1)
+            direction_y_a1 = sin(reference_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -353,8 +353,8 @@ class PCC(OffsetKinematics):
             link_length_1_minus_link_length_2 + reach
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
+        sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = sum_a2_from_a1 if sum_a2_from_a1 > 0.0 else 1.0
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / divisor_of_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
@@ -386,9 +386,9 @@ class PCC(OffsetKinematics):
             direction_x_a1 = arm_across_a1 * flange_y + arm_along_a1 * flange_x
             direction_y_a1 = arm_along_a1 * flange_y - arm_across_a1 * flange_x
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            direction_x_a1 = cos(free_a1)
-            direction_y_a1 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            direction_x_a1 = cos(reference_a1)
+            direction_y_a1 = sin(reference_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1

@@ -176,9 +176,9 @@ class Polar(Mechanism):
             direction_x_c = x
             direction_y_c = y
         else:
-            free_c = (ref_c - offset_c) * DEGREE
-            direction_x_c = cos(free_c)
-            direction_y_c = sin(free_c)
+            reference_c = (ref_c - offset_c) * DEGREE
+            direction_x_c = cos(reference_c)
+            direction_y_c = sin(reference_c)
         open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
         near_c = 360.0 * (turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
         axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0) / DEGREE  # C: whole turns added
@@ -278,9 +278,9 @@ class Polar(Mechanism):
             direction_x_c = x
             direction_y_c = y
         else:
-            free_c = (ref_c - offset_c) * DEGREE
-            direction_x_c = cos(free_c)
-            direction_y_c = sin(free_c)
+            reference_c = (ref_c - offset_c) * DEGREE
+            direction_x_c = cos(reference_c)
+            direction_y_c = sin(reference_c)
         return (offset_c + arctan2(direction_y_c, direction_x_c) * RADIAN, offset_r + radius_c)
 
     def _array_programs(self) -> Programs:

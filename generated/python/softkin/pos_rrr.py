@@ -283,9 +283,9 @@ class PosRRR(OffsetKinematics):
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - d3 * y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + d3 * x) / distance_q1_squared
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
         # turned, within rounding, to where q3 has a solution
         if ahead_squared_q1 > machine_scale_squared_times_plane:
             ahead_q1 = ahead_q1_before_q1_for_q3
@@ -346,8 +346,8 @@ class PosRRR(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
@@ -378,15 +378,15 @@ class PosRRR(OffsetKinematics):
             direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
             direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            direction_x_q2 = cos(free_a2)
-            direction_y_q2 = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            direction_x_q2 = cos(reference_a2)
+            direction_y_q2 = sin(reference_a2)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = a3_by_effective_q3_2 * cos_swing_q3 - d4_by_effective_q3_2 * sin_swing_q3
         sin_q3 = a3_by_effective_q3_2 * sin_swing_q3 + d4_by_effective_q3_2 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
@@ -576,9 +576,9 @@ class PosRRR(OffsetKinematics):
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - tool_z * y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + tool_z * x) / distance_q1_squared
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
         # turned, within rounding, to where q3 has a solution
         if ahead_squared_q1 > machine_scale_squared_times_plane:
             ahead_q1 = ahead_q1_before_q1_for_q3
@@ -641,8 +641,8 @@ class PosRRR(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
@@ -666,7 +666,7 @@ class PosRRR(OffsetKinematics):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = (tool_x * cos_swing_q3 + tool_y * sin_swing_q3) / effective_q3
         sin_q3 = (tool_x * sin_swing_q3 - tool_y * cos_swing_q3) / effective_q3
         # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle
@@ -677,9 +677,9 @@ class PosRRR(OffsetKinematics):
             direction_x_q2 = arm_across_q2 * wrist_y_from_q1 - arm_along_q2 * wrist_x_from_q1
             direction_y_q2 = -arm_across_q2 * wrist_x_from_q1 - arm_along_q2 * wrist_y_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            direction_x_q2 = cos(free_a2)
-            direction_y_q2 = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            direction_x_q2 = cos(reference_a2)
+            direction_y_q2 = sin(reference_a2)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0) / DEGREE  # A2: whole turns added

@@ -204,8 +204,8 @@ class Scara3CCZ(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
@@ -231,9 +231,9 @@ class Scara3CCZ(OffsetKinematics):
             direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
             direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            direction_x_a1 = cos(free_a1)
-            direction_y_a1 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            direction_x_a1 = cos(reference_a1)
+            direction_y_a1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) / DEGREE  # A1: whole turns added
@@ -352,8 +352,8 @@ class Scara3CCZ(OffsetKinematics):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2) * (effective_a2 - link_length_1_minus_reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -369,7 +369,7 @@ class Scara3CCZ(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + point_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - point_y * cos_swing_a2) / effective_a2
         # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
@@ -380,9 +380,9 @@ class Scara3CCZ(OffsetKinematics):
             direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
             direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            direction_x_a1 = cos(free_a1)
-            direction_y_a1 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            direction_x_a1 = cos(reference_a1)
+            direction_y_a1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) / DEGREE  # A1: whole turns added

@@ -239,8 +239,8 @@ class Scara3Z(TwistChoice):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
@@ -266,9 +266,9 @@ class Scara3Z(TwistChoice):
             direction_x_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
             direction_y_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            direction_x_a1 = cos(free_a1)
-            direction_y_a1 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            direction_x_a1 = cos(reference_a1)
+            direction_y_a1 = sin(reference_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1

@@ -245,8 +245,8 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
@@ -273,9 +273,9 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
             direction_x_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
             direction_y_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            direction_x_a2 = cos(free_a2)
-            direction_y_a2 = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            direction_x_a2 = cos(reference_a2)
+            direction_y_a2 = sin(reference_a2)
         angle_a2 = arctan2(direction_y_a2 + 0.0, direction_x_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
@@ -421,9 +421,9 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         single_a2, single_a3 = k.single_a2, k.single_a3
         if not are_usable(x, y, z, point_x, point_y, point_z, ref_a2, ref_a3, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        free_a4 = (ref_a4 - offset_a4) * DEGREE
-        cos_a4 = cos(free_a4)
-        sin_a4 = sin(free_a4)
+        reference_a4 = (ref_a4 - offset_a4) * DEGREE
+        cos_a4 = cos(reference_a4)
+        sin_a4 = sin(reference_a4)
         link_length_3_plus_point_x = link_length_3 + point_x
         # commanded point, in the frame of the last moving joint
         tool_x = link_length_2 + link_length_3_plus_point_x * cos_a4 - point_y * sin_a4
@@ -441,8 +441,8 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (link_length_1_plus_reach - effective_a3) * (effective_a3 - link_length_1_minus_reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
@@ -460,7 +460,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         axis_a1 = a1 + offset_a1
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (tool_x * cos_swing_a3 + tool_y * sin_swing_a3) / effective_a3
         sin_a3 = (tool_x * sin_swing_a3 - tool_y * cos_swing_a3) / effective_a3
         # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle
@@ -471,9 +471,9 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
             direction_x_a2 = arm_across_a2 * y + arm_along_a2 * x
             direction_y_a2 = arm_along_a2 * y - arm_across_a2 * x
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            direction_x_a2 = cos(free_a2)
-            direction_y_a2 = sin(free_a2)
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            direction_x_a2 = cos(reference_a2)
+            direction_y_a2 = sin(reference_a2)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(direction_y_a2, direction_x_a2 + 0.0) / DEGREE  # A2: whole turns added

@@ -259,8 +259,8 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
@@ -286,9 +286,9 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
             direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
             direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            direction_x_a1 = cos(free_a1)
-            direction_y_a1 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            direction_x_a1 = cos(reference_a1)
+            direction_y_a1 = sin(reference_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -424,9 +424,9 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         offset_a4, part_of_z, single_a1, single_a2 = k.offset_a4, k.part_of_z, k.single_a1, k.single_a2
         if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        free_a4 = (ref_a4 - offset_a4) * DEGREE
-        cos_a4 = cos(free_a4)
-        sin_a4 = sin(free_a4)
+        reference_a4 = (ref_a4 - offset_a4) * DEGREE
+        cos_a4 = cos(reference_a4)
+        sin_a4 = sin(reference_a4)
         # commanded point, in the frame of the last moving joint
         tool_x = link_length_2 + point_x * cos_a4 - point_y * sin_a4
         tool_y = point_y * cos_a4 + point_x * sin_a4  # commanded point, in the frame of the last moving joint
@@ -442,8 +442,8 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2) * (effective_a2 - link_length_1_minus_reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -459,7 +459,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + tool_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - tool_y * cos_swing_a2) / effective_a2
         # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
@@ -470,9 +470,9 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
             direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
             direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            direction_x_a1 = cos(free_a1)
-            direction_y_a1 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            direction_x_a1 = cos(reference_a1)
+            direction_y_a1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) / DEGREE  # A1: whole turns added
@@ -483,7 +483,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        tool_z = point_z - free_a4 * part_of_z  # commanded point, in the frame of the last moving joint
+        tool_z = point_z - part_of_z * reference_a4  # commanded point, in the frame of the last moving joint
         a3 = z - tool_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, ref_a4)

@@ -283,8 +283,8 @@ class SCCC(OffsetKinematics, TwistChoice):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
@@ -310,9 +310,9 @@ class SCCC(OffsetKinematics, TwistChoice):
             direction_x_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
             direction_y_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            direction_x_a1 = cos(free_a1)
-            direction_y_a1 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            direction_x_a1 = cos(reference_a1)
+            direction_y_a1 = sin(reference_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -325,11 +325,11 @@ class SCCC(OffsetKinematics, TwistChoice):
         if turn_a2 != 0:
             near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2)
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2) * DEGREE
-            free_a2 = ref_motor_a2 + coupling_12 * free_a1
+            reference_a2 = ref_motor_a2 + coupling_12 * reference_a1
             # A2: without a commanded turn, the value nearest to this
-            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + free_a2 / DEGREE
+            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + reference_a2 / DEGREE
             near_a2 = open_a2
         axis_a2 = part_of_axis_a2 + angle_a2 / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
@@ -340,15 +340,15 @@ class SCCC(OffsetKinematics, TwistChoice):
         if turn_a3 != 0:
             near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3)
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2) * DEGREE
             # A3: without a commanded turn, the value nearest to this
             if single_a3:
                 open_a3 = mid_a3
             else:
                 ref_motor_a3 = (ref_a3 - offset_a3) * DEGREE
-                free_a3 = ref_motor_a3 + coupling_13 * free_a1 + coupling_23 * ref_motor_a2
-                open_a3 = offset_a3 + (free_a3 - part_of_axis_a3) / DEGREE
+                reference_a3 = ref_motor_a3 + coupling_13 * reference_a1 + coupling_23 * ref_motor_a2
+                open_a3 = offset_a3 + (reference_a3 - part_of_axis_a3) / DEGREE
             near_a3 = open_a3
         # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
         axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2 - part_of_axis_a3) / DEGREE
@@ -543,12 +543,12 @@ class SCCC(OffsetKinematics, TwistChoice):
         if not (abs(point_z - z) <= machine_scale_times_plane):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        free_a1 = (ref_a1 - offset_a1) * DEGREE
+        reference_a1 = (ref_a1 - offset_a1) * DEGREE
         ref_motor_a2 = (ref_a2 - offset_a2) * DEGREE
         ref_motor_a3 = (ref_a3 - offset_a3) * DEGREE
-        free_a3 = ref_motor_a3 + coupling_13 * free_a1 + coupling_23 * ref_motor_a2
-        cos_a3 = cos(free_a3)
-        sin_a3 = sin(free_a3)
+        reference_a3 = ref_motor_a3 + coupling_13 * reference_a1 + coupling_23 * ref_motor_a2
+        cos_a3 = cos(reference_a3)
+        sin_a3 = sin(reference_a3)
         link_length_3_plus_point_x = link_length_3 + point_x
         # commanded point, in the frame of the last moving joint
         tool_x = link_length_2 + link_length_3_plus_point_x * cos_a3 - point_y * sin_a3
@@ -566,8 +566,8 @@ class SCCC(OffsetKinematics, TwistChoice):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2) * (effective_a2 - link_length_1_minus_reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -583,7 +583,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + tool_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - tool_y * cos_swing_a2) / effective_a2
         # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
@@ -594,8 +594,8 @@ class SCCC(OffsetKinematics, TwistChoice):
             direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
             direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
-            direction_x_a1 = cos(free_a1)
-            direction_y_a1 = sin(free_a1)
+            direction_x_a1 = cos(reference_a1)
+            direction_y_a1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) / DEGREE  # A1: whole turns added
@@ -606,15 +606,15 @@ class SCCC(OffsetKinematics, TwistChoice):
         if turn_a2 != 0:
             near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2)
         else:
-            free_a2 = ref_motor_a2 + coupling_12 * free_a1
+            reference_a2 = ref_motor_a2 + coupling_12 * reference_a1
             # A2: without a commanded turn, the value nearest to this
-            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + free_a2 / DEGREE
+            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + reference_a2 / DEGREE
             near_a2 = open_a2
         axis_a2 = part_of_axis_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         motor_a2 = DEGREE * (axis_a2 - offset_a2)
-        axis_a3 = offset_a3 + (free_a3 - coupling_13 * motor_a1 - coupling_23 * motor_a2) / DEGREE
+        axis_a3 = offset_a3 + (reference_a3 - coupling_13 * motor_a1 - coupling_23 * motor_a2) / DEGREE
         return (axis_a1, axis_a2, axis_a3)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:

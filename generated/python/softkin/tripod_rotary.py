@@ -457,8 +457,8 @@ class TripodRotary(OffsetKinematics):
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -500,8 +500,8 @@ class TripodRotary(OffsetKinematics):
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -541,8 +541,8 @@ class TripodRotary(OffsetKinematics):
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
@@ -571,14 +571,14 @@ class TripodRotary(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_1_x * cos_swing_a1 - span_1_z * sin_swing_a1) / effective_a1
         rod_1_x = span_1_x + arm_length_1 * cos_a1
         sin_a1 = (span_1_z * cos_swing_a1 + span_1_x * sin_swing_a1) / effective_a1
         rod_1_z = span_1_z + arm_length_1 * sin_a1
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (across_a2 * sin_swing_a2 + along_a2 * cos_swing_a2) / effective_a2
         rod_2_x = span_2_x - half_arm_length_1 * cos_a2
         rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half * cos_a2
@@ -586,7 +586,7 @@ class TripodRotary(OffsetKinematics):
         rod_2_z = span_1_z + arm_length_1 * sin_a2
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_knee_3 / divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (across_a2 * sin_swing_a3 + along_a3 * cos_swing_a3) / effective_a3
         rod_3_x = span_2_x - half_arm_length_1 * cos_a3
         rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half * cos_a3
@@ -967,8 +967,8 @@ class TripodRotary(OffsetKinematics):
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -1010,8 +1010,8 @@ class TripodRotary(OffsetKinematics):
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -1051,8 +1051,8 @@ class TripodRotary(OffsetKinematics):
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
@@ -1081,14 +1081,14 @@ class TripodRotary(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_1_x * cos_swing_a1 - span_1_z * sin_swing_a1) / effective_a1
         rod_1_x = span_1_x + arm_length_1 * cos_a1
         sin_a1 = (span_1_z * cos_swing_a1 + span_1_x * sin_swing_a1) / effective_a1
         rod_1_z = span_1_z + arm_length_1 * sin_a1
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (across_a2 * sin_swing_a2 + along_a2 * cos_swing_a2) / effective_a2
         rod_2_x = span_2_x - half_arm_length_1 * cos_a2
         rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half * cos_a2
@@ -1096,7 +1096,7 @@ class TripodRotary(OffsetKinematics):
         rod_2_z = span_1_z + arm_length_1 * sin_a2
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_knee_3 / divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (across_a2 * sin_swing_a3 + along_a3 * cos_swing_a3) / effective_a3
         rod_3_x = span_2_x - half_arm_length_1 * cos_a3
         rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half * cos_a3

@@ -234,9 +234,9 @@ class Wrist2(OrientationKinematics):
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a
         else:
-            free_a = (ref_a - offset_a) * DEGREE
-            direction_x_a = cos(free_a)
-            direction_y_a = sin(free_a)
+            reference_a = (ref_a - offset_a) * DEGREE
+            direction_x_a = cos(reference_a)
+            direction_y_a = sin(reference_a)
         open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
         near_a = 360.0 * (turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
         axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0) / DEGREE  # A: whole turns added

@@ -227,9 +227,9 @@ class Wrist3(OrientationKinematics):
             direction_x_c = sigma_hand * r31
             direction_y_c = -sigma_hand * r32
         else:
-            free_c = (ref_c - offset_c) * DEGREE
-            direction_x_c = cos(free_c)
-            direction_y_c = sin(free_c)
+            reference_c = (ref_c - offset_c) * DEGREE
+            direction_x_c = cos(reference_c)
+            direction_y_c = sin(reference_c)
         scaled_r22_before_c = direction_x_c * r22 + direction_y_c * r21
         direction_y_a = -direction_x_c * r12 - direction_y_c * r11
         open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this

@@ -42,8 +42,6 @@ class ArrayPrograms(Programs):
     def try_joint(self, given: Values, status: Codes) -> Values:
         """The residual of the closure at a trial, its slope, and the angles that may turn fast."""
         (
-            free_a1,
-            free_a2,
             freed,
             freed_angle,
             goal_r11,
@@ -58,6 +56,8 @@ class ArrayPrograms(Programs):
             goal_x,
             goal_y,
             goal_z,
+            reference_a1,
+            reference_a2,
             side,
             tried,
             wanted_elbow,
@@ -66,7 +66,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x_tried = goal_x + (goal_r12 * sin_q6_tried - goal_r11 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r13
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r23
         # distance of the point from the axis of q1
@@ -74,8 +74,8 @@ class ArrayPrograms(Programs):
         slope_wrist_x_tried = k.j6_offset_x * (goal_r12 * cos_q6_tried + goal_r11 * sin_q6_tried)
         slope_wrist_y_tried = k.j6_offset_x * (goal_r22 * cos_q6_tried + goal_r21 * sin_q6_tried)
 
-        def elsewhere_cos_q1_tried(free_a1: Real, freed: Whole, freed_angle: Real) -> Reals:
-            chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1 where the pose leaves it free
+        def elsewhere_cos_q1_tried(freed: Whole, freed_angle: Real, reference_a1: Real) -> Reals:
+            chosen_q1 = select(freed == 0, freed_angle, reference_a1)  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
             return (cos_q1_tried, sin_q1_tried, 0.0, 0.0)
@@ -103,7 +103,7 @@ class ArrayPrograms(Programs):
             (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
             elsewhere_cos_q1_tried,
-            (free_a1, freed, freed_angle),
+            (freed, freed_angle, reference_a1),
         )
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - k.a1
@@ -122,7 +122,7 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried * part_of_one_plus_cos_q3_tried_2
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = k.j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried * cos_q1_tried
@@ -142,25 +142,25 @@ class ArrayPrograms(Programs):
         slope_one_plus_cos_q3_tried = (
             part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried
         ) * slope_reach_tried
-        slope_sum_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-        holds = sum_of_cos_q3_tried > 0.0
-        divisor_of_cos_q3_tried = select(holds, sum_of_cos_q3_tried, 1.0)
-        slope_divisor_of_cos_q3_tried = select(holds, slope_sum_of_cos_q3_tried, 0.0)
-        one_by_sum_of_cos_q3_tried = 1.0 / divisor_of_cos_q3_tried
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_of_cos_q3_tried
+        slope_sum_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+        holds = sum_q3_tried > 0.0
+        divisor_of_cos_q3_tried = select(holds, sum_q3_tried, 1.0)
+        slope_divisor_of_cos_q3_tried = select(holds, slope_sum_q3_tried, 0.0)
+        one_by_sum_q3_tried = 1.0 / divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_q3_tried
         sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
-        sin_swing_q3_tried = 2.0 * one_by_sum_of_cos_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
-        # addition theorem: plus the angle of the direction from which it is measured
+        sin_swing_q3_tried = 2.0 * one_by_sum_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
             slope_one_plus_cos_q3_tried
             - slope_one_less_cos_q3_tried
             - slope_divisor_of_cos_q3_tried * cos_swing_q3_tried
-        ) * one_by_sum_of_cos_q3_tried
+        ) * one_by_sum_q3_tried
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried * slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried * slope_one_less_cos_q3_tried
         )
@@ -174,7 +174,7 @@ class ArrayPrograms(Programs):
         slope_sin_swing_q3_tried = (
             2.0 * sign_elbow_tried * slope_root_of_sin_swing_q3_tried
             - slope_divisor_of_cos_q3_tried * sin_swing_q3_tried
-        ) * one_by_sum_of_cos_q3_tried
+        ) * one_by_sum_q3_tried
         slope_cos_q3_tried = (
             k.a3_by_effective_q3_tried * slope_cos_swing_q3_tried
             + k.d4_by_effective_q3_tried * slope_sin_swing_q3_tried
@@ -184,8 +184,8 @@ class ArrayPrograms(Programs):
             - k.d4_by_effective_q3_tried * slope_cos_swing_q3_tried
         )
 
-        def elsewhere_cos_q2_tried(free_a2: Real, freed: Whole, freed_angle: Real) -> Reals:
-            chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2 where the pose leaves it free
+        def elsewhere_cos_q2_tried(freed: Whole, freed_angle: Real, reference_a2: Real) -> Reals:
+            chosen_q2 = select(freed == 1, freed_angle, reference_a2)  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
             return (cos_q2_tried, sin_q2_tried, 0.0, 0.0)
@@ -234,7 +234,7 @@ class ArrayPrograms(Programs):
             (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
             elsewhere_cos_q2_tried,
-            (free_a2, freed, freed_angle),
+            (freed, freed_angle, reference_a2),
         )
         r11_from_q1_tried = goal_r11 * cos_q1_tried + goal_r21 * sin_q1_tried
         sin_q23_tried = cos_q2_tried * sin_q3_tried + cos_q3_tried * sin_q2_tried
@@ -286,8 +286,6 @@ class ArrayPrograms(Programs):
     def finish_root(self, given: Values, status: Codes) -> Values:
         """The joints at a root, improved by Newton's method, and whether they are on the branch."""
         (
-            free_a1,
-            free_a2,
             freed,
             freed_angle,
             goal_r11,
@@ -302,6 +300,8 @@ class ArrayPrograms(Programs):
             goal_x,
             goal_y,
             goal_z,
+            reference_a1,
+            reference_a2,
             side,
             tried,
             wanted_crossing,
@@ -312,14 +312,14 @@ class ArrayPrograms(Programs):
         k = self.constants
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x_tried = goal_x + (goal_r12 * sin_q6_tried - goal_r11 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r13
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
 
-        def elsewhere_cos_q1_tried(free_a1: Real, freed: Whole, freed_angle: Real) -> Reals:
-            chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1 where the pose leaves it free
+        def elsewhere_cos_q1_tried(freed: Whole, freed_angle: Real, reference_a1: Real) -> Reals:
+            chosen_q1 = select(freed == 0, freed_angle, reference_a1)  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
             return (cos_q1_tried, sin_q1_tried)
@@ -334,7 +334,7 @@ class ArrayPrograms(Programs):
             (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried),
             elsewhere_cos_q1_tried,
-            (free_a1, freed, freed_angle),
+            (freed, freed_angle, reference_a1),
         )
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - k.a1
@@ -353,19 +353,19 @@ class ArrayPrograms(Programs):
             k.a2_minus_effective_q3_tried + reach_tried
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        divisor_of_cos_q3_tried = select(sum_of_cos_q3_tried > 0.0, sum_of_cos_q3_tried, 1.0)
+        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        divisor_of_cos_q3_tried = select(sum_q3_tried > 0.0, sum_q3_tried, 1.0)
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
         sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         sin_swing_q3_tried = 2.0 * root(sine_square_q3_tried) * sign_elbow_tried / divisor_of_cos_q3_tried
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
 
-        def elsewhere_cos_q2_tried(free_a2: Real, freed: Whole, freed_angle: Real) -> Reals:
-            chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2 where the pose leaves it free
+        def elsewhere_cos_q2_tried(freed: Whole, freed_angle: Real, reference_a2: Real) -> Reals:
+            chosen_q2 = select(freed == 1, freed_angle, reference_a2)  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
             return (cos_q2_tried, sin_q2_tried)
@@ -388,7 +388,7 @@ class ArrayPrograms(Programs):
             (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried),
             elsewhere_cos_q2_tried,
-            (free_a2, freed, freed_angle),
+            (freed, freed_angle, reference_a2),
         )
         r21_from_q1_tried = goal_r21 * cos_q1_tried - goal_r11 * sin_q1_tried
         r22_from_q1_tried = goal_r22 * cos_q1_tried - goal_r12 * sin_q1_tried
@@ -709,8 +709,6 @@ class ArrayPrograms(Programs):
     def find_root(self, given: Values, status: Codes) -> Values:
         """The joints at the root that is nearest to the start; zeros where the machine needs no scan."""
         (
-            free_a1,
-            free_a2,
             goal_r11,
             goal_r12,
             goal_r13,
@@ -724,6 +722,8 @@ class ArrayPrograms(Programs):
             goal_y,
             goal_z,
             looked_for,
+            reference_a1,
+            reference_a2,
             start,
             wanted_crossing,
             wanted_elbow,
@@ -738,8 +738,6 @@ class ArrayPrograms(Programs):
             looked_for,
             status,
             (
-                free_a1,
-                free_a2,
                 "freed",
                 "freed_angle",
                 goal_r11,
@@ -754,14 +752,14 @@ class ArrayPrograms(Programs):
                 goal_x,
                 goal_y,
                 goal_z,
+                reference_a1,
+                reference_a2,
                 "side",
                 "tried",
                 wanted_elbow,
                 wanted_shoulder,
             ),
             (
-                free_a1,
-                free_a2,
                 "freed",
                 "freed_angle",
                 goal_r11,
@@ -776,6 +774,8 @@ class ArrayPrograms(Programs):
                 goal_x,
                 goal_y,
                 goal_z,
+                reference_a1,
+                reference_a2,
                 "side",
                 "tried",
                 wanted_crossing,
@@ -897,7 +897,7 @@ class ArrayPrograms(Programs):
         r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
         r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
         r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
-        wrist_x_closed = x - d6_times_r13_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x_closed = x - d6_times_r13_at_q5  # wrist centre: the last joints do not move this point
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
@@ -906,7 +906,7 @@ class ArrayPrograms(Programs):
         branch_wrist: Real
         branch_crossing: Real
         if k.searched:
-            # wrist centre: the point in which the last axes intersect
+            # wrist centre: the last joints do not move this point
             wrist_x_tried = wrist_x_closed + (r12_at_q6 * sin_q6 - r11_at_q6 * cos_q6) * k.j6_offset_x
             wrist_y_tried = wrist_y_closed + (r22_at_q6 * sin_q6 - r21_at_q6 * cos_q6) * k.j6_offset_x
             margin_shoulder_tried = k.one_by_machine_scale * (wrist_x_tried * cos_q1 + wrist_y_tried * sin_q1)
@@ -942,7 +942,7 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, x, y, z), Status.BAD_INPUT)
-        wrist_x_closed = x - k.d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_x_closed = x - k.d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y_closed = y - k.d6 * r23
         # distance of the point from the axis of q1
         distance_q1_closed = sqrt(wrist_x_closed * wrist_x_closed + wrist_y_closed * wrist_y_closed)
@@ -966,12 +966,12 @@ class ArrayPrograms(Programs):
             k.a2_minus_effective_q3_tried + reach_closed
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-        divisor_of_cos_q3_closed = select(sum_of_cos_q3_closed > 0.0, sum_of_cos_q3_closed, 1.0)
+        sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+        divisor_of_cos_q3_closed = select(sum_q3_closed > 0.0, sum_q3_closed, 1.0)
         cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
-        free_a1 = (ref_a1 - k.offset_a1) * DEGREE
-        free_a2 = (ref_a2 - k.offset_a2) * DEGREE
-        free_a6 = (ref_a6 - k.offset_a6) * DEGREE
+        reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
+        reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
+        reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
         # q3: out of reach
         require(status, k.searched | (absolute(cos_swing_q3_closed) <= 1.0000000000005), Status.UNREACHABLE)
         # without the offset there is no second crossing
@@ -979,8 +979,6 @@ class ArrayPrograms(Programs):
         # root scan along A6
         found = self.find_root(
             (
-                free_a1,
-                free_a2,
                 r11,
                 r12,
                 r13,
@@ -994,7 +992,9 @@ class ArrayPrograms(Programs):
                 y,
                 z,
                 k.searched,
-                free_a6,
+                reference_a1,
+                reference_a2,
+                reference_a6,
                 sigma_crossing,
                 sigma_elbow,
                 sigma_shoulder,
@@ -1018,9 +1018,9 @@ class ArrayPrograms(Programs):
             q6 = found_q6
         else:
 
-            def elsewhere_cos_q1_closed(free_a1: Real) -> Reals:
-                cos_q1_closed = cos(free_a1)
-                sin_q1_closed = sin(free_a1)
+            def elsewhere_cos_q1_closed(reference_a1: Real) -> Reals:
+                cos_q1_closed = cos(reference_a1)
+                sin_q1_closed = sin(reference_a1)
                 return (cos_q1_closed, sin_q1_closed)
 
             along_q1_closed = sigma_shoulder * wrist_x_closed  # rotation by q1 that points the arm at the point
@@ -1032,16 +1032,16 @@ class ArrayPrograms(Programs):
                 distance_q1_closed > k.machine_scale_times_free_angle,
                 (cos_q1_closed, sin_q1_closed),
                 elsewhere_cos_q1_closed,
-                (free_a1,),
+                (reference_a1,),
             )
             q1 = atan2(sin_q1_closed, cos_q1_closed)
             # sine squared, times the squared scale
             sine_square_q3_closed = one_less_cos_q3_closed * one_plus_cos_q3_closed
             sin_swing_q3_closed = 2.0 * root(sine_square_q3_closed) * sigma_elbow / divisor_of_cos_q3_closed
 
-            def elsewhere_cos_q2_closed(free_a2: Real) -> Reals:
-                cos_q2_closed = cos(free_a2)
-                sin_q2_closed = sin(free_a2)
+            def elsewhere_cos_q2_closed(reference_a2: Real) -> Reals:
+                cos_q2_closed = cos(reference_a2)
+                sin_q2_closed = sin(reference_a2)
                 return (cos_q2_closed, sin_q2_closed)
 
             arm_along_q2_closed = k.effective_q3_tried * sin_swing_q3_closed
@@ -1062,10 +1062,10 @@ class ArrayPrograms(Programs):
                 reach_closed > k.machine_scale_times_free_angle,
                 (cos_q2_closed, sin_q2_closed),
                 elsewhere_cos_q2_closed,
-                (free_a2,),
+                (reference_a2,),
             )
             q2 = atan2(sin_q2_closed, cos_q2_closed)
-            # addition theorem: plus the angle of the direction from which it is measured
+            # addition theorem: plus the angle of the direction from which the cosine is measured
             cos_q3_closed = (
                 k.a3_by_effective_q3_tried * cos_swing_q3_closed + k.d4_by_effective_q3_tried * sin_swing_q3_closed
             )
@@ -1084,9 +1084,9 @@ class ArrayPrograms(Programs):
             )
 
             def elsewhere_direction_x_q4_closed(ref_a4: Real) -> Reals:
-                free_a4 = (ref_a4 - k.offset_a4) * DEGREE
-                direction_x_q4_closed = cos(free_a4)
-                direction_y_q4_closed = sin(free_a4)
+                reference_a4 = (ref_a4 - k.offset_a4) * DEGREE
+                direction_x_q4_closed = cos(reference_a4)
+                direction_y_q4_closed = sin(reference_a4)
                 return (direction_x_q4_closed, direction_y_q4_closed)
 
             direction_x_q4_closed = sigma_wrist * r33_from_q123_closed

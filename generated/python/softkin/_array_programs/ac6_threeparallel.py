@@ -98,7 +98,7 @@ class ArrayPrograms(Programs):
         r31_at_q5 = cos_q5 * sin_q234
         r31_at_q6 = cos_q234 * sin_q6 + r31_at_q5 * cos_q6
         r32_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         wrist_y = y - d6_times_r22_at_q5
         branch_shoulder = (-wrist_x * cos_q1 - wrist_y * sin_q1) / k.machine_scale
         sin_q3 = sin(q3)
@@ -121,7 +121,7 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, x, y, z), Status.BAD_INPUT)
-        wrist_x = x - k.d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - k.d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y = y - k.d6 * r23
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -131,9 +131,9 @@ class ArrayPrograms(Programs):
         ahead_q1_before_q1_for_q3 = -root(ahead_squared_q1) * sigma_shoulder
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - k.d4 * wrist_y) / distance_q1_squared
@@ -169,9 +169,9 @@ class ArrayPrograms(Programs):
             wrist_y_from_q1_fixed: Real,
             wrist_z: Real,
         ) -> Reals:
-            free_a6 = (ref_a6 - k.offset_a6) * DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = sin(free_a6)
+            reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = sin(reference_a6)
             r21_from_q1_before_q1_for_q3 = r21 * cos_q1_before_q1_for_q3 - r11 * sin_q1_before_q1_for_q3
             r22_from_q1_before_q1_for_q3 = r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3
             radius_q6_before_q1_for_q3 = sqrt(
@@ -186,13 +186,13 @@ class ArrayPrograms(Programs):
             across_q6_rate_q1_for_q3 = sigma_wrist * r22_from_q1_rate_q1_for_q3
 
             def elsewhere_cos_q6_before_q1_for_q3(
-                cos_of_free_a6: Real,
+                cos_of_reference_a6: Real,
                 r21_from_q1_before_q1_for_q3: Real,
                 r21_from_q1_rate_q1_for_q3: Real,
                 r22_from_q1_before_q1_for_q3: Real,
                 r22_from_q1_rate_q1_for_q3: Real,
                 radius_q6_before_q1_for_q3: Real,
-                sin_of_free_a6: Real,
+                sin_of_reference_a6: Real,
             ) -> Reals:
                 radius_q6_rate_q1_for_q3 = select(
                     radius_q6_before_q1_for_q3 > 0.0,
@@ -203,7 +203,7 @@ class ArrayPrograms(Programs):
                     / radius_q6_before_q1_for_q3,
                     0.0,
                 )
-                return (cos_of_free_a6, sin_of_free_a6, radius_q6_rate_q1_for_q3, 0.0, 0.0)
+                return (cos_of_reference_a6, sin_of_reference_a6, radius_q6_rate_q1_for_q3, 0.0, 0.0)
 
             along_q6_before_q1_for_q3 = -sigma_wrist * r21_from_q1_before_q1_for_q3
             one_by_radius_q6_before_q1_for_q3 = 1.0 / radius_q6_before_q1_for_q3
@@ -237,13 +237,13 @@ class ArrayPrograms(Programs):
                 ),
                 elsewhere_cos_q6_before_q1_for_q3,
                 (
-                    cos_of_free_a6,
+                    cos_of_reference_a6,
                     r21_from_q1_before_q1_for_q3,
                     r21_from_q1_rate_q1_for_q3,
                     r22_from_q1_before_q1_for_q3,
                     r22_from_q1_rate_q1_for_q3,
                     radius_q6_before_q1_for_q3,
-                    sin_of_free_a6,
+                    sin_of_reference_a6,
                 ),
             )
             r21_from_q1_before_q6_before_q1_for_q3 = r31 * cos_q6_before_q1_for_q3 - r32 * sin_q6_before_q1_for_q3
@@ -570,10 +570,10 @@ class ArrayPrograms(Programs):
         q6_radius_of_q5_times_r33 = q6_radius_of_q5 * r33
 
         def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
-            free_a6 = (ref_a6 - k.offset_a6) * DEGREE
-            cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = sin(free_a6)
-            return (cos_of_free_a6, sin_of_free_a6)
+            reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = sin(reference_a6)
+            return (cos_of_reference_a6, sin_of_reference_a6)
 
         along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
         cos_q6_before_q6_of_q3 = along_q6 / radius_q6
@@ -741,8 +741,8 @@ class ArrayPrograms(Programs):
         one_less_cos_q3 = (k.a2_plus_a3 + reach) * (k.a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - k.a2_minus_a3) * (k.a2_minus_a3 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = select(absolute(sum_of_cos_q3) > 0.0, sum_of_cos_q3, 1.0)
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = select(absolute(sum_q3) > 0.0, sum_q3, 1.0)
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
@@ -751,9 +751,9 @@ class ArrayPrograms(Programs):
         sin_q3 = 2.0 * root(sine_square_q3) * sigma_elbow / absolute(divisor_of_cos_q3)
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - k.offset_a2) * DEGREE
-            direction_x_q2 = cos(free_a2)
-            direction_y_q2 = sin(free_a2)
+            reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
+            direction_x_q2 = cos(reference_a2)
+            direction_y_q2 = sin(reference_a2)
             return (direction_x_q2, direction_y_q2)
 
         arm_along_q2 = k.a2 + k.a3 * cos_q3

@@ -82,7 +82,7 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a4, ref_a5, ref_a6, x, y, z), Status.BAD_INPUT)
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x = x - k.flange_x * r11 - k.flange_y * r12 - k.flange_z * r13
         axis_a1 = k.offset_a1 + wrist_x
         wrist_y = y - k.flange_x * r21 - k.flange_y * r22 - k.flange_z * r23
@@ -92,9 +92,9 @@ class ArrayPrograms(Programs):
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
 
         def elsewhere_direction_x_a4(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - k.offset_a4) * DEGREE
-            direction_x_a4 = cos(free_a4)
-            direction_y_a4 = sin(free_a4)
+            reference_a4 = (ref_a4 - k.offset_a4) * DEGREE
+            direction_x_a4 = cos(reference_a4)
+            direction_y_a4 = sin(reference_a4)
             return (direction_x_a4, direction_y_a4)
 
         direction_x_a4 = sigma_wrist * r33

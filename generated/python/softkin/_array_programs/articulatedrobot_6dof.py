@@ -99,7 +99,7 @@ class ArrayPrograms(Programs):
         r31_at_q5 = r31_at_q4 * cos_q5 + sin_q23 * sin_q5
         r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
         r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         wrist_y = y - d6_times_r22_at_q5
         branch_arm = (wrist_x * cos_q1 + wrist_y * sin_q1) / k.machine_scale
         sin_q3 = sin(q3)
@@ -124,7 +124,7 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, x, y, z), Status.BAD_INPUT)
-        wrist_x = x - k.d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - k.d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y = y - k.d6 * r23
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -137,9 +137,9 @@ class ArrayPrograms(Programs):
         ahead_q1_before_q1_for_q3 = root(ahead_squared_q1) * sigma_arm
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - k.d3 * wrist_y) / distance_q1_squared
@@ -262,8 +262,8 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - k.a2_minus_effective_q3) * (k.a2_minus_effective_q3 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = select(sum_of_cos_q3 > 0.0, sum_of_cos_q3, 1.0)
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = select(sum_q3 > 0.0, sum_q3, 1.0)
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
@@ -272,9 +272,9 @@ class ArrayPrograms(Programs):
         sin_swing_q3 = -2.0 * root(sine_square_q3) * sigma_elbow / divisor_of_cos_q3
 
         def elsewhere_cos_q2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - k.offset_a2) * DEGREE
-            cos_q2 = cos(free_a2)
-            sin_q2 = sin(free_a2)
+            reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
+            cos_q2 = cos(reference_a2)
+            sin_q2 = sin(reference_a2)
             return (cos_q2, sin_q2)
 
         arm_along_q2 = -k.effective_q3 * sin_swing_q3
@@ -295,7 +295,7 @@ class ArrayPrograms(Programs):
         open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(k.offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: whole turns added
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = k.a3_by_effective_q3 * cos_swing_q3 - k.d4_by_effective_q3 * sin_swing_q3
         sin_q3 = k.a3_by_effective_q3 * sin_swing_q3 + k.d4_by_effective_q3 * cos_swing_q3
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
@@ -310,9 +310,9 @@ class ArrayPrograms(Programs):
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
 
         def elsewhere_direction_x_q4(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - k.offset_a4) * DEGREE
-            direction_x_q4 = cos(free_a4)
-            direction_y_q4 = sin(free_a4)
+            reference_a4 = (ref_a4 - k.offset_a4) * DEGREE
+            direction_x_q4 = cos(reference_a4)
+            direction_y_q4 = sin(reference_a4)
             return (direction_x_q4, direction_y_q4)
 
         direction_x_q4 = -sigma_hand * r13_from_q123

@@ -78,9 +78,9 @@ class ArrayPrograms(Programs):
         axis_r = k.offset_r + radius_phi
 
         def elsewhere_direction_x_theta(ref_theta: Real) -> Reals:
-            free_theta = (ref_theta - k.offset_theta) * DEGREE
-            direction_x_theta = cos(free_theta)
-            direction_y_theta = sin(free_theta)
+            reference_theta = (ref_theta - k.offset_theta) * DEGREE
+            direction_x_theta = cos(reference_theta)
+            direction_y_theta = sin(reference_theta)
             return (direction_x_theta, direction_y_theta)
 
         # in the singularity: the angle of the reference
@@ -94,8 +94,8 @@ class ArrayPrograms(Programs):
         axis_theta = nearest_period(k.offset_theta + degrees(direction_y_theta, direction_x_theta), near_theta)
 
         def elsewhere_direction_x_phi(ref_phi: Real) -> Reals:
-            free_phi = (ref_phi - k.offset_phi) * DEGREE
-            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0 * DEGREE, 90.0 * DEGREE)
+            reference_phi = (ref_phi - k.offset_phi) * DEGREE
+            part_of_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
             direction_x_phi = cos(part_of_direction_y_phi)
             direction_y_phi = sin(part_of_direction_y_phi)
             return (direction_x_phi, direction_y_phi)

@@ -157,8 +157,8 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_a1 = effective_a1_plus_inner_arm_1 * effective_a1_plus_inner_arm_1 - third_square_a1
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         span_2_x = x - k.part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - k.part_of_pivot_2_y
@@ -175,8 +175,8 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = effective_a2_plus_inner_arm_2 * effective_a2_plus_inner_arm_2 - third_square_a2
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         span_3_x = x - k.part_of_pivot_3_x  # rod 3: known part of its vector
         span_3_y = y - k.part_of_pivot_3_y
@@ -193,12 +193,12 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_a3 = effective_a3_plus_inner_arm_3 * effective_a3_plus_inner_arm_3 - third_square_a3
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = -2.0 * root(sine_square_a1) * sigma_knee_1 / divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (along_a1 * cos_swing_a1 + z * sin_swing_a1) / divisor_a1
         rod_1_x = span_1_x - cos_a1 * k.cos_azimuth_1_times_inner_arm_1
         rod_1_y = span_1_y - k.inner_arm_1_times_sin_azimuth_1 * cos_a1
@@ -207,7 +207,7 @@ class ArrayPrograms(Programs):
         rod_1_z = z - pivot_1_z
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_knee_2 / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 + z * sin_swing_a2) / divisor_a2
         rod_2_x = span_2_x - cos_a2 * k.cos_azimuth_2_times_inner_arm_2
         rod_2_y = span_2_y - k.inner_arm_2_times_sin_azimuth_2 * cos_a2
@@ -216,7 +216,7 @@ class ArrayPrograms(Programs):
         rod_2_z = z - pivot_2_z
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = -2.0 * root(sine_square_a3) * sigma_knee_3 / divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (along_a3 * cos_swing_a3 + z * sin_swing_a3) / divisor_a3
         rod_3_x = span_3_x - cos_a3 * k.cos_azimuth_3_times_inner_arm_3
         rod_3_y = span_3_y - k.inner_arm_3_times_sin_azimuth_3 * cos_a3

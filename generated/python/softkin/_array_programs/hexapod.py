@@ -262,7 +262,7 @@ class ArrayPrograms(StartedPrograms):
                 ),
             )
         require(status, done, Status.IMPOSSIBLE)
-        r11 = start_r11 * turned_11 + start_r21 * turned_12 + start_r31 * turned_13  # the start, turned
+        r11 = start_r11 * turned_11 + start_r21 * turned_12 + start_r31 * turned_13  # orientation of the platform
         r12 = start_r12 * turned_11 + start_r22 * turned_12 + start_r32 * turned_13
         r13 = start_r13 * turned_11 + start_r23 * turned_12 + start_r33 * turned_13
         r21 = start_r11 * turned_21 + start_r21 * turned_22 + start_r31 * turned_23
@@ -460,102 +460,92 @@ class ArrayPrograms(StartedPrograms):
         # quadratic equation for l6: rod 6
         radicand_l6 = span_6_x * span_6_x + span_6_y * span_6_y + span_6_z * span_6_z
         l6 = root(radicand_l6)
-        # leg 1 as a line: unit vector, and its moment about the platform's origin
-        divisor_1 = select(l1 > k.machine_scale_times_shortest_link, l1, 1.0)
-        one_by_l1 = 1.0 / divisor_1
-        along_1_x = one_by_l1 * span_1_x
-        along_1_y = one_by_l1 * span_1_y
-        along_1_z = one_by_l1 * span_1_z
-        cos_base_lean_1 = along_1_x * k.home_along_1_x + along_1_y * k.home_along_1_y + along_1_z * k.home_along_1_z
-        # leg 2 as a line: unit vector, and its moment about the platform's origin
-        divisor_2 = select(l2 > k.machine_scale_times_shortest_link, l2, 1.0)
-        one_by_l2 = 1.0 / divisor_2
-        along_2_x = one_by_l2 * span_2_x
-        along_2_y = one_by_l2 * span_2_y
-        along_2_z = one_by_l2 * span_2_z
-        cos_base_lean_2 = along_2_x * k.home_along_2_x + along_2_y * k.home_along_2_y + along_2_z * k.home_along_2_z
-        # leg 3 as a line: unit vector, and its moment about the platform's origin
-        divisor_3 = select(l3 > k.machine_scale_times_shortest_link, l3, 1.0)
-        one_by_l3 = 1.0 / divisor_3
-        along_3_x = one_by_l3 * span_3_x
-        along_3_y = one_by_l3 * span_3_y
-        along_3_z = one_by_l3 * span_3_z
-        cos_base_lean_3 = along_3_x * k.home_along_3_x + along_3_y * k.home_along_3_y + along_3_z * k.home_along_3_z
-        # leg 4 as a line: unit vector, and its moment about the platform's origin
-        divisor_4 = select(l4 > k.machine_scale_times_shortest_link, l4, 1.0)
-        one_by_l4 = 1.0 / divisor_4
-        along_4_x = one_by_l4 * span_4_x
-        along_4_y = one_by_l4 * span_4_y
-        along_4_z = one_by_l4 * span_4_z
-        cos_base_lean_4 = along_4_x * k.home_along_4_x + along_4_y * k.home_along_4_y + along_4_z * k.home_along_4_z
-        # leg 5 as a line: unit vector, and its moment about the platform's origin
-        divisor_5 = select(l5 > k.machine_scale_times_shortest_link, l5, 1.0)
-        one_by_l5 = 1.0 / divisor_5
-        along_5_x = one_by_l5 * span_5_x
-        along_5_y = one_by_l5 * span_5_y
-        along_5_z = one_by_l5 * span_5_z
-        cos_base_lean_5 = along_5_x * k.home_along_5_x + along_5_y * k.home_along_5_y + along_5_z * k.home_along_5_z
-        # leg 6 as a line: unit vector, and its moment about the platform's origin
-        divisor_6 = select(l6 > k.machine_scale_times_shortest_link, l6, 1.0)
-        one_by_l6 = 1.0 / divisor_6
-        along_6_x = one_by_l6 * span_6_x
-        along_6_y = one_by_l6 * span_6_y
-        along_6_z = one_by_l6 * span_6_z
-        cos_base_lean_6 = along_6_x * k.home_along_6_x + along_6_y * k.home_along_6_y + along_6_z * k.home_along_6_z
+        # leg 1: how far it reaches along the axis of its cone on the base
+        along_base_cone_1 = k.home_along_1_x * span_1_x + k.home_along_1_y * span_1_y + k.home_along_1_z * span_1_z
+        # leg 2: how far it reaches along the axis of its cone on the base
+        along_base_cone_2 = k.home_along_2_x * span_2_x + k.home_along_2_y * span_2_y + k.home_along_2_z * span_2_z
+        # leg 3: how far it reaches along the axis of its cone on the base
+        along_base_cone_3 = k.home_along_3_x * span_3_x + k.home_along_3_y * span_3_y + k.home_along_3_z * span_3_z
+        # leg 4: how far it reaches along the axis of its cone on the base
+        along_base_cone_4 = k.home_along_4_x * span_4_x + k.home_along_4_y * span_4_y + k.home_along_4_z * span_4_z
+        # leg 5: how far it reaches along the axis of its cone on the base
+        along_base_cone_5 = k.home_along_5_x * span_5_x + k.home_along_5_y * span_5_y + k.home_along_5_z * span_5_z
+        # leg 6: how far it reaches along the axis of its cone on the base
+        along_base_cone_6 = k.home_along_6_x * span_6_x + k.home_along_6_y * span_6_y + k.home_along_6_z * span_6_z
         cone_axis_1_x = k.plate_axis_1_x * r11 + k.plate_axis_1_y * r12 + k.plate_axis_1_z * r13
         cone_axis_1_y = k.plate_axis_1_x * r21 + k.plate_axis_1_y * r22 + k.plate_axis_1_z * r23
         cone_axis_1_z = k.plate_axis_1_x * r31 + k.plate_axis_1_y * r32 + k.plate_axis_1_z * r33
-        cos_plate_lean_1 = along_1_x * cone_axis_1_x + along_1_y * cone_axis_1_y + along_1_z * cone_axis_1_z
+        # leg 1: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_1 = cone_axis_1_x * span_1_x + cone_axis_1_y * span_1_y + cone_axis_1_z * span_1_z
         cone_axis_2_x = k.plate_axis_2_x * r11 + k.plate_axis_2_y * r12 + k.plate_axis_2_z * r13
         cone_axis_2_y = k.plate_axis_2_x * r21 + k.plate_axis_2_y * r22 + k.plate_axis_2_z * r23
         cone_axis_2_z = k.plate_axis_2_x * r31 + k.plate_axis_2_y * r32 + k.plate_axis_2_z * r33
-        cos_plate_lean_2 = along_2_x * cone_axis_2_x + along_2_y * cone_axis_2_y + along_2_z * cone_axis_2_z
+        # leg 2: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_2 = cone_axis_2_x * span_2_x + cone_axis_2_y * span_2_y + cone_axis_2_z * span_2_z
         cone_axis_3_x = k.plate_axis_3_x * r11 + k.plate_axis_3_y * r12 + k.plate_axis_3_z * r13
         cone_axis_3_y = k.plate_axis_3_x * r21 + k.plate_axis_3_y * r22 + k.plate_axis_3_z * r23
         cone_axis_3_z = k.plate_axis_3_x * r31 + k.plate_axis_3_y * r32 + k.plate_axis_3_z * r33
-        cos_plate_lean_3 = along_3_x * cone_axis_3_x + along_3_y * cone_axis_3_y + along_3_z * cone_axis_3_z
+        # leg 3: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_3 = cone_axis_3_x * span_3_x + cone_axis_3_y * span_3_y + cone_axis_3_z * span_3_z
         cone_axis_4_x = k.plate_axis_4_x * r11 + k.plate_axis_4_y * r12 + k.plate_axis_4_z * r13
         cone_axis_4_y = k.plate_axis_4_x * r21 + k.plate_axis_4_y * r22 + k.plate_axis_4_z * r23
         cone_axis_4_z = k.plate_axis_4_x * r31 + k.plate_axis_4_y * r32 + k.plate_axis_4_z * r33
-        cos_plate_lean_4 = along_4_x * cone_axis_4_x + along_4_y * cone_axis_4_y + along_4_z * cone_axis_4_z
+        # leg 4: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_4 = cone_axis_4_x * span_4_x + cone_axis_4_y * span_4_y + cone_axis_4_z * span_4_z
         cone_axis_5_x = k.plate_axis_5_x * r11 + k.plate_axis_5_y * r12 + k.plate_axis_5_z * r13
         cone_axis_5_y = k.plate_axis_5_x * r21 + k.plate_axis_5_y * r22 + k.plate_axis_5_z * r23
         cone_axis_5_z = k.plate_axis_5_x * r31 + k.plate_axis_5_y * r32 + k.plate_axis_5_z * r33
-        cos_plate_lean_5 = along_5_x * cone_axis_5_x + along_5_y * cone_axis_5_y + along_5_z * cone_axis_5_z
+        # leg 5: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_5 = cone_axis_5_x * span_5_x + cone_axis_5_y * span_5_y + cone_axis_5_z * span_5_z
         cone_axis_6_x = k.plate_axis_6_x * r11 + k.plate_axis_6_y * r12 + k.plate_axis_6_z * r13
         cone_axis_6_y = k.plate_axis_6_x * r21 + k.plate_axis_6_y * r22 + k.plate_axis_6_z * r23
         cone_axis_6_z = k.plate_axis_6_x * r31 + k.plate_axis_6_y * r32 + k.plate_axis_6_z * r33
-        cos_plate_lean_6 = along_6_x * cone_axis_6_x + along_6_y * cone_axis_6_y + along_6_z * cone_axis_6_z
-        moment_1_x = (along_1_z * arm_1_y - along_1_y * arm_1_z) * k.one_by_platform_radius
-        moment_1_y = (along_1_x * arm_1_z - along_1_z * arm_1_x) * k.one_by_platform_radius
-        moment_1_z = (along_1_y * arm_1_x - along_1_x * arm_1_y) * k.one_by_platform_radius
-        moment_2_x = (along_2_z * arm_2_y - along_2_y * arm_2_z) * k.one_by_platform_radius
-        moment_2_y = (along_2_x * arm_2_z - along_2_z * arm_2_x) * k.one_by_platform_radius
-        moment_2_z = (along_2_y * arm_2_x - along_2_x * arm_2_y) * k.one_by_platform_radius
-        moment_3_x = (along_3_z * arm_3_y - along_3_y * arm_3_z) * k.one_by_platform_radius
-        moment_3_y = (along_3_x * arm_3_z - along_3_z * arm_3_x) * k.one_by_platform_radius
-        moment_3_z = (along_3_y * arm_3_x - along_3_x * arm_3_y) * k.one_by_platform_radius
-        moment_4_x = (along_4_z * arm_4_y - along_4_y * arm_4_z) * k.one_by_platform_radius
-        moment_4_y = (along_4_x * arm_4_z - along_4_z * arm_4_x) * k.one_by_platform_radius
-        moment_4_z = (along_4_y * arm_4_x - along_4_x * arm_4_y) * k.one_by_platform_radius
-        moment_5_x = (along_5_z * arm_5_y - along_5_y * arm_5_z) * k.one_by_platform_radius
-        moment_5_y = (along_5_x * arm_5_z - along_5_z * arm_5_x) * k.one_by_platform_radius
-        moment_5_z = (along_5_y * arm_5_x - along_5_x * arm_5_y) * k.one_by_platform_radius
-        moment_6_x = (along_6_z * arm_6_y - along_6_y * arm_6_z) * k.one_by_platform_radius
-        moment_6_y = (along_6_x * arm_6_z - along_6_z * arm_6_x) * k.one_by_platform_radius
-        moment_6_z = (along_6_y * arm_6_x - along_6_x * arm_6_y) * k.one_by_platform_radius
-        # determinant of the legs as lines: zero in a type 2 singularity
-        (determinant,) = solve(
+        # leg 6: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_6 = cone_axis_6_x * span_6_x + cone_axis_6_y * span_6_y + cone_axis_6_z * span_6_z
+        # leg 1: the moment of its span about the platform's origin
+        moment_1_x = (arm_1_y * span_1_z - arm_1_z * span_1_y) * k.one_by_platform_radius
+        moment_1_y = (arm_1_z * span_1_x - arm_1_x * span_1_z) * k.one_by_platform_radius
+        moment_1_z = (arm_1_x * span_1_y - arm_1_y * span_1_x) * k.one_by_platform_radius
+        # leg 2: the moment of its span about the platform's origin
+        moment_2_x = (arm_2_y * span_2_z - arm_2_z * span_2_y) * k.one_by_platform_radius
+        moment_2_y = (arm_2_z * span_2_x - arm_2_x * span_2_z) * k.one_by_platform_radius
+        moment_2_z = (arm_2_x * span_2_y - arm_2_y * span_2_x) * k.one_by_platform_radius
+        # leg 3: the moment of its span about the platform's origin
+        moment_3_x = (arm_3_y * span_3_z - arm_3_z * span_3_y) * k.one_by_platform_radius
+        moment_3_y = (arm_3_z * span_3_x - arm_3_x * span_3_z) * k.one_by_platform_radius
+        moment_3_z = (arm_3_x * span_3_y - arm_3_y * span_3_x) * k.one_by_platform_radius
+        # leg 4: the moment of its span about the platform's origin
+        moment_4_x = (arm_4_y * span_4_z - arm_4_z * span_4_y) * k.one_by_platform_radius
+        moment_4_y = (arm_4_z * span_4_x - arm_4_x * span_4_z) * k.one_by_platform_radius
+        moment_4_z = (arm_4_x * span_4_y - arm_4_y * span_4_x) * k.one_by_platform_radius
+        # leg 5: the moment of its span about the platform's origin
+        moment_5_x = (arm_5_y * span_5_z - arm_5_z * span_5_y) * k.one_by_platform_radius
+        moment_5_y = (arm_5_z * span_5_x - arm_5_x * span_5_z) * k.one_by_platform_radius
+        moment_5_z = (arm_5_x * span_5_y - arm_5_y * span_5_x) * k.one_by_platform_radius
+        # leg 6: the moment of its span about the platform's origin
+        moment_6_x = (arm_6_y * span_6_z - arm_6_z * span_6_y) * k.one_by_platform_radius
+        moment_6_y = (arm_6_z * span_6_x - arm_6_x * span_6_z) * k.one_by_platform_radius
+        moment_6_z = (arm_6_x * span_6_y - arm_6_y * span_6_x) * k.one_by_platform_radius
+        # determinant of the spans of the legs and their moments
+        (determinant_of_spans,) = solve(
             (
-                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
-                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
-                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
-                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
-                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
-                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+                (span_1_x, span_1_y, span_1_z, moment_1_x, moment_1_y, moment_1_z),
+                (span_2_x, span_2_y, span_2_z, moment_2_x, moment_2_y, moment_2_z),
+                (span_3_x, span_3_y, span_3_z, moment_3_x, moment_3_y, moment_3_z),
+                (span_4_x, span_4_y, span_4_z, moment_4_x, moment_4_y, moment_4_z),
+                (span_5_x, span_5_y, span_5_z, moment_5_x, moment_5_y, moment_5_z),
+                (span_6_x, span_6_y, span_6_z, moment_6_x, moment_6_y, moment_6_z),
             ),
             (),
         )
+        divisor_1 = select(l1 > k.machine_scale_times_shortest_link, l1, 1.0)
+        divisor_2 = select(l2 > k.machine_scale_times_shortest_link, l2, 1.0)
+        divisor_3 = select(l3 > k.machine_scale_times_shortest_link, l3, 1.0)
+        divisor_4 = select(l4 > k.machine_scale_times_shortest_link, l4, 1.0)
+        divisor_5 = select(l5 > k.machine_scale_times_shortest_link, l5, 1.0)
+        divisor_6 = select(l6 > k.machine_scale_times_shortest_link, l6, 1.0)
+        # the same of unit vectors: margin of the platform, zero in a type 2 singularity
+        determinant = determinant_of_spans / (divisor_1 * divisor_2 * divisor_3 * divisor_4 * divisor_5 * divisor_6)
         axis_l1 = l1 + k.offset_l1
         axis_l2 = l2 + k.offset_l2
         axis_l3 = l3 + k.offset_l3
@@ -575,29 +565,29 @@ class ArrayPrograms(StartedPrograms):
         # leg 6: without length it has no direction
         require(status, l6 > k.machine_scale_times_shortest_link, Status.UNREACHABLE)
         # leg 1: its joint on the base bends beyond its cone
-        require(status, cos_base_lean_1 >= k.least_cos_base, Status.UNREACHABLE)
+        require(status, along_base_cone_1 >= l1 * k.least_cos_base, Status.UNREACHABLE)
         # leg 2: its joint on the base bends beyond its cone
-        require(status, cos_base_lean_2 >= k.least_cos_base, Status.UNREACHABLE)
+        require(status, along_base_cone_2 >= l2 * k.least_cos_base, Status.UNREACHABLE)
         # leg 3: its joint on the base bends beyond its cone
-        require(status, cos_base_lean_3 >= k.least_cos_base, Status.UNREACHABLE)
+        require(status, along_base_cone_3 >= l3 * k.least_cos_base, Status.UNREACHABLE)
         # leg 4: its joint on the base bends beyond its cone
-        require(status, cos_base_lean_4 >= k.least_cos_base, Status.UNREACHABLE)
+        require(status, along_base_cone_4 >= l4 * k.least_cos_base, Status.UNREACHABLE)
         # leg 5: its joint on the base bends beyond its cone
-        require(status, cos_base_lean_5 >= k.least_cos_base, Status.UNREACHABLE)
+        require(status, along_base_cone_5 >= l5 * k.least_cos_base, Status.UNREACHABLE)
         # leg 6: its joint on the base bends beyond its cone
-        require(status, cos_base_lean_6 >= k.least_cos_base, Status.UNREACHABLE)
+        require(status, along_base_cone_6 >= l6 * k.least_cos_base, Status.UNREACHABLE)
         # leg 1: its joint on the plate bends beyond its cone
-        require(status, cos_plate_lean_1 >= k.least_cos_plate, Status.UNREACHABLE)
+        require(status, along_plate_cone_1 >= l1 * k.least_cos_plate, Status.UNREACHABLE)
         # leg 2: its joint on the plate bends beyond its cone
-        require(status, cos_plate_lean_2 >= k.least_cos_plate, Status.UNREACHABLE)
+        require(status, along_plate_cone_2 >= l2 * k.least_cos_plate, Status.UNREACHABLE)
         # leg 3: its joint on the plate bends beyond its cone
-        require(status, cos_plate_lean_3 >= k.least_cos_plate, Status.UNREACHABLE)
+        require(status, along_plate_cone_3 >= l3 * k.least_cos_plate, Status.UNREACHABLE)
         # leg 4: its joint on the plate bends beyond its cone
-        require(status, cos_plate_lean_4 >= k.least_cos_plate, Status.UNREACHABLE)
+        require(status, along_plate_cone_4 >= l4 * k.least_cos_plate, Status.UNREACHABLE)
         # leg 5: its joint on the plate bends beyond its cone
-        require(status, cos_plate_lean_5 >= k.least_cos_plate, Status.UNREACHABLE)
+        require(status, along_plate_cone_5 >= l5 * k.least_cos_plate, Status.UNREACHABLE)
         # leg 6: its joint on the plate bends beyond its cone
-        require(status, cos_plate_lean_6 >= k.least_cos_plate, Status.UNREACHABLE)
+        require(status, along_plate_cone_6 >= l6 * k.least_cos_plate, Status.UNREACHABLE)
         # rods_dependent: the other assembly mode, or too near to losing the plate
         require(status, k.assembly_sign * determinant >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6), status

@@ -74,8 +74,7 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a, ref_b, x, y, z), Status.BAD_INPUT)
-        # wrist centre: the point in which the last axes intersect
-        wrist_x = x - r13 * k.tool_length_times_tool_side
+        wrist_x = x - r13 * k.tool_length_times_tool_side  # wrist centre: the last joints do not move this point
         axis_x = k.offset_x + wrist_x
         wrist_y = y - r23 * k.tool_length_times_tool_side
         axis_y = k.offset_y + wrist_y
@@ -86,9 +85,9 @@ class ArrayPrograms(Programs):
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
 
         def elsewhere_direction_x_a(ref_a: Real) -> Reals:
-            free_a = (ref_a - k.offset_a) * DEGREE
-            direction_x_a = cos(free_a)
-            direction_y_a = sin(free_a)
+            reference_a = (ref_a - k.offset_a) * DEGREE
+            direction_x_a = cos(reference_a)
+            direction_y_a = sin(reference_a)
             return (direction_x_a, direction_y_a)
 
         direction_x_a = sigma_roll * r13_of_a

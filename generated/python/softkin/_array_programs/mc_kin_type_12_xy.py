@@ -146,15 +146,15 @@ class ArrayPrograms(Programs):
             divisor_a1 - k.link_length_1_minus_link_length_2
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = -2.0 * root(sine_square_a1) * sigma_t / divisor_of_cos_a1
         sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         along_a2 = span_rear_x - k.part_of_along_a2 * sin_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
         span_rear_y = -k.link_length_3_by_link_length_2 * span_upper_y
         across_a2 = k.part_of_along_a2 * cos_a1 - span_rear_y
@@ -170,14 +170,14 @@ class ArrayPrograms(Programs):
             divisor_a2 - k.link_length_5_minus_link_length_4
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         pivot_upper_x = -k.link_length_1 * sin_a1  # rod upper: centre about which it swings
         pivot_upper_y = -k.link_length_1 * cos_a1
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_w / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
         scaled_pivot_rear_x = k.part_of_scaled_pivot_rear_y * sin_a1 - k.part_of_scaled_pivot_rear_y_2 * cos_a2

@@ -111,8 +111,8 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (k.inner_arm_plus_outer_arm - divisor_a1) * (divisor_a1 - k.inner_arm_minus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         span_2_x = k.tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
         effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
@@ -122,12 +122,12 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + k.inner_arm_minus_outer_arm) * (divisor_a2 + k.inner_arm_plus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * root(sine_square_a1) * sigma_knee_1 / divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_1_x * cos_swing_a1 - y * sin_swing_a1) / divisor_a1
         rod_1_x = span_1_x + k.inner_arm * cos_a1
         sin_a1 = (y * cos_swing_a1 + span_1_x * sin_swing_a1) / divisor_a1
@@ -135,7 +135,7 @@ class ArrayPrograms(Programs):
         rod_1_y = y - pivot_1_y
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_knee_2 / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (span_2_x * cos_swing_a2 + y * sin_swing_a2) / divisor_a2
         rod_2_x = span_2_x - k.inner_arm * cos_a2
         sin_a2 = (span_2_x * sin_swing_a2 - y * cos_swing_a2) / divisor_a2

@@ -65,9 +65,9 @@ class ArrayPrograms(Programs):
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
-            free_c = (ref_c - k.offset_c) * DEGREE
-            direction_x_c = cos(free_c)
-            direction_y_c = sin(free_c)
+            reference_c = (ref_c - k.offset_c) * DEGREE
+            direction_x_c = cos(reference_c)
+            direction_y_c = sin(reference_c)
             return (direction_x_c, direction_y_c)
 
         # in the singularity: the angle of the reference

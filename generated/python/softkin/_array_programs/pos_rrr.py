@@ -96,9 +96,9 @@ class ArrayPrograms(Programs):
         ahead_q1_before_q1_for_q3 = root(ahead_squared_q1) * sigma_arm
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - k.d3 * y) / distance_q1_squared
@@ -223,8 +223,8 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - k.a2_minus_effective_q3_2) * (k.a2_minus_effective_q3_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = select(sum_of_cos_q3 > 0.0, sum_of_cos_q3, 1.0)
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = select(sum_q3 > 0.0, sum_q3, 1.0)
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
@@ -233,9 +233,9 @@ class ArrayPrograms(Programs):
         sin_swing_q3 = -2.0 * root(sine_square_q3) * sigma_elbow / divisor_of_cos_q3
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - k.offset_a2) * DEGREE
-            direction_x_q2 = cos(free_a2)
-            direction_y_q2 = sin(free_a2)
+            reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
+            direction_x_q2 = cos(reference_a2)
+            direction_y_q2 = sin(reference_a2)
             return (direction_x_q2, direction_y_q2)
 
         arm_along_q2 = -k.effective_q3_2 * sin_swing_q3
@@ -254,7 +254,7 @@ class ArrayPrograms(Programs):
         near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # A2: whole turns added
         axis_a2 = nearest_period(k.offset_a2 + degrees(direction_y_q2, direction_x_q2), near_a2)
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = k.a3_by_effective_q3_2 * cos_swing_q3 - k.d4_by_effective_q3_2 * sin_swing_q3
         sin_q3 = k.a3_by_effective_q3_2 * sin_swing_q3 + k.d4_by_effective_q3_2 * cos_swing_q3
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this

@@ -85,17 +85,17 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         axis_a1 = k.offset_a1 + z
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = 2.0 * root(sine_square_a3) * sigma_elbow / divisor_of_cos_a3
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - k.offset_a2) * DEGREE
-            direction_x_a2 = cos(free_a2)
-            direction_y_a2 = sin(free_a2)
+            reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
+            direction_x_a2 = cos(reference_a2)
+            direction_y_a2 = sin(reference_a2)
             return (direction_x_a2, direction_y_a2)
 
         arm_along_a2 = k.link_length_1 + k.link_length_2 * cos_a3

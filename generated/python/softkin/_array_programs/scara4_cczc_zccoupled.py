@@ -96,16 +96,16 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * root(sine_square_a2) * sigma_elbow / divisor_of_cos_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
-            direction_x_a1 = cos(free_a1)
-            direction_y_a1 = sin(free_a1)
+            reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
+            direction_x_a1 = cos(reference_a1)
+            direction_y_a1 = sin(reference_a1)
             return (direction_x_a1, direction_y_a1)
 
         arm_along_a1 = k.link_length_1 + k.link_length_2 * cos_a2

@@ -90,16 +90,16 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * root(sine_square_a2) * sigma_elbow / divisor_of_cos_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
-            direction_x_a1 = cos(free_a1)
-            direction_y_a1 = sin(free_a1)
+            reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
+            direction_x_a1 = cos(reference_a1)
+            direction_y_a1 = sin(reference_a1)
             return (direction_x_a1, direction_y_a1)
 
         arm_along_a1 = k.link_length_1 + k.link_length_2 * cos_a2
@@ -123,11 +123,11 @@ class ArrayPrograms(Programs):
         part_of_axis_a2 = k.offset_a2 - motor_a1 * k.part_of_open_a2
 
         def elsewhere_near_a2(part_of_axis_a2: Real, ref_a1: Real, ref_a2: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
+            reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
             ref_motor_a2 = (ref_a2 - k.offset_a2) * DEGREE
-            free_a2 = ref_motor_a2 + k.coupling_12 * free_a1
+            reference_a2 = ref_motor_a2 + k.coupling_12 * reference_a1
             # A2: without a commanded turn, the value nearest to this
-            open_a2 = select(k.single_a2, k.mid_a2, part_of_axis_a2 + free_a2 / DEGREE)
+            open_a2 = select(k.single_a2, k.mid_a2, part_of_axis_a2 + reference_a2 / DEGREE)
             return (open_a2,)
 
         near_a2 = 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2)
@@ -138,16 +138,16 @@ class ArrayPrograms(Programs):
         part_of_axis_a3 = k.coupling_13 * motor_a1 + k.coupling_23 * motor_a2
 
         def elsewhere_near_a3(part_of_axis_a3: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
+            reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
             ref_motor_a2 = (ref_a2 - k.offset_a2) * DEGREE
             open_a3: Real
             if k.single_a3:
                 open_a3 = k.mid_a3  # A3: without a commanded turn, the value nearest to this
             else:
                 ref_motor_a3 = (ref_a3 - k.offset_a3) * DEGREE
-                free_a3 = ref_motor_a3 + k.coupling_13 * free_a1 + k.coupling_23 * ref_motor_a2
+                reference_a3 = ref_motor_a3 + k.coupling_13 * reference_a1 + k.coupling_23 * ref_motor_a2
                 # A3: without a commanded turn, the value nearest to this
-                open_a3 = k.offset_a3 + (free_a3 - part_of_axis_a3) / DEGREE
+                open_a3 = k.offset_a3 + (reference_a3 - part_of_axis_a3) / DEGREE
             return (open_a3,)
 
         near_a3 = 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3)

@@ -146,8 +146,8 @@ class ArrayPrograms(Programs):
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         span_2_x = x - k.part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - k.part_of_pivot_2_y
@@ -165,8 +165,8 @@ class ArrayPrograms(Programs):
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         span_3_y = k.part_of_pivot_2_y + y
         along_a3 = span_2_x + root_of_3_2 * span_3_y
@@ -179,19 +179,19 @@ class ArrayPrograms(Programs):
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * root(sine_square_a1) * sigma_knee_1 / divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_1_x * cos_swing_a1 - span_1_z * sin_swing_a1) / divisor_a1
         rod_1_x = span_1_x + k.arm_length_1 * cos_a1
         sin_a1 = (span_1_z * cos_swing_a1 + span_1_x * sin_swing_a1) / divisor_a1
         rod_1_z = span_1_z + k.arm_length_1 * sin_a1
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_knee_2 / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (across_a2 * sin_swing_a2 + along_a2 * cos_swing_a2) / divisor_a2
         rod_2_x = span_2_x - k.half_arm_length_1 * cos_a2
         rod_2_y = span_2_y + k.arm_length_1_times_root_of_3_times_half * cos_a2
@@ -199,7 +199,7 @@ class ArrayPrograms(Programs):
         rod_2_z = span_1_z + k.arm_length_1 * sin_a2
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = -2.0 * root(sine_square_a3) * sigma_knee_3 / divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (across_a2 * sin_swing_a3 + along_a3 * cos_swing_a3) / divisor_a3
         rod_3_x = span_2_x - k.half_arm_length_1 * cos_a3
         rod_3_y = span_3_y - k.arm_length_1_times_root_of_3_times_half * cos_a3

@@ -77,9 +77,9 @@ class ArrayPrograms(OrientationPrograms):
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
 
         def elsewhere_direction_x_a(ref_a: Real) -> Reals:
-            free_a = (ref_a - k.offset_a) * DEGREE
-            direction_x_a = cos(free_a)
-            direction_y_a = sin(free_a)
+            reference_a = (ref_a - k.offset_a) * DEGREE
+            direction_x_a = cos(reference_a)
+            direction_y_a = sin(reference_a)
             return (direction_x_a, direction_y_a)
 
         direction_x_a = sigma_roll * r13_of_a

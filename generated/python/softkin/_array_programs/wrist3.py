@@ -81,9 +81,9 @@ class ArrayPrograms(OrientationPrograms):
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
-            free_c = (ref_c - k.offset_c) * DEGREE
-            direction_x_c = cos(free_c)
-            direction_y_c = sin(free_c)
+            reference_c = (ref_c - k.offset_c) * DEGREE
+            direction_x_c = cos(reference_c)
+            direction_y_c = sin(reference_c)
             return (direction_x_c, direction_y_c)
 
         direction_x_c = sigma_hand * r31

@@ -43,7 +43,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         ref_a1, ref_a2, _, _, _, ref_a6 = 6 * (0.0,) if reference is None else reference
-        wrist_x = x - d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6 * r23
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -71,9 +71,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y) / divisor_q1
             sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_y + d4_times_wrist_x) / divisor_q1
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3_left = cos(free_a1)
-            sin_q1_before_q1_for_q3_left = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3_left = cos(reference_a1)
+            sin_q1_before_q1_for_q3_left = sin(reference_a1)
             cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left
             sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
         minus_r21_from_q1 = r11 * sin_q1_before_q1_for_q3_left - r21 * cos_q1_before_q1_for_q3_left
@@ -90,9 +90,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
-            free_a6 = (ref_a6 - offset_a6) * DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)
-            sin_q6_before_q6_of_q3_down = sin(free_a6)
+            reference_a6 = (ref_a6 - offset_a6) * DEGREE
+            cos_q6_before_q6_of_q3_down = cos(reference_a6)
+            sin_q6_before_q6_of_q3_down = sin(reference_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         r21_from_q1_before_q56_before_q6_of_q3_down = (
@@ -219,8 +219,8 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_minus_reach + a3) * (a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach) * (a2_plus_reach - a3)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_left_down = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left) * RADIAN
@@ -232,9 +232,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_left_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_left_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_q2_left_up_down = free_a2
-            angle_q2_left_down_down = free_a2
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            angle_q2_left_up_down = reference_a2
+            angle_q2_left_down_down = reference_a2
         angle_q3_down = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_left_up_down = angle_q3_down * RADIAN
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
@@ -363,8 +363,8 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_minus_reach + a3) * (a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach) * (a2_plus_reach - a3)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_left_up = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
@@ -375,9 +375,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_left_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_left_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_q2_left_up_up = free_a2
-            angle_q2_left_down_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            angle_q2_left_up_up = reference_a2
+            angle_q2_left_down_up = reference_a2
         angle_q3_up = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_left_up_up = angle_q3_up * RADIAN
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
@@ -403,9 +403,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
-            free_a6 = (ref_a6 - offset_a6) * DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)
-            sin_q6_before_q6_of_q3_down = sin(free_a6)
+            reference_a6 = (ref_a6 - offset_a6) * DEGREE
+            cos_q6_before_q6_of_q3_down = cos(reference_a6)
+            sin_q6_before_q6_of_q3_down = sin(reference_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         r21_from_q1_before_q56_before_q6_of_q3_down = (
@@ -531,8 +531,8 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_minus_reach + a3) * (a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach) * (a2_plus_reach - a3)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_right_down = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right) * RADIAN
@@ -544,9 +544,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_right_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_right_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_q2_right_up_down = free_a2
-            angle_q2_right_down_down = free_a2
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            angle_q2_right_up_down = reference_a2
+            angle_q2_right_down_down = reference_a2
         angle_q3_down = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_right_up_down = angle_q3_down * RADIAN
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
@@ -675,8 +675,8 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_minus_reach + a3) * (a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach) * (a2_plus_reach - a3)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_right_up = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
@@ -687,9 +687,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_right_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_right_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_q2_right_up_up = free_a2
-            angle_q2_right_down_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            angle_q2_right_up_up = reference_a2
+            angle_q2_right_down_up = reference_a2
         angle_q3_up = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_right_up_up = angle_q3_up * RADIAN
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
@@ -789,7 +789,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         sigma_shoulder, sigma_elbow, sigma_wrist = signs
         ref_a1, ref_a2, _, _, _, ref_a6 = 6 * (0.0,) if reference is None else reference
-        wrist_x = x - d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6 * r23
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -811,9 +811,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d4 * wrist_y) / divisor_q1
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d4 * wrist_x) / divisor_q1
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
         # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13 * sin_q1_before_q1_for_q3 - r23 * cos_q1_before_q1_for_q3
         minus_r21_from_q1 = r11 * sin_q1_before_q1_for_q3 - r21 * cos_q1_before_q1_for_q3
@@ -827,9 +827,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6_before_q6_of_q3 = along_q6 / radius_q6
             sin_q6_before_q6_of_q3 = (sigma_wrist * r22_from_q1) / radius_q6
         else:
-            free_a6 = (ref_a6 - offset_a6) * DEGREE
-            cos_q6_before_q6_of_q3 = cos(free_a6)
-            sin_q6_before_q6_of_q3 = sin(free_a6)
+            reference_a6 = (ref_a6 - offset_a6) * DEGREE
+            cos_q6_before_q6_of_q3 = cos(reference_a6)
+            sin_q6_before_q6_of_q3 = sin(reference_a6)
         r21_from_q1_before_q56_before_q6_of_q3 = (
             r31 * cos_q6_before_q6_of_q3 - r32 * sin_q6_before_q6_of_q3
         ) * cos_q5 - q6_radius_of_q5 * r33
@@ -937,8 +937,8 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):

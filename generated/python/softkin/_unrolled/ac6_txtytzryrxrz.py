@@ -32,7 +32,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         _, _, _, ref_a4, _, _ = 6 * (0.0,) if reference is None else reference
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x = x - flange_x * r11 - flange_y * r12 - flange_z * r13
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x * r21 - flange_y * r22 - flange_z * r23
@@ -52,9 +52,9 @@ def unrolled(k: Constants) -> Unrolled:
                 scaled_r11_from_a4_upright = direction_x_a4_upright * r11 - direction_y_a4_upright * r31
                 direction_y_a6_upright = direction_y_a4_upright * r32 - direction_x_a4_upright * r12
         else:
-            free_a4 = (ref_a4 - offset_a4) * DEGREE
-            direction_x_a4_upright = cos(free_a4)
-            direction_y_a4_upright = sin(free_a4)
+            reference_a4 = (ref_a4 - offset_a4) * DEGREE
+            direction_x_a4_upright = cos(reference_a4)
+            direction_y_a4_upright = sin(reference_a4)
             scaled_r11_from_a4_upright = direction_x_a4_upright * r11 - direction_y_a4_upright * r31
             direction_y_a6_upright = direction_y_a4_upright * r32 - direction_x_a4_upright * r12
             direction_x_a4_flipped = direction_x_a4_upright
@@ -86,7 +86,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         (sigma_wrist,) = signs
         _, _, _, ref_a4, _, _ = 6 * (0.0,) if reference is None else reference
-        # wrist centre: the point in which the last axes intersect
+        # wrist centre: the last joints do not move this point
         wrist_x = x - flange_x * r11 - flange_y * r12 - flange_z * r13
         wrist_y = y - flange_x * r21 - flange_y * r22 - flange_z * r23
         wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
@@ -103,9 +103,9 @@ def unrolled(k: Constants) -> Unrolled:
                 scaled_r11_from_a4 = direction_x_a4 * r11 - direction_y_a4 * r31
                 direction_y_a6 = direction_y_a4 * r32 - direction_x_a4 * r12
         else:
-            free_a4 = (ref_a4 - offset_a4) * DEGREE
-            direction_x_a4 = cos(free_a4)
-            direction_y_a4 = sin(free_a4)
+            reference_a4 = (ref_a4 - offset_a4) * DEGREE
+            direction_x_a4 = cos(reference_a4)
+            direction_y_a4 = sin(reference_a4)
             scaled_r11_from_a4 = direction_x_a4 * r11 - direction_y_a4 * r31
             direction_y_a6 = direction_y_a4 * r32 - direction_x_a4 * r12
         if no_offsets:

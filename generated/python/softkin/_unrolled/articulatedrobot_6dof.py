@@ -42,7 +42,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         ref_a1, ref_a2, _, ref_a4, _, _ = 6 * (0.0,) if reference is None else reference
-        wrist_x = x - d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6 * r23
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -70,8 +70,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3 - a2_minus_reach) * (a2_plus_reach - effective_q3)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
         # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
@@ -86,9 +86,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_wrist_x - d3_times_wrist_y) / divisor_q1
             sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - ahead_q1_before_q1_for_q3_times_wrist_y) / divisor_q1
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3_front = cos(free_a1)
-            sin_q1_before_q1_for_q3_front = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3_front = cos(reference_a1)
+            sin_q1_before_q1_for_q3_front = sin(reference_a1)
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front) * RADIAN
@@ -100,9 +100,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_q2_down = free_a2
-            angle_q2_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            angle_q2_down = reference_a2
+            angle_q2_up = reference_a2
         axis_a2_front_down = offset_a2 + angle_q2_down * RADIAN
         angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
         angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
@@ -125,7 +125,7 @@ def unrolled(k: Constants) -> Unrolled:
             minus_scaled_r21_from_q1234_down = r12_from_q1 * cos_q23 + r32 * sin_q23
             minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23) - r31 * sin_q23
         else:
-            free_a4 = (ref_a4 - offset_a4) * DEGREE
+            reference_a4 = (ref_a4 - offset_a4) * DEGREE
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_front - r11 * sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_front - r12 * sin_q1_before_q1_for_q3_front
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
@@ -136,8 +136,8 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_x_q4_up = -minus_r13_from_q123
                 direction_y_q4_up = -r23_from_q1
             else:
-                direction_x_q4_down = cos(free_a4)
-                direction_y_q4_down = sin(free_a4)
+                direction_x_q4_down = cos(reference_a4)
+                direction_y_q4_down = sin(reference_a4)
                 direction_x_q4_up = direction_x_q4_down
                 direction_y_q4_up = direction_y_q4_down
             r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
@@ -181,7 +181,7 @@ def unrolled(k: Constants) -> Unrolled:
             minus_scaled_r21_from_q1234_down = r12_from_q1 * cos_q23 + r32 * sin_q23
             minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23) - r31 * sin_q23
         else:
-            free_a4 = (ref_a4 - offset_a4) * DEGREE
+            reference_a4 = (ref_a4 - offset_a4) * DEGREE
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_front - r11 * sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_front - r12 * sin_q1_before_q1_for_q3_front
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
@@ -192,8 +192,8 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_x_q4_up = -minus_r13_from_q123
                 direction_y_q4_up = -r23_from_q1
             else:
-                direction_x_q4_down = cos(free_a4)
-                direction_y_q4_down = sin(free_a4)
+                direction_x_q4_down = cos(reference_a4)
+                direction_y_q4_down = sin(reference_a4)
                 direction_x_q4_up = direction_x_q4_down
                 direction_y_q4_up = direction_y_q4_down
             r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
@@ -231,8 +231,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3 - a2_minus_reach) * (a2_plus_reach - effective_q3)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_back = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back) * RADIAN
@@ -244,9 +244,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_q2_down = free_a2
-            angle_q2_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            angle_q2_down = reference_a2
+            angle_q2_up = reference_a2
         axis_a2_back_down = offset_a2 + angle_q2_down * RADIAN
         angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
         angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
@@ -269,7 +269,7 @@ def unrolled(k: Constants) -> Unrolled:
             minus_scaled_r21_from_q1234_down = r12_from_q1 * cos_q23 + r32 * sin_q23
             minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23) - r31 * sin_q23
         else:
-            free_a4 = (ref_a4 - offset_a4) * DEGREE
+            reference_a4 = (ref_a4 - offset_a4) * DEGREE
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_back - r11 * sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_back - r12 * sin_q1_before_q1_for_q3_back
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
@@ -280,8 +280,8 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_x_q4_up = -minus_r13_from_q123
                 direction_y_q4_up = -r23_from_q1
             else:
-                direction_x_q4_down = cos(free_a4)
-                direction_y_q4_down = sin(free_a4)
+                direction_x_q4_down = cos(reference_a4)
+                direction_y_q4_down = sin(reference_a4)
                 direction_x_q4_up = direction_x_q4_down
                 direction_y_q4_up = direction_y_q4_down
             r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
@@ -325,7 +325,7 @@ def unrolled(k: Constants) -> Unrolled:
             minus_scaled_r21_from_q1234_down = r12_from_q1 * cos_q23 + r32 * sin_q23
             minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23) - r31 * sin_q23
         else:
-            free_a4 = (ref_a4 - offset_a4) * DEGREE
+            reference_a4 = (ref_a4 - offset_a4) * DEGREE
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_back - r11 * sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_back - r12 * sin_q1_before_q1_for_q3_back
             # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
@@ -336,8 +336,8 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_x_q4_up = -minus_r13_from_q123
                 direction_y_q4_up = -r23_from_q1
             else:
-                direction_x_q4_down = cos(free_a4)
-                direction_y_q4_down = sin(free_a4)
+                direction_x_q4_down = cos(reference_a4)
+                direction_y_q4_down = sin(reference_a4)
                 direction_x_q4_up = direction_x_q4_down
                 direction_y_q4_up = direction_y_q4_down
             r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
@@ -452,7 +452,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         sigma_arm, sigma_elbow, sigma_hand = signs
         ref_a1, ref_a2, _, ref_a4, _, _ = 6 * (0.0,) if reference is None else reference
-        wrist_x = x - d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6 * r23
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -478,8 +478,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
@@ -490,9 +490,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d3 * wrist_y) / divisor_q1
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d3 * wrist_x) / divisor_q1
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
@@ -528,9 +528,9 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_x_q4 = sigma_hand * minus_r13_from_q123
                 direction_y_q4 = sigma_hand * r23_from_q1
             else:
-                free_a4 = (ref_a4 - offset_a4) * DEGREE
-                direction_x_q4 = cos(free_a4)
-                direction_y_q4 = sin(free_a4)
+                reference_a4 = (ref_a4 - offset_a4) * DEGREE
+                direction_x_q4 = cos(reference_a4)
+                direction_y_q4 = sin(reference_a4)
             r11_from_q123 = r31 * cos_q23 - (r11 * cos_q1_before_q1_for_q3 + r21 * sin_q1_before_q1_for_q3) * sin_q23
             minus_scaled_r21_from_q1234 = (
                 r21 * cos_q1_before_q1_for_q3 - r11 * sin_q1_before_q1_for_q3

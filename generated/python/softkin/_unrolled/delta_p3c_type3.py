@@ -68,8 +68,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1 + inner_arm_1) * (divisor_a1 + inner_arm_1) - third_square_a1
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -91,8 +91,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_2) * (divisor_a2 + inner_arm_2) - third_square_a2
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -114,8 +114,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (divisor_a3 + inner_arm_3) * (divisor_a3 + inner_arm_3) - third_square_a3
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
@@ -124,7 +124,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) / divisor_of_cos_a1
         sin_swing_a1_times_z_by_divisor_a1 = z * sin_swing_a1 / divisor_a1
         along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1 * cos_swing_a1 / divisor_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
         # rod 1: centre about which it swings
         pivot_1_x = constant_part + cos_a1 * cos_azimuth_1_times_inner_arm_1_2
@@ -138,7 +138,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
         sin_swing_a2_times_z_by_divisor_a2 = z * sin_swing_a2 / divisor_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2 * cos_swing_a2 / divisor_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
         # rod 2: centre about which it swings
         pivot_2_x = constant_part_3 + cos_a2 * cos_azimuth_2_times_inner_arm_2_2
@@ -152,7 +152,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) / divisor_of_cos_a3
         sin_swing_a3_times_z_by_divisor_a3 = z * sin_swing_a3 / divisor_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3 * cos_swing_a3 / divisor_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
         # rod 3: centre about which it swings
         pivot_3_x = constant_part_5 + cos_a3 * cos_azimuth_3_times_inner_arm_3_2
@@ -175,7 +175,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 + sin_swing_a3_times_z_by_divisor_a3
         # rod 3: centre about which it swings
         pivot_3_x = constant_part_5 + cos_a3 * cos_azimuth_3_times_inner_arm_3_2
@@ -194,7 +194,7 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 + sin_swing_a2_times_z_by_divisor_a2
         # rod 2: centre about which it swings
         pivot_2_x = constant_part_3 + cos_a2 * cos_azimuth_2_times_inner_arm_2_2
@@ -223,7 +223,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 + sin_swing_a1_times_z_by_divisor_a1
         # rod 1: centre about which it swings
         pivot_1_x = constant_part + cos_a1 * cos_azimuth_1_times_inner_arm_1_2
@@ -320,8 +320,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1 + inner_arm_1) * (divisor_a1 + inner_arm_1) - third_square_a1
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -343,8 +343,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_2) * (divisor_a2 + inner_arm_2) - third_square_a2
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -366,15 +366,15 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (divisor_a3 + inner_arm_3) * (divisor_a3 + inner_arm_3) - third_square_a3
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return None
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = along_a1 * cos_swing_a1 / divisor_a1 + z * sin_swing_a1 / divisor_a1
         # rod 1: centre about which it swings
         pivot_1_x = constant_part + cos_a1 * cos_azimuth_1_times_inner_arm_1_2
@@ -384,7 +384,7 @@ def unrolled(k: Constants) -> Unrolled:
         rod_1_z = z + inner_arm_1 * sin_a1
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = along_a2 * cos_swing_a2 / divisor_a2 + z * sin_swing_a2 / divisor_a2
         # rod 2: centre about which it swings
         pivot_2_x = constant_part_3 + cos_a2 * cos_azimuth_2_times_inner_arm_2_2
@@ -394,7 +394,7 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_z = z + inner_arm_2 * sin_a2
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_knee_3 / divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = along_a3 * cos_swing_a3 / divisor_a3 + z * sin_swing_a3 / divisor_a3
         # rod 3: centre about which it swings
         pivot_3_x = constant_part_5 + cos_a3 * cos_azimuth_3_times_inner_arm_3_2

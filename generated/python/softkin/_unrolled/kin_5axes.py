@@ -32,8 +32,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         _, _, _, ref_a, _ = 5 * (0.0,) if reference is None else reference
-        # wrist centre: the point in which the last axes intersect
-        wrist_x = x - r13 * tool_length_times_tool_side_2
+        wrist_x = x - r13 * tool_length_times_tool_side_2  # wrist centre: the last joints do not move this point
         axis_x = offset_x + wrist_x
         axis_y = offset_y + (y - r23 * tool_length_times_tool_side_2)
         axis_z = offset_z + (z - r33 * tool_length_times_tool_side_2)
@@ -48,9 +47,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_a_negative = -r13_of_a
             direction_y_a_negative = -r23_of_a
         else:
-            free_a = (ref_a - offset_a) * DEGREE
-            direction_x_a_positive = cos(free_a)
-            direction_y_a_positive = sin(free_a)
+            reference_a = (ref_a - offset_a) * DEGREE
+            direction_x_a_positive = cos(reference_a)
+            direction_y_a_positive = sin(reference_a)
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
         axis_a = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive) * RADIAN
@@ -70,8 +69,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         (sigma_roll,) = signs
         _, _, _, ref_a, _ = 5 * (0.0,) if reference is None else reference
-        # wrist centre: the point in which the last axes intersect
-        wrist_x = x - r13 * tool_length_times_tool_side_2
+        wrist_x = x - r13 * tool_length_times_tool_side_2  # wrist centre: the last joints do not move this point
         r13_of_a = r13 / tool_side
         r23_of_a = r23 / tool_side
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
@@ -81,9 +79,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a
         else:
-            free_a = (ref_a - offset_a) * DEGREE
-            direction_x_a = cos(free_a)
-            direction_y_a = sin(free_a)
+            reference_a = (ref_a - offset_a) * DEGREE
+            direction_x_a = cos(reference_a)
+            direction_y_a = sin(reference_a)
         if no_offsets:
             return (
                 wrist_x,

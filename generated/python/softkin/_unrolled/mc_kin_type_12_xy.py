@@ -71,8 +71,8 @@ def unrolled(k: Constants) -> Unrolled:
             divisor_a1_plus_link_length_2 - link_length_1
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -85,11 +85,11 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_upper_x_left = -link_length_1 * sin_a1_left  # rod upper: centre about which it swings
         sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x * sin_swing_a1 / divisor_a1
         cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y * cos_swing_a1 / divisor_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1_left = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
         sin_a1_right = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
         pivot_upper_x_right = -link_length_1 * sin_a1_right  # rod upper: centre about which it swings
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1_right = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
         if swap_xy:
             centre_1_x_left = -link_length_1 * cos_a1_left
@@ -130,14 +130,14 @@ def unrolled(k: Constants) -> Unrolled:
             divisor_a2_plus_link_length_4 - link_length_5
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2 * cos_swing_a2 / divisor_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2 * sin_swing_a2 / divisor_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_left_left = (
             across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
         )
@@ -146,7 +146,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_left_left = (
             across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_left_right = (
             along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
@@ -217,19 +217,19 @@ def unrolled(k: Constants) -> Unrolled:
             divisor_a2_plus_link_length_4 - link_length_5
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2 * cos_swing_a2 / divisor_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2 * sin_swing_a2 / divisor_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_right_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2 * sin_swing_a2 / divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2 * cos_swing_a2 / divisor_a2
         sin_a2_right_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_right_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
         sin_a2_right_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -316,8 +316,8 @@ def unrolled(k: Constants) -> Unrolled:
             divisor_a1 - link_length_1_minus_link_length_2_2
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -332,7 +332,7 @@ def unrolled(k: Constants) -> Unrolled:
             - link_length_1_times_link_length_2 * sin_a1
             - link_length_1_times_link_length_3 * sin_a1
         ) / link_length_2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = span_upper_y * cos_swing_a1 / divisor_a1 - span_upper_x * sin_swing_a1 / divisor_a1
         minus_span_rear_y = (x if swap_xy else y) * link_length_3_by_link_length_2_2
         across_a2 = (
@@ -355,8 +355,8 @@ def unrolled(k: Constants) -> Unrolled:
             divisor_a2 + link_length_4_minus_link_length_5
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -370,7 +370,7 @@ def unrolled(k: Constants) -> Unrolled:
             centre_1_y = -link_length_1 * cos_a1
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_w / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = along_a2 * cos_swing_a2 / divisor_a2 - across_a2 * sin_swing_a2 / divisor_a2
         # rod rear: centre about which it swings
         pivot_rear_x = (

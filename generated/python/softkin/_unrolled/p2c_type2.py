@@ -52,8 +52,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1_minus_outer_arm + inner_arm) * (divisor_a1_plus_outer_arm + inner_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -71,8 +71,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2_minus_outer_arm + inner_arm) * (divisor_a2_plus_outer_arm + inner_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -81,7 +81,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) / divisor_of_cos_a1
         sin_swing_a1_times_y_by_divisor_a1 = y * sin_swing_a1 / divisor_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x * cos_swing_a1 / divisor_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
         # rod 1: centre about which it swings
         pivot_1_x = inner_arm * cos_a1 - displacement_minus_tcp_link_distance_by_2
@@ -94,7 +94,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
         sin_swing_a2_times_y_by_divisor_a2 = y * sin_swing_a2 / divisor_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x * cos_swing_a2 / divisor_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
         # rod 2: centre about which it swings
         pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm * cos_a2
@@ -110,7 +110,7 @@ def unrolled(k: Constants) -> Unrolled:
         refusal_outward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
         # rod 2: centre about which it swings
         pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm * cos_a2
@@ -123,7 +123,7 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
         # rod 1: centre about which it swings
         pivot_1_x = inner_arm * cos_a1 - displacement_minus_tcp_link_distance_by_2
@@ -166,8 +166,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm_2) * (divisor_a1 + inner_arm_plus_outer_arm_2)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -183,22 +183,22 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm_2) * (divisor_a2 + inner_arm_plus_outer_arm_2)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = span_1_x * cos_swing_a1 / divisor_a1 - y * sin_swing_a1 / divisor_a1
         # rod 1: centre about which it swings
         pivot_1_x = inner_arm * cos_a1 - displacement_minus_tcp_link_distance_by_2
         sin_a1 = y * cos_swing_a1 / divisor_a1 + span_1_x * sin_swing_a1 / divisor_a1
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = span_2_x * cos_swing_a2 / divisor_a2 - y * sin_swing_a2 / divisor_a2
         # rod 2: centre about which it swings
         pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm * cos_a2

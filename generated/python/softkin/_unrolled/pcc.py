@@ -46,8 +46,8 @@ def unrolled(k: Constants) -> Unrolled:
             link_length_1_plus_reach - link_length_2
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
+        sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = sum_a2_from_a1 if sum_a2_from_a1 > 0.0 else 1.0
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / divisor_of_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
@@ -65,9 +65,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            angle_a1_right = reference_a1
+            angle_a1_left = reference_a1
         angle_a2_from_a1 = arctan2(sin_a2_from_a1, cos_a2_from_a1)
         # a2 from the sum a2_from_a1 of angles about parallel axes
         axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1) * RADIAN
@@ -96,8 +96,8 @@ def unrolled(k: Constants) -> Unrolled:
             link_length_1_minus_link_length_2_2 + reach
         )
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
+        sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = sum_a2_from_a1 if sum_a2_from_a1 > 0.0 else 1.0
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / divisor_of_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):

@@ -62,8 +62,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach) * (a2_plus_reach - effective_q3_2)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
         # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
@@ -78,9 +78,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_x - d3_times_y) / divisor_q1
             sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_times_y) / divisor_q1
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3_front = cos(free_a1)
-            sin_q1_before_q1_for_q3_front = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3_front = cos(reference_a1)
+            sin_q1_before_q1_for_q3_front = sin(reference_a1)
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front) * RADIAN
@@ -92,9 +92,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_front_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_front_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_q2_front_down = free_a2
-            angle_q2_front_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            angle_q2_front_down = reference_a2
+            angle_q2_front_up = reference_a2
         angle_of_swing_q3_front_down = arctan2(-sin_swing_q3, cos_swing_q3)
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
@@ -107,8 +107,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach) * (a2_plus_reach - effective_q3_2)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_back = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back) * RADIAN
@@ -120,9 +120,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_back_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_back_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_q2_back_down = free_a2
-            angle_q2_back_up = free_a2
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            angle_q2_back_down = reference_a2
+            angle_q2_back_up = reference_a2
         angle_of_swing_q3_back_down = arctan2(-sin_swing_q3, cos_swing_q3)
         return (
             (
@@ -184,8 +184,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
@@ -196,9 +196,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - d3 * y) / divisor_q1
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + d3 * x) / divisor_q1
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)
-            sin_q1_before_q1_for_q3 = sin(free_a1)
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1_before_q1_for_q3 = cos(reference_a1)
+            sin_q1_before_q1_for_q3 = sin(reference_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:

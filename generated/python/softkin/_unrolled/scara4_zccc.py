@@ -55,8 +55,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (link_length_2 - link_length_1_minus_reach) * (link_length_1_plus_reach - link_length_2)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
@@ -70,9 +70,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
             angle_a2_left = angle_of_arm_along_a2 + angle_of_wrist_x
         else:
-            free_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_a2_right = free_a2
-            angle_a2_left = free_a2
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            angle_a2_right = reference_a2
+            angle_a2_left = reference_a2
         angle_a3 = arctan2(sin_a3, cos_a3)
         part_of_axis_a3 = angle_a3 * RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)
@@ -108,8 +108,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):

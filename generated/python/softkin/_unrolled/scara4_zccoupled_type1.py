@@ -51,8 +51,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach) * (link_length_1_plus_reach - link_length_2)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
@@ -65,9 +65,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            angle_a1_right = reference_a1
+            angle_a1_left = reference_a1
         angle_a2 = arctan2(sin_a2, cos_a2)
         part_of_axis_a2 = angle_a2 * RADIAN
         angle_heading = arctan2(heading_across, heading_along)
@@ -107,8 +107,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):

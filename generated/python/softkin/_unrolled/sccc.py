@@ -55,8 +55,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach) * (link_length_1_plus_reach - link_length_2)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
@@ -69,9 +69,9 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            angle_a1_right = reference_a1
+            angle_a1_left = reference_a1
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         axis_a1_right = offset_a1 + angle_a1_right / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
@@ -87,8 +87,8 @@ def unrolled(k: Constants) -> Unrolled:
             open_a2_right = mid_a2
             open_a2_left = mid_a2
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            part_of_open_a2 = offset_a2 + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * free_a1) * RADIAN
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            part_of_open_a2 = offset_a2 + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
             open_a2_right = part_of_open_a2 - coupling_12 * motor_a1_right * RADIAN
             open_a2_left = part_of_open_a2 - coupling_12 * motor_a1_left * RADIAN
         # A2: whole turns added
@@ -139,8 +139,8 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
@@ -152,8 +152,8 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2
             )
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
-            angle_a1 = free_a1
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            angle_a1 = reference_a1
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - open_a1 < 179.999999999:
@@ -164,10 +164,10 @@ def unrolled(k: Constants) -> Unrolled:
         if single_a2:
             open_a2 = mid_a2
         else:
-            free_a1 = (ref_a1 - offset_a1) * DEGREE
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
             open_a2 = (
                 offset_a2
-                + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * free_a1) * RADIAN
+                + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
                 - coupling_12 * motor_a1 * RADIAN
             )
         axis_a2 = offset_a2 + angle_a2 / DEGREE - coupling_12 * motor_a1 / DEGREE  # A2: whole turns added

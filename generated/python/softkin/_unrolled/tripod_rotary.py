@@ -63,8 +63,8 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a1 = arm_length_1_times_divisor_a1_times_2 - scaled_cosine_a1
         one_plus_cos_a1 = arm_length_1_times_divisor_a1_times_2 + scaled_cosine_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -90,8 +90,8 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = arm_length_1_times_divisor_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_divisor_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -111,8 +111,8 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a3 = arm_length_1_times_divisor_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_divisor_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
@@ -130,7 +130,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2 * sin_swing_a2 / divisor_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2 * cos_swing_a2 / divisor_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
         # rod 2: centre about which it swings
         pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2 * cos_a2
@@ -143,7 +143,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) / divisor_of_cos_a3
         across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2 * sin_swing_a3 / divisor_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3 * cos_swing_a3 / divisor_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - across_a2_times_sin_swing_a3_by_divisor_a3
         # rod 3: centre about which it swings
         pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2 * cos_a3
@@ -157,7 +157,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) / divisor_of_cos_a1
         sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z * sin_swing_a1 / divisor_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x * cos_swing_a1 / divisor_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_span_1_z_by_divisor_a1
         # rod 1: centre about which it swings
         pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1 * cos_a1
@@ -180,7 +180,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = across_a2_times_sin_swing_a3_by_divisor_a3 + along_a3_times_cos_swing_a3_by_divisor_a3
         # rod 3: centre about which it swings
         pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2 * cos_a3
@@ -201,7 +201,7 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
         # rod 2: centre about which it swings
         pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2 * cos_a2
@@ -234,7 +234,7 @@ def unrolled(k: Constants) -> Unrolled:
         ) * assembly_sign_by_constant_part
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_span_1_z_by_divisor_a1
         # rod 1: centre about which it swings
         pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1 * cos_a1
@@ -327,8 +327,8 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a1 = arm_length_1_times_2 * divisor_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + arm_length_1_times_2 * divisor_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
-        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
@@ -354,8 +354,8 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = arm_length_1 * divisor_a2 - scaled_cosine_a2
         one_plus_cos_a2 = scaled_cosine_a2 + arm_length_1 * divisor_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
@@ -379,15 +379,15 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a3 = arm_length_1 * divisor_a3 - scaled_cosine_a3
         one_plus_cos_a3 = scaled_cosine_a3 + arm_length_1 * divisor_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
-        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return None
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = span_1_x * cos_swing_a1 / divisor_a1 - span_1_z * sin_swing_a1 / divisor_a1
         # rod 1: centre about which it swings
         pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1 * cos_a1
@@ -396,7 +396,7 @@ def unrolled(k: Constants) -> Unrolled:
         rod_1_z = z - (fixed_length_2 - arm_length_1 * sin_a1)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = across_a2 * sin_swing_a2 / divisor_a2 + along_a2 * cos_swing_a2 / divisor_a2
         # rod 2: centre about which it swings
         pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2 * cos_a2
@@ -406,7 +406,7 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_z = z - (fixed_length_2 - arm_length_1 * sin_a2)
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_knee_3 / divisor_of_cos_a3
-        # addition theorem: plus the angle of the direction from which it is measured
+        # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = across_a2 * sin_swing_a3 / divisor_a3 + along_a3 * cos_swing_a3 / divisor_a3
         # rod 3: centre about which it swings
         pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2 * cos_a3

@@ -40,9 +40,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_a_negative = -r13_of_a
             direction_y_a_negative = -r23_of_a
         else:
-            free_a = (ref_a - offset_a) * DEGREE
-            direction_x_a_positive = cos(free_a)
-            direction_y_a_positive = sin(free_a)
+            reference_a = (ref_a - offset_a) * DEGREE
+            direction_x_a_positive = cos(reference_a)
+            direction_y_a_positive = sin(reference_a)
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
         axis_a = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive) * RADIAN
@@ -68,9 +68,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a
         else:
-            free_a = (ref_a - offset_a) * DEGREE
-            direction_x_a = cos(free_a)
-            direction_y_a = sin(free_a)
+            reference_a = (ref_a - offset_a) * DEGREE
+            direction_x_a = cos(reference_a)
+            direction_y_a = sin(reference_a)
         if no_offsets:
             return (arctan2(direction_y_a, direction_x_a) * RADIAN, arctan2(sigma_roll * radius_a, r33) * RADIAN)
         return (

@@ -37,9 +37,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_c_down = r31
             direction_y_c_down = -r32
         else:
-            free_c = (ref_c - offset_c) * DEGREE
-            direction_x_c_down = cos(free_c)
-            direction_y_c_down = sin(free_c)
+            reference_c = (ref_c - offset_c) * DEGREE
+            direction_x_c_down = cos(reference_c)
+            direction_y_c_down = sin(reference_c)
             direction_x_c_up = direction_x_c_down
             direction_y_c_up = direction_y_c_down
         axis_a = (
@@ -78,9 +78,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_c = sigma_hand * r31
             direction_y_c = -sigma_hand * r32
         else:
-            free_c = (ref_c - offset_c) * DEGREE
-            direction_x_c = cos(free_c)
-            direction_y_c = sin(free_c)
+            reference_c = (ref_c - offset_c) * DEGREE
+            direction_x_c = cos(reference_c)
+            direction_y_c = sin(reference_c)
         axis_a = (
             offset_a
             + arctan2(-direction_x_c * r12 - direction_y_c * r11, direction_x_c * r22 + direction_y_c * r21) * RADIAN
