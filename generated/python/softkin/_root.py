@@ -308,9 +308,9 @@ def _hides_roots(f: float, df: float, f1: float, df1: float, width: float) -> bo
 
 
 def _comes_back(f: float, df: float, f1: float, df1: float, width: float) -> bool:
-    """Whether a value with one sign at both ends falls towards zero from both, and its tangents meet beyond zero, or nearly.
+    """Whether a value with one sign at both ends falls towards zero from both, and its tangents meet about beyond zero.
 
-    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks tangents are no bound.
+    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks they are no bound.
     """
     sign = -1.0 if f < 0.0 else 1.0
     if not (f * f1 > 0.0 and sign * df < 0.0 < sign * df1):

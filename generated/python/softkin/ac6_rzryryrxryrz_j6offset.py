@@ -531,7 +531,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
         slope_wrist_x_tried = j6_offset_x*(goal_r12*cos_q6_tried + goal_r11*sin_q6_tried)
         slope_wrist_y_tried = j6_offset_x*(goal_r22*cos_q6_tried + goal_r21*sin_q6_tried)
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
             along_q1_tried = wanted_shoulder*wrist_x_tried  # rotation by q1 that points the arm at the point
             if distance_q1_tried > machine_scale_times_free_angle:
@@ -636,11 +636,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_sin_q3_tried = (
             a3_by_effective_q3_tried*slope_sin_swing_q3_tried - d4_by_effective_q3_tried*slope_cos_swing_q3_tried
         )
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if reach_tried > machine_scale_times_free_angle and freed != 1:
             arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
             arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
-            # rotation by q2 that takes the arm to the point that it must reach
+            # rotation by q2 that takes the arm to its target point
             along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
             across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
             part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
@@ -749,7 +749,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*j6_offset_x - d6*goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
             along_q1_tried = wanted_shoulder*wrist_x_tried  # rotation by q1 that points the arm at the point
             length_q1_tried = distance_q1_tried if distance_q1_tried > machine_scale_times_free_angle else 1.0
@@ -785,11 +785,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if reach_tried > machine_scale_times_free_angle and freed != 1:
             arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
             arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
-            # rotation by q2 that takes the arm to the point that it must reach
+            # rotation by q2 that takes the arm to its target point
             along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
             across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
             part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
@@ -1479,7 +1479,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q5 = found_q5
             q6 = found_q6
         else:
-            # in the singularity: the angle of the reference
+            # if singular: that of the reference
             if distance_q1_closed > machine_scale_times_free_angle:
                 along_q1_closed = sigma_shoulder*wrist_x_closed  # rotation by q1 that points the arm at the point
                 cos_q1_closed = along_q1_closed/distance_q1_closed
@@ -1497,11 +1497,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 /divisor_of_cos_q3_closed
             )
             cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
-            # in the singularity: the angle of the reference
+            # if singular: that of the reference
             if reach_closed > machine_scale_times_free_angle:
                 arm_along_q2_closed = effective_q3_tried*sin_swing_q3_closed
                 arm_across_q2_closed = a2 + effective_q3_tried*cos_swing_q3_closed
-                # rotation by q2 that takes the arm to the point that it must reach
+                # rotation by q2 that takes the arm to its target point
                 along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
                 across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
                 part_of_length_q2_closed = across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed
@@ -1523,7 +1523,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r23_from_q1_closed = r23*cos_q1_closed - r13*sin_q1_closed
             # polar coordinates: the radius at angle q4
             radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
-            # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r33 and r23 equations; if singular: that of the reference
             if radius_q4_closed > 1e-11:
                 direction_x_q4_closed = sigma_wrist*r33_from_q123_closed
                 direction_y_q4_closed = -sigma_wrist*r23_from_q1_closed

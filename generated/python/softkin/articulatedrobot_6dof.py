@@ -734,7 +734,7 @@ class ArticulatedRobot6DOF(Mechanism):
             - a2_squared_plus_effective_q3_squared
         )
         rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
-        # turn of q1 to the bound, to first order
+        # turn of q1 to first order
         if abs(rate_q1_for_q3) > size_q1_for_q3_times_rounding:
             excess_q1_for_q3 = (
                 value_q1_for_q3 - size_q1_for_q3
@@ -747,7 +747,7 @@ class ArticulatedRobot6DOF(Mechanism):
         turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
         one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
         turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/distance_q1_squared
@@ -763,7 +763,7 @@ class ArticulatedRobot6DOF(Mechanism):
         )
         # residual of the equation of q1
         turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         ahead_q1 = (
             ahead_q1_before_q1_for_q3
             if ahead_squared_q1 > machine_scale_squared_times_plane
@@ -794,17 +794,17 @@ class ArticulatedRobot6DOF(Mechanism):
                 - a2_plus_effective_q3 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         if ahead_squared_q1 > machine_scale_squared_times_plane:
             cos_q1 = cos_q1_before_q1_for_q3
             sin_q1 = sin_q1_before_q1_for_q3
         else:
-            # turned, within rounding, to where q3 has a solution
+            # turned so that q3 has a solution
             if abs(value_q1_for_q3) <= size_q1_for_q3:
                 cos_q1 = cos_q1_before_q1_for_q3
                 sin_q1 = sin_q1_before_q1_for_q3
             else:
-                # turned, within rounding, to where q3 has a solution
+                # turned so that q3 has a solution
                 if turned_cost_q1_for_q3 > machine_scale_times_rounding:
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
@@ -820,11 +820,11 @@ class ArticulatedRobot6DOF(Mechanism):
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
-            # rotation by q2 that takes the arm to the point that it must reach
+            # rotation by q2 that takes the arm to its target point
             along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
             across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
             across_q2_squared_plus_along_q2_squared = across_q2*across_q2 + along_q2*along_q2
@@ -859,7 +859,7 @@ class ArticulatedRobot6DOF(Mechanism):
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 1e-11:
             direction_x_q4 = -sigma_hand*r13_from_q123
             direction_y_q4 = sigma_hand*r23_from_q1

@@ -381,7 +381,7 @@ class PCC(OffsetKinematics):
             2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
             /divisor_of_cos_a2_from_a1
         )
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1 = link_length_2*sin_a2_from_a1
@@ -601,7 +601,7 @@ class PCC(OffsetKinematics):
             2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
             /divisor_of_cos_a2_from_a1
         )
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1 = link_length_2*sin_a2_from_a1

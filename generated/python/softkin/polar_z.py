@@ -303,7 +303,7 @@ class PolarZ(Mechanism):
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y

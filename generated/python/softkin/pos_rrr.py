@@ -492,7 +492,7 @@ class PosRRR(OffsetKinematics):
             - a2_squared_plus_effective_q3_2_squared
         )
         rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
-        # turn of q1 to the bound, to first order
+        # turn of q1 to first order
         if abs(rate_q1_for_q3) > size_q1_for_q3_2_times_rounding:
             excess_q1_for_q3 = (
                 value_q1_for_q3 - size_q1_for_q3_2
@@ -505,7 +505,7 @@ class PosRRR(OffsetKinematics):
         turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
         one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
         turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/distance_q1_squared
@@ -521,7 +521,7 @@ class PosRRR(OffsetKinematics):
         )
         # residual of the equation of q1
         turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         ahead_q1 = (
             ahead_q1_before_q1_for_q3
             if ahead_squared_q1 > machine_scale_squared_times_plane
@@ -553,17 +553,17 @@ class PosRRR(OffsetKinematics):
                 - a2_plus_effective_q3_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         if ahead_squared_q1 > machine_scale_squared_times_plane:
             cos_q1 = cos_q1_before_q1_for_q3
             sin_q1 = sin_q1_before_q1_for_q3
         else:
-            # turned, within rounding, to where q3 has a solution
+            # turned so that q3 has a solution
             if abs(value_q1_for_q3) <= size_q1_for_q3_2:
                 cos_q1 = cos_q1_before_q1_for_q3
                 sin_q1 = sin_q1_before_q1_for_q3
             else:
-                # turned, within rounding, to where q3 has a solution
+                # turned so that q3 has a solution
                 if turned_cost_q1_for_q3 > machine_scale_times_rounding:
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
@@ -579,7 +579,7 @@ class PosRRR(OffsetKinematics):
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
@@ -863,7 +863,7 @@ class PosRRR(OffsetKinematics):
         )
         size_q1_for_q3 = abs(effective_q3)*twice_a2
         rate_q1_for_q3 = -2.0*tool_z*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
-        # turn of q1 to the bound, to first order
+        # turn of q1 to first order
         if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
             excess_q1_for_q3 = (
                 value_q1_for_q3 - size_q1_for_q3
@@ -876,7 +876,7 @@ class PosRRR(OffsetKinematics):
         turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
         one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
         turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - tool_z*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - tool_z*y)/distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + tool_z*x)/distance_q1_squared
@@ -892,7 +892,7 @@ class PosRRR(OffsetKinematics):
         )
         # residual of the equation of q1
         turned_cost_q1_for_q3 = abs(tool_z + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         ahead_q1 = (
             ahead_q1_before_q1_for_q3
             if ahead_squared_q1 > machine_scale_squared_times_plane
@@ -925,17 +925,17 @@ class PosRRR(OffsetKinematics):
                 - a2 - effective_q3 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         if ahead_squared_q1 > machine_scale_squared_times_plane:
             cos_q1 = cos_q1_before_q1_for_q3
             sin_q1 = sin_q1_before_q1_for_q3
         else:
-            # turned, within rounding, to where q3 has a solution
+            # turned so that q3 has a solution
             if abs(value_q1_for_q3) <= size_q1_for_q3:
                 cos_q1 = cos_q1_before_q1_for_q3
                 sin_q1 = sin_q1_before_q1_for_q3
             else:
-                # turned, within rounding, to where q3 has a solution
+                # turned so that q3 has a solution
                 if turned_cost_q1_for_q3 > machine_scale_times_rounding:
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
@@ -954,7 +954,7 @@ class PosRRR(OffsetKinematics):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = (tool_x*cos_swing_q3 + tool_y*sin_swing_q3)/effective_q3
         sin_q3 = (tool_x*sin_swing_q3 - tool_y*cos_swing_q3)/effective_q3
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = tool_y*cos_q3 + tool_x*sin_q3
             arm_across_q2 = a2 + tool_x*cos_q3 - tool_y*sin_q3

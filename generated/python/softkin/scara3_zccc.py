@@ -466,7 +466,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
-        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a2 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2 = link_length_2*sin_a3
@@ -728,7 +728,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (tool_x*cos_swing_a3 + tool_y*sin_swing_a3)/effective_a3
         sin_a3 = (tool_x*sin_swing_a3 - tool_y*cos_swing_a3)/effective_a3
-        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a2 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + tool_x*cos_a3 - tool_y*sin_a3
             arm_across_a2 = tool_y*cos_a3 + tool_x*sin_a3

@@ -536,7 +536,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
@@ -812,7 +812,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x*cos_swing_a2 + tool_y*sin_swing_a2)/effective_a2
         sin_a2 = (tool_x*sin_swing_a2 - tool_y*cos_swing_a2)/effective_a2
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
             arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2

@@ -81,7 +81,7 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q1_tried(freed: Whole, freed_angle: Real, reference_a1: Real) -> Reals:
             chosen_q1 = select(freed == 0, freed_angle, reference_a1)  # q1 where the pose leaves it free
-            cos_q1_tried = cos(chosen_q1)  # in the singularity: the angle of the reference
+            cos_q1_tried = cos(chosen_q1)  # if singular: that of the reference
             sin_q1_tried = sin(chosen_q1)
             slope_cos_q1_tried = 0.0
             slope_sin_q1_tried = 0.0
@@ -111,7 +111,7 @@ class ArrayPrograms(Programs):
             (),
         )
         one_by_distance_q1_tried = 1.0/length_q1_tried
-        cos_q1_tried = along_q1_tried*one_by_distance_q1_tried  # in the singularity: the angle of the reference
+        cos_q1_tried = along_q1_tried*one_by_distance_q1_tried  # if singular: that of the reference
         across_q1_tried = wanted_shoulder*wrist_y_tried
         sin_q1_tried = across_q1_tried*one_by_distance_q1_tried
         slope_along_q1_tried = wanted_shoulder*slope_wrist_x_tried
@@ -214,7 +214,7 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q2_tried(freed: Whole, freed_angle: Real, reference_a2: Real) -> Reals:
             chosen_q2 = select(freed == 1, freed_angle, reference_a2)  # q2 where the pose leaves it free
-            cos_q2_tried = cos(chosen_q2)  # in the singularity: the angle of the reference
+            cos_q2_tried = cos(chosen_q2)  # if singular: that of the reference
             sin_q2_tried = sin(chosen_q2)
             slope_cos_q2_tried = 0.0
             slope_sin_q2_tried = 0.0
@@ -222,7 +222,7 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
         arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
-        # rotation by q2 that takes the arm to the point that it must reach
+        # rotation by q2 that takes the arm to its target point
         along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
         across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
         part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
@@ -260,7 +260,7 @@ class ArrayPrograms(Programs):
             (),
         )
         one_by_root_of_length_q2_tried = 1.0/length_q2_tried
-        cos_q2_tried = along_q2_tried*one_by_root_of_length_q2_tried  # in the singularity: the angle of the reference
+        cos_q2_tried = along_q2_tried*one_by_root_of_length_q2_tried  # if singular: that of the reference
         sin_q2_tried = across_q2_tried*one_by_root_of_length_q2_tried
         slope_cos_q2_tried = (
             (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)*one_by_root_of_length_q2_tried
@@ -343,13 +343,13 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q1_tried(freed: Whole, freed_angle: Real, reference_a1: Real) -> Reals:
             chosen_q1 = select(freed == 0, freed_angle, reference_a1)  # q1 where the pose leaves it free
-            cos_q1_tried = cos(chosen_q1)  # in the singularity: the angle of the reference
+            cos_q1_tried = cos(chosen_q1)  # if singular: that of the reference
             sin_q1_tried = sin(chosen_q1)
             return (cos_q1_tried, sin_q1_tried)
 
         along_q1_tried = wanted_shoulder*wrist_x_tried  # rotation by q1 that points the arm at the point
         length_q1_tried = select(distance_q1_tried > machine_scale_times_free_angle, distance_q1_tried, 1.0)
-        cos_q1_tried = along_q1_tried/length_q1_tried  # in the singularity: the angle of the reference
+        cos_q1_tried = along_q1_tried/length_q1_tried  # if singular: that of the reference
         across_q1_tried = wanted_shoulder*wrist_y_tried
         sin_q1_tried = across_q1_tried/length_q1_tried
         cos_q1_tried, sin_q1_tried = elsewhere(
@@ -383,13 +383,13 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q2_tried(freed: Whole, freed_angle: Real, reference_a2: Real) -> Reals:
             chosen_q2 = select(freed == 1, freed_angle, reference_a2)  # q2 where the pose leaves it free
-            cos_q2_tried = cos(chosen_q2)  # in the singularity: the angle of the reference
+            cos_q2_tried = cos(chosen_q2)  # if singular: that of the reference
             sin_q2_tried = sin(chosen_q2)
             return (cos_q2_tried, sin_q2_tried)
 
         arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
         arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
-        # rotation by q2 that takes the arm to the point that it must reach
+        # rotation by q2 that takes the arm to its target point
         along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
         across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
         part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
@@ -398,7 +398,7 @@ class ArrayPrograms(Programs):
             root(part_of_length_q2_tried),
             1.0,
         )
-        cos_q2_tried = along_q2_tried/length_q2_tried  # in the singularity: the angle of the reference
+        cos_q2_tried = along_q2_tried/length_q2_tried  # if singular: that of the reference
         sin_q2_tried = across_q2_tried/length_q2_tried
         cos_q2_tried, sin_q2_tried = elsewhere(
             (reach_tried > machine_scale_times_free_angle) & (freed != 1),
@@ -956,12 +956,12 @@ class ArrayPrograms(Programs):
         ) -> Reals:
 
             def elsewhere_cos_q1_closed(reference_a1: Real) -> Reals:
-                cos_q1_closed = cos(reference_a1)  # in the singularity: the angle of the reference
+                cos_q1_closed = cos(reference_a1)  # if singular: that of the reference
                 sin_q1_closed = sin(reference_a1)
                 return (cos_q1_closed, sin_q1_closed)
 
             along_q1_closed = sigma_shoulder*wrist_x_closed  # rotation by q1 that points the arm at the point
-            cos_q1_closed = along_q1_closed/distance_q1_closed  # in the singularity: the angle of the reference
+            cos_q1_closed = along_q1_closed/distance_q1_closed  # if singular: that of the reference
             across_q1_closed = sigma_shoulder*wrist_y_closed
             sin_q1_closed = across_q1_closed/distance_q1_closed
             cos_q1_closed, sin_q1_closed = elsewhere(
@@ -978,18 +978,18 @@ class ArrayPrograms(Programs):
             cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
 
             def elsewhere_cos_q2_closed(reference_a2: Real) -> Reals:
-                cos_q2_closed = cos(reference_a2)  # in the singularity: the angle of the reference
+                cos_q2_closed = cos(reference_a2)  # if singular: that of the reference
                 sin_q2_closed = sin(reference_a2)
                 return (cos_q2_closed, sin_q2_closed)
 
             arm_along_q2_closed = effective_q3_tried*sin_swing_q3_closed
             arm_across_q2_closed = a2 + effective_q3_tried*cos_swing_q3_closed
-            # rotation by q2 that takes the arm to the point that it must reach
+            # rotation by q2 that takes the arm to its target point
             along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
             across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
             part_of_length_q2_closed = across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed
             length_q2_closed = select(part_of_length_q2_closed > 0.0, root(part_of_length_q2_closed), 1.0)
-            cos_q2_closed = along_q2_closed/length_q2_closed  # in the singularity: the angle of the reference
+            cos_q2_closed = along_q2_closed/length_q2_closed  # if singular: that of the reference
             sin_q2_closed = across_q2_closed/length_q2_closed
             cos_q2_closed, sin_q2_closed = elsewhere(
                 reach_closed > machine_scale_times_free_angle,
@@ -1012,12 +1012,12 @@ class ArrayPrograms(Programs):
 
             def elsewhere_direction_x_q4_closed(ref_a4: Real) -> Reals:
                 reference_a4 = (ref_a4 - offset_a4)*DEGREE
-                # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the reference
+                # polar coordinates: angle q4 from the r33 and r23 equations; if singular: that of the reference
                 direction_x_q4_closed = cos(reference_a4)
                 direction_y_q4_closed = sin(reference_a4)
                 return (direction_x_q4_closed, direction_y_q4_closed)
 
-            # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r33 and r23 equations; if singular: that of the reference
             direction_x_q4_closed = sigma_wrist*r33_from_q123_closed
             direction_y_q4_closed = -sigma_wrist*r23_from_q1_closed
             direction_x_q4_closed, direction_y_q4_closed = elsewhere(

@@ -219,12 +219,12 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - offset_a1)*DEGREE
-            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            # rotation by q1 that points the arm at the point; if singular: that of the reference
             cos_q1_before_q1_for_q3 = cos(reference_a1)
             sin_q1_before_q1_for_q3 = sin(reference_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/distance_q1_squared
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
@@ -372,13 +372,13 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_turn_q1_for_q3() -> Reals:
-                    turn_q1_for_q3 = 1.0  # turn of q1 to the bound, to first order
+                    turn_q1_for_q3 = 1.0  # turn of q1 to first order
                     return (turn_q1_for_q3,)
 
                 excess_q1_for_q3 = select(
                     value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3,
                 )
-                turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # turn of q1 to the bound, to first order
+                turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # turn of q1 to first order
                 (turn_q1_for_q3,) = elsewhere(
                     absolute(rate_q1_for_q3) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3,),
@@ -472,8 +472,8 @@ class ArrayPrograms(Programs):
                 near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
 
                 def elsewhere_near_cos_q1_for_q3(cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real) -> Reals:
-                    near_cos_q1_for_q3 = cos_q1_before_q1_for_q3  # the earlier angle follows the later one
-                    near_sin_q1_for_q3 = sin_q1_before_q1_for_q3  # it stays where every angle gives this later one
+                    near_cos_q1_for_q3 = cos_q1_before_q1_for_q3  # the earlier angle follows
+                    near_sin_q1_for_q3 = sin_q1_before_q1_for_q3  # it stays where it has no effect
                     return (near_cos_q1_for_q3, near_sin_q1_for_q3)
 
                 near_along_q1_for_q3 = (
@@ -487,9 +487,8 @@ class ArrayPrograms(Programs):
                 )
                 near_side_q1_for_q3 = select(near_towards_q1_for_q3 < 0.0, -1.0, 1.0)
                 part_of_near_cos_q1_for_q3 = near_side_q1_for_q3/near_radius_q1_for_q3
-                near_cos_q1_for_q3 = -near_q_q1_for_q3*part_of_near_cos_q1_for_q3  # the earlier angle follows the later one
-                # it stays where every angle gives this later one
-                near_sin_q1_for_q3 = near_p_q1_for_q3*part_of_near_cos_q1_for_q3
+                near_cos_q1_for_q3 = -near_q_q1_for_q3*part_of_near_cos_q1_for_q3  # the earlier angle follows
+                near_sin_q1_for_q3 = near_p_q1_for_q3*part_of_near_cos_q1_for_q3  # it stays where it has no effect
                 near_cos_q1_for_q3, near_sin_q1_for_q3 = elsewhere(
                     near_radius_q1_for_q3 > 1e-12,
                     (near_cos_q1_for_q3, near_sin_q1_for_q3),
@@ -504,7 +503,7 @@ class ArrayPrograms(Programs):
                     return (swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3)
 
                 near_cost_q1_for_q3 = absolute(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
-                mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # mirror image: on the other arc
+                mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # mirror image on the other arc
                 mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
                 mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
                 mirrored_q_q1_for_q3 = sigma_wrist*(mirrored_cos_q6_q1_for_q3*r12 + mirrored_sin_q6_q1_for_q3*r11)
@@ -514,8 +513,8 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_mirrored_cos_q1_for_q3(cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real) -> Reals:
-                    mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3  # the earlier angle follows the later one
-                    mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3  # it stays where every angle gives this later one
+                    mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3  # the earlier angle follows
+                    mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3  # it stays where it has no effect
                     return (mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3)
 
                 mirrored_along_q1_for_q3 = (
@@ -530,9 +529,8 @@ class ArrayPrograms(Programs):
                 )
                 mirrored_side_q1_for_q3 = select(mirrored_towards_q1_for_q3 < 0.0, -1.0, 1.0)
                 part_of_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
-                # the earlier angle follows the later one
-                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*part_of_mirrored_cos_q1_for_q3
-                # it stays where every angle gives this later one
+                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*part_of_mirrored_cos_q1_for_q3  # the earlier angle follows
+                # it stays where it has no effect
                 mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*part_of_mirrored_cos_q1_for_q3
                 mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3 = elsewhere(
                     mirrored_radius_q1_for_q3 > 1e-12,
@@ -583,14 +581,14 @@ class ArrayPrograms(Programs):
                 def elsewhere_ahead_q1(
                     best_ahead_q1_for_q3: Real, best_cos_q1_for_q3: Real, best_sin_q1_for_q3: Real,
                 ) -> Reals:
-                    ahead_q1 = best_ahead_q1_for_q3  # turned, within rounding, to where q3 has a solution
-                    cos_q1 = best_cos_q1_for_q3  # turned, within rounding, to where q3 has a solution
-                    sin_q1 = best_sin_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                    ahead_q1 = best_ahead_q1_for_q3  # turned so that q3 has a solution
+                    cos_q1 = best_cos_q1_for_q3  # turned so that q3 has a solution
+                    sin_q1 = best_sin_q1_for_q3  # turned so that q3 has a solution
                     return (ahead_q1, cos_q1, sin_q1)
 
-                ahead_q1 = ahead_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
-                cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
-                sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                ahead_q1 = ahead_q1_before_q1_for_q3  # turned so that q3 has a solution
+                cos_q1 = cos_q1_before_q1_for_q3  # turned so that q3 has a solution
+                sin_q1 = sin_q1_before_q1_for_q3  # turned so that q3 has a solution
                 ahead_q1, cos_q1, sin_q1 = elsewhere(
                     best_cost_q1_for_q3 > machine_scale_times_rounding,
                     (ahead_q1, cos_q1, sin_q1),
@@ -599,9 +597,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1, cos_q1, sin_q1)
 
-            ahead_q1 = ahead_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
-            cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
-            sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+            ahead_q1 = ahead_q1_before_q1_for_q3  # turned so that q3 has a solution
+            cos_q1 = cos_q1_before_q1_for_q3  # turned so that q3 has a solution
+            sin_q1 = sin_q1_before_q1_for_q3  # turned so that q3 has a solution
             ahead_q1, cos_q1, sin_q1 = elsewhere(
                 absolute(value_q1_for_q3) <= size_q1_for_q3,
                 (ahead_q1, cos_q1, sin_q1),
@@ -617,9 +615,9 @@ class ArrayPrograms(Programs):
             )
             return (ahead_q1, cos_q1, sin_q1)
 
-        ahead_q1 = ahead_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
-        cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
-        sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+        ahead_q1 = ahead_q1_before_q1_for_q3  # turned so that q3 has a solution
+        cos_q1 = cos_q1_before_q1_for_q3  # turned so that q3 has a solution
+        sin_q1 = sin_q1_before_q1_for_q3  # turned so that q3 has a solution
         ahead_q1, cos_q1, sin_q1 = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (ahead_q1, cos_q1, sin_q1),
@@ -642,12 +640,12 @@ class ArrayPrograms(Programs):
             reference_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_reference_a6 = cos(reference_a6)
             sin_of_reference_a6 = -sin(reference_a6)
-            cos_q6_before_q6_of_q3 = cos_of_reference_a6  # in the singularity: the angle of the reference
+            cos_q6_before_q6_of_q3 = cos_of_reference_a6  # if singular: that of the reference
             sin_q6_before_q6_of_q3 = -sin_of_reference_a6
             return (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3)
 
         along_q6 = -sigma_wrist*r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
-        cos_q6_before_q6_of_q3 = along_q6/radius_q6  # in the singularity: the angle of the reference
+        cos_q6_before_q6_of_q3 = along_q6/radius_q6  # if singular: that of the reference
         across_q6 = sigma_wrist*r22_from_q1
         sin_q6_before_q6_of_q3 = across_q6/radius_q6
         cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3 = elsewhere(
@@ -745,12 +743,12 @@ class ArrayPrograms(Programs):
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11)
 
                 def elsewhere_cos_q6(cos_q6_after_q6_of_q3: Real, sin_q6_after_q6_of_q3: Real) -> Reals:
-                    cos_q6 = cos_q6_after_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
-                    sin_q6 = sin_q6_after_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
+                    cos_q6 = cos_q6_after_q6_of_q3  # moved so that q3 has a solution
+                    sin_q6 = sin_q6_after_q6_of_q3  # moved so that q3 has a solution
                     return (cos_q6, sin_q6)
 
-                cos_q6 = cos_q6_before_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
-                sin_q6 = sin_q6_before_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
+                cos_q6 = cos_q6_before_q6_of_q3  # moved so that q3 has a solution
+                sin_q6 = sin_q6_before_q6_of_q3  # moved so that q3 has a solution
                 cos_q6, sin_q6 = elsewhere(
                     stays_q6_of_q3,
                     (cos_q6, sin_q6),
@@ -759,8 +757,8 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6, sin_q6)
 
-            cos_q6 = cos_q6_before_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
-            sin_q6 = sin_q6_before_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
+            cos_q6 = cos_q6_before_q6_of_q3  # moved so that q3 has a solution
+            sin_q6 = sin_q6_before_q6_of_q3  # moved so that q3 has a solution
             cos_q6, sin_q6 = elsewhere(
                 (radius_q6 > 0.1) & (size_of_value_q6_of_q3 > part_of_cos_q6),
                 (cos_q6, sin_q6),
@@ -772,8 +770,8 @@ class ArrayPrograms(Programs):
             )
             return (cos_q6, sin_q6)
 
-        cos_q6 = cos_q6_before_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
-        sin_q6 = sin_q6_before_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
+        cos_q6 = cos_q6_before_q6_of_q3  # moved so that q3 has a solution
+        sin_q6 = sin_q6_before_q6_of_q3  # moved so that q3 has a solution
         cos_q6, sin_q6 = elsewhere(
             size_of_value_q6_of_q3 <= size_q1_for_q3,
             (cos_q6, sin_q6),
@@ -807,14 +805,14 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2 = cos(reference_a2)
             direction_y_q2 = sin(reference_a2)
             return (direction_x_q2, direction_y_q2)
 
         arm_along_q2 = a2 + a3*cos_q3
         arm_across_q2 = a3*sin_q3
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
         direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         direction_x_q2, direction_y_q2 = elsewhere(
@@ -947,10 +945,10 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q1_before_q1_for_q3_left(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - offset_a1)*DEGREE
-            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            # rotation by q1 that points the arm at the point; if singular: that of the reference
             cos_q1_before_q1_for_q3_left = cos(reference_a1)
             sin_q1_before_q1_for_q3_left = sin(reference_a1)
-            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            # rotation by q1 that points the arm at the point; if singular: that of the reference
             cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left
             sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
             return (
@@ -958,10 +956,10 @@ class ArrayPrograms(Programs):
                 sin_q1_before_q1_for_q3_right,
             )
 
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         cos_q1_before_q1_for_q3_left = (-ahead_q1_before_q1_for_q3_right*wrist_x - d4*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3_left = (d4*wrist_x - ahead_q1_before_q1_for_q3_right*wrist_y)/distance_q1_squared
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right*wrist_x - d4*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right*wrist_y + d4*wrist_x)/distance_q1_squared
         found = elsewhere(
@@ -1145,15 +1143,14 @@ class ArrayPrograms(Programs):
             )
 
             def elsewhere_turn_q1_for_q3_left_down() -> Reals:
-                turn_q1_for_q3_left_down = 1.0  # turn of q1 to the bound, to first order
+                turn_q1_for_q3_left_down = 1.0  # turn of q1 to first order
                 return (turn_q1_for_q3_left_down,)
 
             excess_q1_for_q3_left_down = select(
                 value_q1_for_q3_left_down > 0.0, value_q1_for_q3_left_down - size_q1_for_q3,
                 size_q1_for_q3 + value_q1_for_q3_left_down,
             )
-            # turn of q1 to the bound, to first order
-            turn_q1_for_q3_left_down = -excess_q1_for_q3_left_down/rate_q1_for_q3_left_down
+            turn_q1_for_q3_left_down = -excess_q1_for_q3_left_down/rate_q1_for_q3_left_down  # turn of q1 to first order
             (turn_q1_for_q3_left_down,) = elsewhere(
                 absolute(rate_q1_for_q3_left_down) > size_q1_for_q3_times_rounding,
                 (turn_q1_for_q3_left_down,),
@@ -1320,8 +1317,8 @@ class ArrayPrograms(Programs):
             def elsewhere_near_cos_q1_for_q3_left_down(
                 cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
             ) -> Reals:
-                near_cos_q1_for_q3_left_down = cos_q1_before_q1_for_q3_left  # the earlier angle follows the later one
-                near_sin_q1_for_q3_left_down = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this later one
+                near_cos_q1_for_q3_left_down = cos_q1_before_q1_for_q3_left  # the earlier angle follows
+                near_sin_q1_for_q3_left_down = sin_q1_before_q1_for_q3_left  # it stays where it has no effect
                 return (near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down)
 
             near_along_q1_for_q3_left_down = (
@@ -1339,9 +1336,9 @@ class ArrayPrograms(Programs):
             )
             near_side_q1_for_q3_left_down = select(near_towards_q1_for_q3_left_down < 0.0, -1.0, 1.0)
             part_of_near_cos_q1_for_q3_left_down = near_side_q1_for_q3_left_down/near_radius_q1_for_q3_left_down
-            # the earlier angle follows the later one
+            # the earlier angle follows
             near_cos_q1_for_q3_left_down = -near_q_q1_for_q3_left_down*part_of_near_cos_q1_for_q3_left_down
-            # it stays where every angle gives this later one
+            # it stays where it has no effect
             near_sin_q1_for_q3_left_down = near_p_q1_for_q3_left_down*part_of_near_cos_q1_for_q3_left_down
             near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down = elsewhere(
                 near_radius_q1_for_q3_left_down > 1e-12,
@@ -1385,8 +1382,8 @@ class ArrayPrograms(Programs):
             def elsewhere_near_cos_q1_for_q3_left_up(
                 cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
             ) -> Reals:
-                near_cos_q1_for_q3_left_up = cos_q1_before_q1_for_q3_left  # the earlier angle follows the later one
-                near_sin_q1_for_q3_left_up = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this later one
+                near_cos_q1_for_q3_left_up = cos_q1_before_q1_for_q3_left  # the earlier angle follows
+                near_sin_q1_for_q3_left_up = sin_q1_before_q1_for_q3_left  # it stays where it has no effect
                 return (near_cos_q1_for_q3_left_up, near_sin_q1_for_q3_left_up)
 
             near_along_q1_for_q3_left_up = (
@@ -1404,9 +1401,9 @@ class ArrayPrograms(Programs):
             )
             near_side_q1_for_q3_left_up = select(near_towards_q1_for_q3_left_up < 0.0, -1.0, 1.0)
             part_of_near_cos_q1_for_q3_left_up = near_side_q1_for_q3_left_up/near_radius_q1_for_q3_left_up
-            # the earlier angle follows the later one
+            # the earlier angle follows
             near_cos_q1_for_q3_left_up = -near_q_q1_for_q3_left_up*part_of_near_cos_q1_for_q3_left_up
-            # it stays where every angle gives this later one
+            # it stays where it has no effect
             near_sin_q1_for_q3_left_up = near_p_q1_for_q3_left_up*part_of_near_cos_q1_for_q3_left_up
             near_cos_q1_for_q3_left_up, near_sin_q1_for_q3_left_up = elsewhere(
                 near_radius_q1_for_q3_left_up > 1e-12,
@@ -1600,9 +1597,8 @@ class ArrayPrograms(Programs):
             def elsewhere_near_cos_q1_for_q3_right_down(
                 cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
             ) -> Reals:
-                near_cos_q1_for_q3_right_down = cos_q1_before_q1_for_q3_right  # the earlier angle follows the later one
-                # it stays where every angle gives this later one
-                near_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right
+                near_cos_q1_for_q3_right_down = cos_q1_before_q1_for_q3_right  # the earlier angle follows
+                near_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right  # it stays where it has no effect
                 return (near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down)
 
             near_along_q1_for_q3_right_down = (
@@ -1622,9 +1618,9 @@ class ArrayPrograms(Programs):
             )
             near_side_q1_for_q3_right_down = select(near_towards_q1_for_q3_right_down < 0.0, -1.0, 1.0)
             part_of_near_cos_q1_for_q3_right_down = near_side_q1_for_q3_right_down/near_radius_q1_for_q3_right_down
-            # the earlier angle follows the later one
+            # the earlier angle follows
             near_cos_q1_for_q3_right_down = -near_q_q1_for_q3_right_down*part_of_near_cos_q1_for_q3_right_down
-            # it stays where every angle gives this later one
+            # it stays where it has no effect
             near_sin_q1_for_q3_right_down = near_p_q1_for_q3_right_down*part_of_near_cos_q1_for_q3_right_down
             near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down = elsewhere(
                 near_radius_q1_for_q3_right_down > 1e-12,
@@ -1668,8 +1664,8 @@ class ArrayPrograms(Programs):
             def elsewhere_near_cos_q1_for_q3_right_up(
                 cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
             ) -> Reals:
-                near_cos_q1_for_q3_right_up = cos_q1_before_q1_for_q3_right  # the earlier angle follows the later one
-                near_sin_q1_for_q3_right_up = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this later one
+                near_cos_q1_for_q3_right_up = cos_q1_before_q1_for_q3_right  # the earlier angle follows
+                near_sin_q1_for_q3_right_up = sin_q1_before_q1_for_q3_right  # it stays where it has no effect
                 return (near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_right_up)
 
             near_along_q1_for_q3_right_up = (
@@ -1687,9 +1683,9 @@ class ArrayPrograms(Programs):
             )
             near_side_q1_for_q3_right_up = select(near_towards_q1_for_q3_right_up < 0.0, -1.0, 1.0)
             part_of_near_cos_q1_for_q3_right_up = near_side_q1_for_q3_right_up/near_radius_q1_for_q3_right_up
-            # the earlier angle follows the later one
+            # the earlier angle follows
             near_cos_q1_for_q3_right_up = -near_q_q1_for_q3_right_up*part_of_near_cos_q1_for_q3_right_up
-            # it stays where every angle gives this later one
+            # it stays where it has no effect
             near_sin_q1_for_q3_right_up = near_p_q1_for_q3_right_up*part_of_near_cos_q1_for_q3_right_up
             near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_right_up = elsewhere(
                 near_radius_q1_for_q3_right_up > 1e-12,
@@ -1725,7 +1721,7 @@ class ArrayPrograms(Programs):
             near_cost_q1_for_q3_left_down = absolute(
                 d4 + near_cos_q1_for_q3_left_down*wrist_y - near_sin_q1_for_q3_left_down*wrist_x
             )
-            # mirror image: on the other arc
+            # mirror image on the other arc
             mirrored_q6_q1_for_q3_left_down = 2.0*centre_q6_q1_for_q3_left - moved_q6_q1_for_q3_left_down
             mirrored_cos_q6_q1_for_q3_left_down = cos(mirrored_q6_q1_for_q3_left_down)
             mirrored_sin_q6_q1_for_q3_left_down = sin(mirrored_q6_q1_for_q3_left_down)
@@ -1743,9 +1739,8 @@ class ArrayPrograms(Programs):
             def elsewhere_mirrored_cos_q1_for_q3_left_down(
                 cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
             ) -> Reals:
-                mirrored_cos_q1_for_q3_left_down = cos_q1_before_q1_for_q3_left  # the earlier angle follows the later one
-                # it stays where every angle gives this later one
-                mirrored_sin_q1_for_q3_left_down = sin_q1_before_q1_for_q3_left
+                mirrored_cos_q1_for_q3_left_down = cos_q1_before_q1_for_q3_left  # the earlier angle follows
+                mirrored_sin_q1_for_q3_left_down = sin_q1_before_q1_for_q3_left  # it stays where it has no effect
                 return (mirrored_cos_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down)
 
             mirrored_along_q1_for_q3_left_down = (
@@ -1769,9 +1764,9 @@ class ArrayPrograms(Programs):
             part_of_mirrored_cos_q1_for_q3_left_down = (
                 mirrored_side_q1_for_q3_left_down/mirrored_radius_q1_for_q3_left_down
             )
-            # the earlier angle follows the later one
+            # the earlier angle follows
             mirrored_cos_q1_for_q3_left_down = -mirrored_q_q1_for_q3_left_down*part_of_mirrored_cos_q1_for_q3_left_down
-            # it stays where every angle gives this later one
+            # it stays where it has no effect
             mirrored_sin_q1_for_q3_left_down = mirrored_p_q1_for_q3_left_down*part_of_mirrored_cos_q1_for_q3_left_down
             mirrored_cos_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down = elsewhere(
                 mirrored_radius_q1_for_q3_left_down > 1e-12,
@@ -1804,7 +1799,7 @@ class ArrayPrograms(Programs):
             near_cost_q1_for_q3_left_up = absolute(
                 d4 + near_cos_q1_for_q3_left_up*wrist_y - near_sin_q1_for_q3_left_up*wrist_x
             )
-            # mirror image: on the other arc
+            # mirror image on the other arc
             mirrored_q6_q1_for_q3_left_up = 2.0*centre_q6_q1_for_q3_left - moved_q6_q1_for_q3_left_up
             mirrored_cos_q6_q1_for_q3_left_up = cos(mirrored_q6_q1_for_q3_left_up)
             mirrored_sin_q6_q1_for_q3_left_up = sin(mirrored_q6_q1_for_q3_left_up)
@@ -1818,9 +1813,8 @@ class ArrayPrograms(Programs):
             def elsewhere_mirrored_cos_q1_for_q3_left_up(
                 cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
             ) -> Reals:
-                mirrored_cos_q1_for_q3_left_up = cos_q1_before_q1_for_q3_left  # the earlier angle follows the later one
-                # it stays where every angle gives this later one
-                mirrored_sin_q1_for_q3_left_up = sin_q1_before_q1_for_q3_left
+                mirrored_cos_q1_for_q3_left_up = cos_q1_before_q1_for_q3_left  # the earlier angle follows
+                mirrored_sin_q1_for_q3_left_up = sin_q1_before_q1_for_q3_left  # it stays where it has no effect
                 return (mirrored_cos_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up)
 
             mirrored_along_q1_for_q3_left_up = (
@@ -1842,9 +1836,9 @@ class ArrayPrograms(Programs):
             )
             mirrored_side_q1_for_q3_left_up = select(mirrored_towards_q1_for_q3_left_up < 0.0, -1.0, 1.0)
             part_of_mirrored_cos_q1_for_q3_left_up = mirrored_side_q1_for_q3_left_up/mirrored_radius_q1_for_q3_left_up
-            # the earlier angle follows the later one
+            # the earlier angle follows
             mirrored_cos_q1_for_q3_left_up = -mirrored_q_q1_for_q3_left_up*part_of_mirrored_cos_q1_for_q3_left_up
-            # it stays where every angle gives this later one
+            # it stays where it has no effect
             mirrored_sin_q1_for_q3_left_up = mirrored_p_q1_for_q3_left_up*part_of_mirrored_cos_q1_for_q3_left_up
             mirrored_cos_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up = elsewhere(
                 mirrored_radius_q1_for_q3_left_up > 1e-12,
@@ -1877,7 +1871,7 @@ class ArrayPrograms(Programs):
             near_cost_q1_for_q3_right_down = absolute(
                 d4 + near_cos_q1_for_q3_right_down*wrist_y - near_sin_q1_for_q3_right_down*wrist_x
             )
-            # mirror image: on the other arc
+            # mirror image on the other arc
             mirrored_q6_q1_for_q3_right_down = 2.0*centre_q6_q1_for_q3_right - moved_q6_q1_for_q3_right_down
             mirrored_cos_q6_q1_for_q3_right_down = cos(mirrored_q6_q1_for_q3_right_down)
             mirrored_sin_q6_q1_for_q3_right_down = sin(mirrored_q6_q1_for_q3_right_down)
@@ -1895,9 +1889,8 @@ class ArrayPrograms(Programs):
             def elsewhere_mirrored_cos_q1_for_q3_right_down(
                 cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
             ) -> Reals:
-                mirrored_cos_q1_for_q3_right_down = cos_q1_before_q1_for_q3_right  # the earlier angle follows the later one
-                # it stays where every angle gives this later one
-                mirrored_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right
+                mirrored_cos_q1_for_q3_right_down = cos_q1_before_q1_for_q3_right  # the earlier angle follows
+                mirrored_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right  # it stays where it has no effect
                 return (mirrored_cos_q1_for_q3_right_down, mirrored_sin_q1_for_q3_right_down)
 
             mirrored_along_q1_for_q3_right_down = (
@@ -1921,9 +1914,9 @@ class ArrayPrograms(Programs):
             part_of_mirrored_cos_q1_for_q3_right_down = (
                 mirrored_side_q1_for_q3_right_down/mirrored_radius_q1_for_q3_right_down
             )
-            # the earlier angle follows the later one
+            # the earlier angle follows
             mirrored_cos_q1_for_q3_right_down = -mirrored_q_q1_for_q3_right_down*part_of_mirrored_cos_q1_for_q3_right_down
-            # it stays where every angle gives this later one
+            # it stays where it has no effect
             mirrored_sin_q1_for_q3_right_down = mirrored_p_q1_for_q3_right_down*part_of_mirrored_cos_q1_for_q3_right_down
             mirrored_cos_q1_for_q3_right_down, mirrored_sin_q1_for_q3_right_down = elsewhere(
                 mirrored_radius_q1_for_q3_right_down > 1e-12,
@@ -1959,7 +1952,7 @@ class ArrayPrograms(Programs):
             near_cost_q1_for_q3_right_up = absolute(
                 d4 + near_cos_q1_for_q3_right_up*wrist_y - near_sin_q1_for_q3_right_up*wrist_x
             )
-            # mirror image: on the other arc
+            # mirror image on the other arc
             mirrored_q6_q1_for_q3_right_up = 2.0*centre_q6_q1_for_q3_right - moved_q6_q1_for_q3_right_up
             mirrored_cos_q6_q1_for_q3_right_up = cos(mirrored_q6_q1_for_q3_right_up)
             mirrored_sin_q6_q1_for_q3_right_up = sin(mirrored_q6_q1_for_q3_right_up)
@@ -1977,9 +1970,8 @@ class ArrayPrograms(Programs):
             def elsewhere_mirrored_cos_q1_for_q3_right_up(
                 cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
             ) -> Reals:
-                mirrored_cos_q1_for_q3_right_up = cos_q1_before_q1_for_q3_right  # the earlier angle follows the later one
-                # it stays where every angle gives this later one
-                mirrored_sin_q1_for_q3_right_up = sin_q1_before_q1_for_q3_right
+                mirrored_cos_q1_for_q3_right_up = cos_q1_before_q1_for_q3_right  # the earlier angle follows
+                mirrored_sin_q1_for_q3_right_up = sin_q1_before_q1_for_q3_right  # it stays where it has no effect
                 return (mirrored_cos_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up)
 
             mirrored_along_q1_for_q3_right_up = (
@@ -2001,9 +1993,9 @@ class ArrayPrograms(Programs):
             )
             mirrored_side_q1_for_q3_right_up = select(mirrored_towards_q1_for_q3_right_up < 0.0, -1.0, 1.0)
             part_of_mirrored_cos_q1_for_q3_right_up = mirrored_side_q1_for_q3_right_up/mirrored_radius_q1_for_q3_right_up
-            # the earlier angle follows the later one
+            # the earlier angle follows
             mirrored_cos_q1_for_q3_right_up = -mirrored_q_q1_for_q3_right_up*part_of_mirrored_cos_q1_for_q3_right_up
-            # it stays where every angle gives this later one
+            # it stays where it has no effect
             mirrored_sin_q1_for_q3_right_up = mirrored_p_q1_for_q3_right_up*part_of_mirrored_cos_q1_for_q3_right_up
             mirrored_cos_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up = elsewhere(
                 mirrored_radius_q1_for_q3_right_up > 1e-12,
@@ -2110,14 +2102,14 @@ class ArrayPrograms(Programs):
                     best_ahead_q1_for_q3_left_down: Real, best_cos_q1_for_q3_left_down: Real,
                     best_sin_q1_for_q3_left_down: Real,
                 ) -> Reals:
-                    ahead_q1_left_down = best_ahead_q1_for_q3_left_down  # turned, within rounding, to where q3 has a solution
-                    cos_q1_left_down = best_cos_q1_for_q3_left_down  # turned, within rounding, to where q3 has a solution
-                    sin_q1_left_down = best_sin_q1_for_q3_left_down  # turned, within rounding, to where q3 has a solution
+                    ahead_q1_left_down = best_ahead_q1_for_q3_left_down  # turned so that q3 has a solution
+                    cos_q1_left_down = best_cos_q1_for_q3_left_down  # turned so that q3 has a solution
+                    sin_q1_left_down = best_sin_q1_for_q3_left_down  # turned so that q3 has a solution
                     return (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down)
 
-                ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-                cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
-                sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
+                ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+                cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned so that q3 has a solution
+                sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned so that q3 has a solution
                 ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down = elsewhere(
                     best_cost_q1_for_q3_left_down > machine_scale_times_rounding,
                     (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down),
@@ -2126,9 +2118,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down)
 
-            ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-            cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
-            sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
+            ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+            cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned so that q3 has a solution
+            sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned so that q3 has a solution
             ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down = elsewhere(
                 absolute(value_q1_for_q3_left_down) <= size_q1_for_q3,
                 (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down),
@@ -2173,15 +2165,14 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_turn_q1_for_q3_left_up() -> Reals:
-                    turn_q1_for_q3_left_up = 1.0  # turn of q1 to the bound, to first order
+                    turn_q1_for_q3_left_up = 1.0  # turn of q1 to first order
                     return (turn_q1_for_q3_left_up,)
 
                 excess_q1_for_q3_left_up = select(
                     value_q1_for_q3_left_up > 0.0, value_q1_for_q3_left_up - size_q1_for_q3,
                     size_q1_for_q3 + value_q1_for_q3_left_up,
                 )
-                # turn of q1 to the bound, to first order
-                turn_q1_for_q3_left_up = -excess_q1_for_q3_left_up/rate_q1_for_q3_left_up
+                turn_q1_for_q3_left_up = -excess_q1_for_q3_left_up/rate_q1_for_q3_left_up  # turn of q1 to first order
                 (turn_q1_for_q3_left_up,) = elsewhere(
                     absolute(rate_q1_for_q3_left_up) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_left_up,),
@@ -2259,14 +2250,14 @@ class ArrayPrograms(Programs):
                 def elsewhere_ahead_q1_left_up(
                     best_ahead_q1_for_q3_left_up: Real, best_cos_q1_for_q3_left_up: Real, best_sin_q1_for_q3_left_up: Real,
                 ) -> Reals:
-                    ahead_q1_left_up = best_ahead_q1_for_q3_left_up  # turned, within rounding, to where q3 has a solution
-                    cos_q1_left_up = best_cos_q1_for_q3_left_up  # turned, within rounding, to where q3 has a solution
-                    sin_q1_left_up = best_sin_q1_for_q3_left_up  # turned, within rounding, to where q3 has a solution
+                    ahead_q1_left_up = best_ahead_q1_for_q3_left_up  # turned so that q3 has a solution
+                    cos_q1_left_up = best_cos_q1_for_q3_left_up  # turned so that q3 has a solution
+                    sin_q1_left_up = best_sin_q1_for_q3_left_up  # turned so that q3 has a solution
                     return (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up)
 
-                ahead_q1_left_up = -ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-                cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
-                sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
+                ahead_q1_left_up = -ahead_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+                cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned so that q3 has a solution
+                sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned so that q3 has a solution
                 ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up = elsewhere(
                     best_cost_q1_for_q3_left_up > machine_scale_times_rounding,
                     (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up),
@@ -2275,9 +2266,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up)
 
-            ahead_q1_left_up = -ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-            cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
-            sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
+            ahead_q1_left_up = -ahead_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+            cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned so that q3 has a solution
+            sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned so that q3 has a solution
             ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up = elsewhere(
                 absolute(value_q1_for_q3_left_up) <= size_q1_for_q3,
                 (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up),
@@ -2412,14 +2403,14 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_turn_q1_for_q3_right_down() -> Reals:
-                    turn_q1_for_q3_right_down = 1.0  # turn of q1 to the bound, to first order
+                    turn_q1_for_q3_right_down = 1.0  # turn of q1 to first order
                     return (turn_q1_for_q3_right_down,)
 
                 excess_q1_for_q3_right_down = select(
                     value_q1_for_q3_right_down > 0.0, value_q1_for_q3_right_down - size_q1_for_q3,
                     size_q1_for_q3 + value_q1_for_q3_right_down,
                 )
-                # turn of q1 to the bound, to first order
+                # turn of q1 to first order
                 turn_q1_for_q3_right_down = -excess_q1_for_q3_right_down/rate_q1_for_q3_right_down
                 (turn_q1_for_q3_right_down,) = elsewhere(
                     absolute(rate_q1_for_q3_right_down) > size_q1_for_q3_times_rounding,
@@ -2500,14 +2491,14 @@ class ArrayPrograms(Programs):
                     best_ahead_q1_for_q3_right_down: Real, best_cos_q1_for_q3_right_down: Real,
                     best_sin_q1_for_q3_right_down: Real,
                 ) -> Reals:
-                    ahead_q1_right_down = best_ahead_q1_for_q3_right_down  # turned, within rounding, to where q3 has a solution
-                    cos_q1_right_down = best_cos_q1_for_q3_right_down  # turned, within rounding, to where q3 has a solution
-                    sin_q1_right_down = best_sin_q1_for_q3_right_down  # turned, within rounding, to where q3 has a solution
+                    ahead_q1_right_down = best_ahead_q1_for_q3_right_down  # turned so that q3 has a solution
+                    cos_q1_right_down = best_cos_q1_for_q3_right_down  # turned so that q3 has a solution
+                    sin_q1_right_down = best_sin_q1_for_q3_right_down  # turned so that q3 has a solution
                     return (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down)
 
-                ahead_q1_right_down = ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-                cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-                sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+                ahead_q1_right_down = ahead_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+                cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+                sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned so that q3 has a solution
                 ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down = elsewhere(
                     best_cost_q1_for_q3_right_down > machine_scale_times_rounding,
                     (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down),
@@ -2516,9 +2507,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down)
 
-            ahead_q1_right_down = ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-            cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-            sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+            ahead_q1_right_down = ahead_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+            cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+            sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned so that q3 has a solution
             ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down = elsewhere(
                 absolute(value_q1_for_q3_right_down) <= size_q1_for_q3,
                 (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down),
@@ -2566,15 +2557,14 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_turn_q1_for_q3_right_up() -> Reals:
-                    turn_q1_for_q3_right_up = 1.0  # turn of q1 to the bound, to first order
+                    turn_q1_for_q3_right_up = 1.0  # turn of q1 to first order
                     return (turn_q1_for_q3_right_up,)
 
                 excess_q1_for_q3_right_up = select(
                     value_q1_for_q3_right_up > 0.0, value_q1_for_q3_right_up - size_q1_for_q3,
                     size_q1_for_q3 + value_q1_for_q3_right_up,
                 )
-                # turn of q1 to the bound, to first order
-                turn_q1_for_q3_right_up = -excess_q1_for_q3_right_up/rate_q1_for_q3_right_up
+                turn_q1_for_q3_right_up = -excess_q1_for_q3_right_up/rate_q1_for_q3_right_up  # turn of q1 to first order
                 (turn_q1_for_q3_right_up,) = elsewhere(
                     absolute(rate_q1_for_q3_right_up) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_right_up,),
@@ -2651,14 +2641,14 @@ class ArrayPrograms(Programs):
                 def elsewhere_ahead_q1_right_up(
                     best_ahead_q1_for_q3_right_up: Real, best_cos_q1_for_q3_right_up: Real, best_sin_q1_for_q3_right_up: Real,
                 ) -> Reals:
-                    ahead_q1_right_up = best_ahead_q1_for_q3_right_up  # turned, within rounding, to where q3 has a solution
-                    cos_q1_right_up = best_cos_q1_for_q3_right_up  # turned, within rounding, to where q3 has a solution
-                    sin_q1_right_up = best_sin_q1_for_q3_right_up  # turned, within rounding, to where q3 has a solution
+                    ahead_q1_right_up = best_ahead_q1_for_q3_right_up  # turned so that q3 has a solution
+                    cos_q1_right_up = best_cos_q1_for_q3_right_up  # turned so that q3 has a solution
+                    sin_q1_right_up = best_sin_q1_for_q3_right_up  # turned so that q3 has a solution
                     return (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up)
 
-                ahead_q1_right_up = ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-                cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-                sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+                ahead_q1_right_up = ahead_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+                cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+                sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned so that q3 has a solution
                 ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up = elsewhere(
                     best_cost_q1_for_q3_right_up > machine_scale_times_rounding,
                     (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up),
@@ -2667,9 +2657,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up)
 
-            ahead_q1_right_up = ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-            cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-            sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+            ahead_q1_right_up = ahead_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+            cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+            sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned so that q3 has a solution
             ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up = elsewhere(
                 absolute(value_q1_for_q3_right_up) <= size_q1_for_q3,
                 (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up),
@@ -2690,18 +2680,18 @@ class ArrayPrograms(Programs):
                 sin_q1_right_up,
             )
 
-        ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-        cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
-        sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
-        ahead_q1_left_up = ahead_q1_left_down  # turned, within rounding, to where q3 has a solution
-        cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
-        sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
-        ahead_q1_right_down = -ahead_q1_left_down  # turned, within rounding, to where q3 has a solution
-        cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-        sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-        ahead_q1_right_up = -ahead_q1_left_down  # turned, within rounding, to where q3 has a solution
-        cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
-        sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+        ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+        cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned so that q3 has a solution
+        sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned so that q3 has a solution
+        ahead_q1_left_up = ahead_q1_left_down  # turned so that q3 has a solution
+        cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned so that q3 has a solution
+        sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned so that q3 has a solution
+        ahead_q1_right_down = -ahead_q1_left_down  # turned so that q3 has a solution
+        cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+        sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+        ahead_q1_right_up = -ahead_q1_left_down  # turned so that q3 has a solution
+        cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned so that q3 has a solution
+        sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned so that q3 has a solution
         found = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (
@@ -2735,11 +2725,11 @@ class ArrayPrograms(Programs):
             reference_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_reference_a6 = cos(reference_a6)
             sin_of_reference_a6 = -sin(reference_a6)
-            cos_q6_before_q6_of_q3_left_down = cos_of_reference_a6  # in the singularity: the angle of the reference
+            cos_q6_before_q6_of_q3_left_down = cos_of_reference_a6  # if singular: that of the reference
             sin_q6_before_q6_of_q3_left_down = -sin_of_reference_a6
             return (cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down)
 
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left_down/radius_q6_left_down
         sin_q6_before_q6_of_q3_left_down = r22_from_q1_left_down/radius_q6_left_down
         cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down = elsewhere(
@@ -2872,16 +2862,12 @@ class ArrayPrograms(Programs):
                 def elsewhere_cos_q6_left_down(
                     cos_q6_after_q6_of_q3_left_down: Real, sin_q6_after_q6_of_q3_left_down: Real,
                 ) -> Reals:
-                    # moved to where q3 has a solution, if that changes the pose by rounding only
-                    cos_q6_left_down = cos_q6_after_q6_of_q3_left_down
-                    # moved to where q3 has a solution, if that changes the pose by rounding only
-                    sin_q6_left_down = sin_q6_after_q6_of_q3_left_down
+                    cos_q6_left_down = cos_q6_after_q6_of_q3_left_down  # moved so that q3 has a solution
+                    sin_q6_left_down = sin_q6_after_q6_of_q3_left_down  # moved so that q3 has a solution
                     return (cos_q6_left_down, sin_q6_left_down)
 
-                # moved to where q3 has a solution, if that changes the pose by rounding only
-                cos_q6_left_down = cos_q6_before_q6_of_q3_left_down
-                # moved to where q3 has a solution, if that changes the pose by rounding only
-                sin_q6_left_down = sin_q6_before_q6_of_q3_left_down
+                cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved so that q3 has a solution
+                sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved so that q3 has a solution
                 cos_q6_left_down, sin_q6_left_down = elsewhere(
                     stays_q6_of_q3_left_down,
                     (cos_q6_left_down, sin_q6_left_down),
@@ -2890,10 +2876,8 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6_left_down, sin_q6_left_down)
 
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down
+            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved so that q3 has a solution
+            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved so that q3 has a solution
             cos_q6_left_down, sin_q6_left_down = elsewhere(
                 (radius_q6_left_down > 0.1) & (size_of_value_q6_of_q3_left_down > part_of_cos_q6),
                 (cos_q6_left_down, sin_q6_left_down),
@@ -2906,10 +2890,8 @@ class ArrayPrograms(Programs):
             )
             return (cos_q6_left_down, sin_q6_left_down)
 
-        # moved to where q3 has a solution, if that changes the pose by rounding only
-        cos_q6_left_down = cos_q6_before_q6_of_q3_left_down
-        # moved to where q3 has a solution, if that changes the pose by rounding only
-        sin_q6_left_down = sin_q6_before_q6_of_q3_left_down
+        cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved so that q3 has a solution
+        sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved so that q3 has a solution
         cos_q6_left_down, sin_q6_left_down = elsewhere(
             size_of_value_q6_of_q3_left_down <= size_q1_for_q3,
             (cos_q6_left_down, sin_q6_left_down),
@@ -2953,10 +2935,10 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q2_left_up_down(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2_left_up_down = cos(reference_a2)
             direction_y_q2_left_up_down = sin(reference_a2)
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2_left_down_down = direction_x_q2_left_up_down
             direction_y_q2_left_down_down = direction_y_q2_left_up_down
             return (
@@ -2966,14 +2948,14 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_left_down = a2 + a3*cos_q3_left_down
         arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2_left_up_down = (
             arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
         )
         direction_y_q2_left_up_down = (
             arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
         )
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2_left_down_down = (
             arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
         )
@@ -3030,12 +3012,11 @@ class ArrayPrograms(Programs):
             reference_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_reference_a6 = cos(reference_a6)
             sin_of_reference_a6 = -sin(reference_a6)
-            cos_q6_before_q6_of_q3_left_up = cos_of_reference_a6  # in the singularity: the angle of the reference
+            cos_q6_before_q6_of_q3_left_up = cos_of_reference_a6  # if singular: that of the reference
             sin_q6_before_q6_of_q3_left_up = -sin_of_reference_a6
             return (cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up)
 
-        # in the singularity: the angle of the reference
-        cos_q6_before_q6_of_q3_left_up = r21_from_q1_left_up/radius_q6_left_up
+        cos_q6_before_q6_of_q3_left_up = r21_from_q1_left_up/radius_q6_left_up  # if singular: that of the reference
         sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left_up/radius_q6_left_up
         cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up = elsewhere(
             radius_q6_left_up > 1e-11,
@@ -3162,16 +3143,12 @@ class ArrayPrograms(Programs):
                 def elsewhere_cos_q6_left_up(
                     cos_q6_after_q6_of_q3_left_up: Real, sin_q6_after_q6_of_q3_left_up: Real,
                 ) -> Reals:
-                    # moved to where q3 has a solution, if that changes the pose by rounding only
-                    cos_q6_left_up = cos_q6_after_q6_of_q3_left_up
-                    # moved to where q3 has a solution, if that changes the pose by rounding only
-                    sin_q6_left_up = sin_q6_after_q6_of_q3_left_up
+                    cos_q6_left_up = cos_q6_after_q6_of_q3_left_up  # moved so that q3 has a solution
+                    sin_q6_left_up = sin_q6_after_q6_of_q3_left_up  # moved so that q3 has a solution
                     return (cos_q6_left_up, sin_q6_left_up)
 
-                # moved to where q3 has a solution, if that changes the pose by rounding only
-                cos_q6_left_up = cos_q6_before_q6_of_q3_left_up
-                # moved to where q3 has a solution, if that changes the pose by rounding only
-                sin_q6_left_up = sin_q6_before_q6_of_q3_left_up
+                cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved so that q3 has a solution
+                sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved so that q3 has a solution
                 cos_q6_left_up, sin_q6_left_up = elsewhere(
                     stays_q6_of_q3_left_up,
                     (cos_q6_left_up, sin_q6_left_up),
@@ -3180,10 +3157,8 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6_left_up, sin_q6_left_up)
 
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up
+            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved so that q3 has a solution
+            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved so that q3 has a solution
             cos_q6_left_up, sin_q6_left_up = elsewhere(
                 (radius_q6_left_up > 0.1) & (size_of_value_q6_of_q3_left_up > part_of_cos_q6),
                 (cos_q6_left_up, sin_q6_left_up),
@@ -3196,10 +3171,8 @@ class ArrayPrograms(Programs):
             )
             return (cos_q6_left_up, sin_q6_left_up)
 
-        # moved to where q3 has a solution, if that changes the pose by rounding only
-        cos_q6_left_up = cos_q6_before_q6_of_q3_left_up
-        # moved to where q3 has a solution, if that changes the pose by rounding only
-        sin_q6_left_up = sin_q6_before_q6_of_q3_left_up
+        cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved so that q3 has a solution
+        sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved so that q3 has a solution
         cos_q6_left_up, sin_q6_left_up = elsewhere(
             size_of_value_q6_of_q3_left_up <= size_q1_for_q3,
             (cos_q6_left_up, sin_q6_left_up),
@@ -3240,10 +3213,10 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q2_left_up_up(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2_left_up_up = cos(reference_a2)
             direction_y_q2_left_up_up = sin(reference_a2)
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2_left_down_up = direction_x_q2_left_up_up
             direction_y_q2_left_down_up = direction_y_q2_left_up_up
             return (
@@ -3253,14 +3226,14 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_left_up = a2 + a3*cos_q3_left_up
         arm_across_q2_left_up_up = a3*sin_q3_left_up_up
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2_left_up_up = (
             arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
         )
         direction_y_q2_left_up_up = (
             arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
         )
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2_left_down_up = (
             arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
         )
@@ -3327,11 +3300,11 @@ class ArrayPrograms(Programs):
             reference_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_reference_a6 = cos(reference_a6)
             sin_of_reference_a6 = -sin(reference_a6)
-            cos_q6_before_q6_of_q3_right_down = cos_of_reference_a6  # in the singularity: the angle of the reference
+            cos_q6_before_q6_of_q3_right_down = cos_of_reference_a6  # if singular: that of the reference
             sin_q6_before_q6_of_q3_right_down = -sin_of_reference_a6
             return (cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down)
 
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right_down/radius_q6_right_down
         sin_q6_before_q6_of_q3_right_down = r22_from_q1_right_down/radius_q6_right_down
         cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down = elsewhere(
@@ -3465,16 +3438,12 @@ class ArrayPrograms(Programs):
                 def elsewhere_cos_q6_right_down(
                     cos_q6_after_q6_of_q3_right_down: Real, sin_q6_after_q6_of_q3_right_down: Real,
                 ) -> Reals:
-                    # moved to where q3 has a solution, if that changes the pose by rounding only
-                    cos_q6_right_down = cos_q6_after_q6_of_q3_right_down
-                    # moved to where q3 has a solution, if that changes the pose by rounding only
-                    sin_q6_right_down = sin_q6_after_q6_of_q3_right_down
+                    cos_q6_right_down = cos_q6_after_q6_of_q3_right_down  # moved so that q3 has a solution
+                    sin_q6_right_down = sin_q6_after_q6_of_q3_right_down  # moved so that q3 has a solution
                     return (cos_q6_right_down, sin_q6_right_down)
 
-                # moved to where q3 has a solution, if that changes the pose by rounding only
-                cos_q6_right_down = cos_q6_before_q6_of_q3_right_down
-                # moved to where q3 has a solution, if that changes the pose by rounding only
-                sin_q6_right_down = sin_q6_before_q6_of_q3_right_down
+                cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved so that q3 has a solution
+                sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved so that q3 has a solution
                 cos_q6_right_down, sin_q6_right_down = elsewhere(
                     stays_q6_of_q3_right_down,
                     (cos_q6_right_down, sin_q6_right_down),
@@ -3483,10 +3452,8 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6_right_down, sin_q6_right_down)
 
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down
+            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved so that q3 has a solution
+            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved so that q3 has a solution
             cos_q6_right_down, sin_q6_right_down = elsewhere(
                 (radius_q6_right_down > 0.1) & (size_of_value_q6_of_q3_right_down > part_of_cos_q6),
                 (cos_q6_right_down, sin_q6_right_down),
@@ -3499,10 +3466,8 @@ class ArrayPrograms(Programs):
             )
             return (cos_q6_right_down, sin_q6_right_down)
 
-        # moved to where q3 has a solution, if that changes the pose by rounding only
-        cos_q6_right_down = cos_q6_before_q6_of_q3_right_down
-        # moved to where q3 has a solution, if that changes the pose by rounding only
-        sin_q6_right_down = sin_q6_before_q6_of_q3_right_down
+        cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved so that q3 has a solution
+        sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved so that q3 has a solution
         cos_q6_right_down, sin_q6_right_down = elsewhere(
             size_of_value_q6_of_q3_right_down <= size_q1_for_q3,
             (cos_q6_right_down, sin_q6_right_down),
@@ -3546,10 +3511,10 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q2_right_up_down(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2_right_up_down = cos(reference_a2)
             direction_y_q2_right_up_down = sin(reference_a2)
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2_right_down_down = direction_x_q2_right_up_down
             direction_y_q2_right_down_down = direction_y_q2_right_up_down
             return (
@@ -3559,7 +3524,7 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_right_down = a2 + a3*cos_q3_right_down
         arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2_right_up_down = (
             arm_across_q2_right_up_down*wrist_y_from_q1_right_down
             + arm_along_q2_right_down*wrist_x_from_q1_right_down
@@ -3568,7 +3533,7 @@ class ArrayPrograms(Programs):
             arm_along_q2_right_down*wrist_y_from_q1_right_down
             - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
         )
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2_right_down_down = (
             arm_along_q2_right_down*wrist_x_from_q1_right_down
             - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
@@ -3619,11 +3584,11 @@ class ArrayPrograms(Programs):
             reference_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_reference_a6 = cos(reference_a6)
             sin_of_reference_a6 = -sin(reference_a6)
-            cos_q6_before_q6_of_q3_right_up = cos_of_reference_a6  # in the singularity: the angle of the reference
+            cos_q6_before_q6_of_q3_right_up = cos_of_reference_a6  # if singular: that of the reference
             sin_q6_before_q6_of_q3_right_up = -sin_of_reference_a6
             return (cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up)
 
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         cos_q6_before_q6_of_q3_right_up = r21_from_q1_right_up/radius_q6_right_up
         sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right_up/radius_q6_right_up
         cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up = elsewhere(
@@ -3753,16 +3718,12 @@ class ArrayPrograms(Programs):
                 def elsewhere_cos_q6_right_up(
                     cos_q6_after_q6_of_q3_right_up: Real, sin_q6_after_q6_of_q3_right_up: Real,
                 ) -> Reals:
-                    # moved to where q3 has a solution, if that changes the pose by rounding only
-                    cos_q6_right_up = cos_q6_after_q6_of_q3_right_up
-                    # moved to where q3 has a solution, if that changes the pose by rounding only
-                    sin_q6_right_up = sin_q6_after_q6_of_q3_right_up
+                    cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # moved so that q3 has a solution
+                    sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # moved so that q3 has a solution
                     return (cos_q6_right_up, sin_q6_right_up)
 
-                # moved to where q3 has a solution, if that changes the pose by rounding only
-                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up
-                # moved to where q3 has a solution, if that changes the pose by rounding only
-                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up
+                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved so that q3 has a solution
+                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved so that q3 has a solution
                 cos_q6_right_up, sin_q6_right_up = elsewhere(
                     stays_q6_of_q3_right_up,
                     (cos_q6_right_up, sin_q6_right_up),
@@ -3771,10 +3732,8 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6_right_up, sin_q6_right_up)
 
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up
+            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved so that q3 has a solution
+            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved so that q3 has a solution
             cos_q6_right_up, sin_q6_right_up = elsewhere(
                 (radius_q6_right_up > 0.1) & (size_of_value_q6_of_q3_right_up > part_of_cos_q6),
                 (cos_q6_right_up, sin_q6_right_up),
@@ -3787,10 +3746,8 @@ class ArrayPrograms(Programs):
             )
             return (cos_q6_right_up, sin_q6_right_up)
 
-        # moved to where q3 has a solution, if that changes the pose by rounding only
-        cos_q6_right_up = cos_q6_before_q6_of_q3_right_up
-        # moved to where q3 has a solution, if that changes the pose by rounding only
-        sin_q6_right_up = sin_q6_before_q6_of_q3_right_up
+        cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved so that q3 has a solution
+        sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved so that q3 has a solution
         cos_q6_right_up, sin_q6_right_up = elsewhere(
             size_of_value_q6_of_q3_right_up <= size_q1_for_q3,
             (cos_q6_right_up, sin_q6_right_up),
@@ -3832,10 +3789,10 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q2_right_up_up(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2_right_up_up = cos(reference_a2)
             direction_y_q2_right_up_up = sin(reference_a2)
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2_right_down_up = direction_x_q2_right_up_up
             direction_y_q2_right_down_up = direction_y_q2_right_up_up
             return (
@@ -3845,14 +3802,14 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_right_up = a2 + a3*cos_q3_right_up
         arm_across_q2_right_up_up = a3*sin_q3_right_up_up
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2_right_up_up = (
             arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
         )
         direction_y_q2_right_up_up = (
             arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
         )
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2_right_down_up = (
             arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
         )

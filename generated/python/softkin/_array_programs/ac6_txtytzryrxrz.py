@@ -147,12 +147,12 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_a4(ref_a4: Real) -> Reals:
             reference_a4 = (ref_a4 - offset_a4)*DEGREE
-            # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle a4 from the r33 and r13 equations; if singular: that of the reference
             direction_x_a4 = cos(reference_a4)
             direction_y_a4 = sin(reference_a4)
             return (direction_x_a4, direction_y_a4)
 
-        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle a4 from the r33 and r13 equations; if singular: that of the reference
         direction_x_a4 = sigma_wrist*r33
         direction_y_a4 = sigma_wrist*r13
         direction_x_a4, direction_y_a4 = elsewhere(
@@ -253,18 +253,18 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_a4_upright(ref_a4: Real) -> Reals:
             reference_a4 = (ref_a4 - offset_a4)*DEGREE
-            # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle a4 from the r33 and r13 equations; if singular: that of the reference
             direction_x_a4_upright = cos(reference_a4)
             direction_y_a4_upright = sin(reference_a4)
-            # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle a4 from the r33 and r13 equations; if singular: that of the reference
             direction_x_a4_flipped = direction_x_a4_upright
             direction_y_a4_flipped = direction_y_a4_upright
             return (direction_x_a4_upright, direction_y_a4_upright, direction_x_a4_flipped, direction_y_a4_flipped)
 
-        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle a4 from the r33 and r13 equations; if singular: that of the reference
         direction_x_a4_upright = r33
         direction_y_a4_upright = r13
-        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle a4 from the r33 and r13 equations; if singular: that of the reference
         direction_x_a4_flipped = -r33
         direction_y_a4_flipped = -r13
         direction_x_a4_upright, direction_y_a4_upright, direction_x_a4_flipped, direction_y_a4_flipped = elsewhere(

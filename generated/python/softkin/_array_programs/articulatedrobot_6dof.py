@@ -229,13 +229,13 @@ class ArrayPrograms(Programs):
         rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
 
         def elsewhere_turn_q1_for_q3() -> Reals:
-            turn_q1_for_q3 = 0.0  # turn of q1 to the bound, to first order
+            turn_q1_for_q3 = 0.0  # turn of q1 to first order
             return (turn_q1_for_q3,)
 
         excess_q1_for_q3 = select(
             value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3,
         )
-        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # turn of q1 to the bound, to first order
+        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # turn of q1 to first order
         (turn_q1_for_q3,) = elsewhere(
             absolute(rate_q1_for_q3) > size_q1_for_q3_times_rounding,
             (turn_q1_for_q3,),
@@ -248,12 +248,12 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - offset_a1)*DEGREE
-            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            # rotation by q1 that points the arm at the point; if singular: that of the reference
             cos_q1_before_q1_for_q3 = cos(reference_a1)
             sin_q1_before_q1_for_q3 = sin(reference_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/distance_q1_squared
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
@@ -270,7 +270,7 @@ class ArrayPrograms(Programs):
         )
         # residual of the equation of q1
         turned_cost_q1_for_q3 = absolute(d3 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         ahead_q1 = select(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             ahead_q1_before_q1_for_q3,
@@ -304,12 +304,12 @@ class ArrayPrograms(Programs):
             ) -> Reals:
 
                 def elsewhere_cos_q1(turned_cos_q1_for_q3: Real, turned_sin_q1_for_q3: Real) -> Reals:
-                    cos_q1 = turned_cos_q1_for_q3  # turned, within rounding, to where q3 has a solution
-                    sin_q1 = turned_sin_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                    cos_q1 = turned_cos_q1_for_q3  # turned so that q3 has a solution
+                    sin_q1 = turned_sin_q1_for_q3  # turned so that q3 has a solution
                     return (cos_q1, sin_q1)
 
-                cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
-                sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                cos_q1 = cos_q1_before_q1_for_q3  # turned so that q3 has a solution
+                sin_q1 = sin_q1_before_q1_for_q3  # turned so that q3 has a solution
                 cos_q1, sin_q1 = elsewhere(
                     turned_cost_q1_for_q3 > machine_scale_times_rounding,
                     (cos_q1, sin_q1),
@@ -318,8 +318,8 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q1, sin_q1)
 
-            cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
-            sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+            cos_q1 = cos_q1_before_q1_for_q3  # turned so that q3 has a solution
+            sin_q1 = sin_q1_before_q1_for_q3  # turned so that q3 has a solution
             cos_q1, sin_q1 = elsewhere(
                 absolute(value_q1_for_q3) <= size_q1_for_q3,
                 (cos_q1, sin_q1),
@@ -331,8 +331,8 @@ class ArrayPrograms(Programs):
             )
             return (cos_q1, sin_q1)
 
-        cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
-        sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+        cos_q1 = cos_q1_before_q1_for_q3  # turned so that q3 has a solution
+        sin_q1 = sin_q1_before_q1_for_q3  # turned so that q3 has a solution
         cos_q1, sin_q1 = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (cos_q1, sin_q1),
@@ -352,13 +352,13 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2 = cos(reference_a2)  # in the singularity: the angle of the reference
+            cos_q2 = cos(reference_a2)  # if singular: that of the reference
             sin_q2 = sin(reference_a2)
             return (cos_q2, sin_q2)
 
         arm_along_q2 = -effective_q3*sin_swing_q3
         arm_across_q2 = a2 + effective_q3*cos_swing_q3
-        # rotation by q2 that takes the arm to the point that it must reach
+        # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
         across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         across_q2_squared_plus_along_q2_squared = across_q2*across_q2 + along_q2*along_q2
@@ -367,7 +367,7 @@ class ArrayPrograms(Programs):
             root(across_q2_squared_plus_along_q2_squared),
             1.0,
         )
-        cos_q2 = along_q2/length_q2  # in the singularity: the angle of the reference
+        cos_q2 = along_q2/length_q2  # if singular: that of the reference
         sin_q2 = across_q2/length_q2
         cos_q2, sin_q2 = elsewhere(
             reach > machine_scale_times_free_angle,
@@ -394,12 +394,12 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q4(ref_a4: Real) -> Reals:
             reference_a4 = (ref_a4 - offset_a4)*DEGREE
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             direction_x_q4 = cos(reference_a4)
             direction_y_q4 = sin(reference_a4)
             return (direction_x_q4, direction_y_q4)
 
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         direction_x_q4 = -sigma_hand*r13_from_q123
         direction_y_q4 = sigma_hand*r23_from_q1
         direction_x_q4, direction_y_q4 = elsewhere(
@@ -541,14 +541,14 @@ class ArrayPrograms(Programs):
         rate_q1_for_q3_front = -twice_d3*wrist_x_from_q1_before_q1_for_q3_front  # its derivative by q1
 
         def elsewhere_turn_q1_for_q3_front() -> Reals:
-            turn_q1_for_q3_front = 0.0  # turn of q1 to the bound, to first order
+            turn_q1_for_q3_front = 0.0  # turn of q1 to first order
             return (turn_q1_for_q3_front,)
 
         excess_q1_for_q3_front = select(
             value_q1_for_q3_front > 0.0, value_q1_for_q3_front - size_q1_for_q3,
             size_q1_for_q3 + value_q1_for_q3_front,
         )
-        turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # turn of q1 to the bound, to first order
+        turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # turn of q1 to first order
         (turn_q1_for_q3_front,) = elsewhere(
             absolute(rate_q1_for_q3_front) > size_q1_for_q3_times_rounding,
             (turn_q1_for_q3_front,),
@@ -558,10 +558,10 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q1_before_q1_for_q3_front(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - offset_a1)*DEGREE
-            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            # rotation by q1 that points the arm at the point; if singular: that of the reference
             cos_q1_before_q1_for_q3_front = cos(reference_a1)
             sin_q1_before_q1_for_q3_front = sin(reference_a1)
-            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            # rotation by q1 that points the arm at the point; if singular: that of the reference
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
             return (
@@ -569,10 +569,10 @@ class ArrayPrograms(Programs):
                 sin_q1_before_q1_for_q3_back,
             )
 
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*wrist_x - d3*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*wrist_y + d3*wrist_x)/distance_q1_squared
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front*wrist_x - d3*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3_back = (d3*wrist_x - ahead_q1_before_q1_for_q3_front*wrist_y)/distance_q1_squared
         found = elsewhere(
@@ -622,14 +622,14 @@ class ArrayPrograms(Programs):
                 def elsewhere_ahead_q1_front(
                     turned_ahead_q1_for_q3_front: Real, turned_cos_q1_for_q3_front: Real, turned_sin_q1_for_q3_front: Real,
                 ) -> Reals:
-                    ahead_q1_front = turned_ahead_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-                    cos_q1_front = turned_cos_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-                    sin_q1_front = turned_sin_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                    ahead_q1_front = turned_ahead_q1_for_q3_front  # turned so that q3 has a solution
+                    cos_q1_front = turned_cos_q1_for_q3_front  # turned so that q3 has a solution
+                    sin_q1_front = turned_sin_q1_for_q3_front  # turned so that q3 has a solution
                     return (ahead_q1_front, cos_q1_front, sin_q1_front)
 
-                ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-                cos_q1_front = cos_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-                sin_q1_front = sin_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+                cos_q1_front = cos_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+                sin_q1_front = sin_q1_before_q1_for_q3_front  # turned so that q3 has a solution
                 ahead_q1_front, cos_q1_front, sin_q1_front = elsewhere(
                     turned_cost_q1_for_q3_front > machine_scale_times_rounding,
                     (ahead_q1_front, cos_q1_front, sin_q1_front),
@@ -638,9 +638,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_front, cos_q1_front, sin_q1_front)
 
-            ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-            cos_q1_front = cos_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-            sin_q1_front = sin_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+            ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+            cos_q1_front = cos_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+            sin_q1_front = sin_q1_before_q1_for_q3_front  # turned so that q3 has a solution
             ahead_q1_front, cos_q1_front, sin_q1_front = elsewhere(
                 absolute(value_q1_for_q3_front) <= size_q1_for_q3,
                 (ahead_q1_front, cos_q1_front, sin_q1_front),
@@ -665,13 +665,13 @@ class ArrayPrograms(Programs):
                 rate_q1_for_q3_back = -twice_d3*wrist_x_from_q1_before_q1_for_q3_back  # its derivative by q1
 
                 def elsewhere_turn_q1_for_q3_back() -> Reals:
-                    turn_q1_for_q3_back = 0.0  # turn of q1 to the bound, to first order
+                    turn_q1_for_q3_back = 0.0  # turn of q1 to first order
                     return (turn_q1_for_q3_back,)
 
                 excess_q1_for_q3_back = select(
                     value_q1_for_q3_back > 0.0, value_q1_for_q3_back - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3_back,
                 )
-                turn_q1_for_q3_back = -excess_q1_for_q3_back/rate_q1_for_q3_back  # turn of q1 to the bound, to first order
+                turn_q1_for_q3_back = -excess_q1_for_q3_back/rate_q1_for_q3_back  # turn of q1 to first order
                 (turn_q1_for_q3_back,) = elsewhere(
                     absolute(rate_q1_for_q3_back) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_back,),
@@ -701,14 +701,14 @@ class ArrayPrograms(Programs):
                         (-ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_back)
                         *one_by_turned_length_q1_for_q3_back
                     )
-                    ahead_q1_back = turned_ahead_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
-                    cos_q1_back = turned_cos_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
-                    sin_q1_back = turned_sin_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+                    ahead_q1_back = turned_ahead_q1_for_q3_back  # turned so that q3 has a solution
+                    cos_q1_back = turned_cos_q1_for_q3_back  # turned so that q3 has a solution
+                    sin_q1_back = turned_sin_q1_for_q3_back  # turned so that q3 has a solution
                     return (ahead_q1_back, cos_q1_back, sin_q1_back)
 
-                ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-                cos_q1_back = cos_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
-                sin_q1_back = sin_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+                ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+                cos_q1_back = cos_q1_before_q1_for_q3_back  # turned so that q3 has a solution
+                sin_q1_back = sin_q1_before_q1_for_q3_back  # turned so that q3 has a solution
                 ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
                     turned_cost_q1_for_q3_back > machine_scale_times_rounding,
                     (ahead_q1_back, cos_q1_back, sin_q1_back),
@@ -720,9 +720,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_back, cos_q1_back, sin_q1_back)
 
-            ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-            cos_q1_back = cos_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
-            sin_q1_back = sin_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+            ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+            cos_q1_back = cos_q1_before_q1_for_q3_back  # turned so that q3 has a solution
+            sin_q1_back = sin_q1_before_q1_for_q3_back  # turned so that q3 has a solution
             ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
                 absolute(value_q1_for_q3_back) <= size_q1_for_q3,
                 (ahead_q1_back, cos_q1_back, sin_q1_back),
@@ -734,12 +734,12 @@ class ArrayPrograms(Programs):
             )
             return (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back)
 
-        ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-        cos_q1_front = cos_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-        sin_q1_front = sin_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-        ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-        cos_q1_back = cos_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
-        sin_q1_back = sin_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+        ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+        cos_q1_front = cos_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+        sin_q1_front = sin_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+        ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+        cos_q1_back = cos_q1_before_q1_for_q3_back  # turned so that q3 has a solution
+        sin_q1_back = sin_q1_before_q1_for_q3_back  # turned so that q3 has a solution
         ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back),
@@ -772,15 +772,15 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q2_front_down(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_front_down = cos(reference_a2)  # in the singularity: the angle of the reference
+            cos_q2_front_down = cos(reference_a2)  # if singular: that of the reference
             sin_q2_front_down = sin(reference_a2)
-            cos_q2_front_up = cos_q2_front_down  # in the singularity: the angle of the reference
+            cos_q2_front_up = cos_q2_front_down  # if singular: that of the reference
             sin_q2_front_up = sin_q2_front_down
             return (cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up)
 
         arm_along_q2_front_down = effective_q3*sin_swing_q3_front_up
         arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front
-        # rotation by q2 that takes the arm to the point that it must reach
+        # rotation by q2 that takes the arm to its target point
         along_q2_front_down = arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
         across_q2_front_down = arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
         across_q2_squared_plus_along_q2_squared_front_down = (
@@ -791,11 +791,11 @@ class ArrayPrograms(Programs):
             root(across_q2_squared_plus_along_q2_squared_front_down),
             1.0,
         )
-        cos_q2_front_down = along_q2_front_down/length_q2_front_down  # in the singularity: the angle of the reference
+        cos_q2_front_down = along_q2_front_down/length_q2_front_down  # if singular: that of the reference
         sin_q2_front_down = across_q2_front_down/length_q2_front_down
-        # rotation by q2 that takes the arm to the point that it must reach
+        # rotation by q2 that takes the arm to its target point
         along_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
-        cos_q2_front_up = along_q2_front_up/length_q2_front_down  # in the singularity: the angle of the reference
+        cos_q2_front_up = along_q2_front_up/length_q2_front_down  # if singular: that of the reference
         across_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
         sin_q2_front_up = across_q2_front_up/length_q2_front_down
         cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up = elsewhere(
@@ -827,10 +827,10 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q4_front_down_down(ref_a4: Real) -> Reals:
             reference_a4 = (ref_a4 - offset_a4)*DEGREE
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             direction_x_q4_front_down_down = cos(reference_a4)
             direction_y_q4_front_down_down = sin(reference_a4)
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             direction_x_q4_front_down_up = direction_x_q4_front_down_down
             direction_y_q4_front_down_up = direction_y_q4_front_down_down
             return (
@@ -838,10 +838,10 @@ class ArrayPrograms(Programs):
                 direction_y_q4_front_down_up,
             )
 
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         direction_x_q4_front_down_down = -r13_from_q123_front_down
         direction_y_q4_front_down_down = r23_from_q1_front
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         direction_x_q4_front_down_up = -direction_x_q4_front_down_down
         direction_y_q4_front_down_up = -r23_from_q1_front
         found = elsewhere(
@@ -927,10 +927,10 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q4_front_up_down(ref_a4: Real) -> Reals:
             reference_a4 = (ref_a4 - offset_a4)*DEGREE
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             direction_x_q4_front_up_down = cos(reference_a4)
             direction_y_q4_front_up_down = sin(reference_a4)
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             direction_x_q4_front_up_up = direction_x_q4_front_up_down
             direction_y_q4_front_up_up = direction_y_q4_front_up_down
             return (
@@ -938,10 +938,10 @@ class ArrayPrograms(Programs):
                 direction_y_q4_front_up_up,
             )
 
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         direction_x_q4_front_up_down = -r13_from_q123_front_up
         direction_y_q4_front_up_down = r23_from_q1_front
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         direction_x_q4_front_up_up = -direction_x_q4_front_up_down
         direction_y_q4_front_up_up = -r23_from_q1_front
         found = elsewhere(
@@ -1015,15 +1015,15 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q2_back_down(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_back_down = cos(reference_a2)  # in the singularity: the angle of the reference
+            cos_q2_back_down = cos(reference_a2)  # if singular: that of the reference
             sin_q2_back_down = sin(reference_a2)
-            cos_q2_back_up = cos_q2_back_down  # in the singularity: the angle of the reference
+            cos_q2_back_up = cos_q2_back_down  # if singular: that of the reference
             sin_q2_back_up = sin_q2_back_down
             return (cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up)
 
         arm_along_q2_back_down = effective_q3*sin_swing_q3_back_up
         arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back
-        # rotation by q2 that takes the arm to the point that it must reach
+        # rotation by q2 that takes the arm to its target point
         along_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
         across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
         across_q2_squared_plus_along_q2_squared_back_down = (
@@ -1034,11 +1034,11 @@ class ArrayPrograms(Programs):
             root(across_q2_squared_plus_along_q2_squared_back_down),
             1.0,
         )
-        cos_q2_back_down = along_q2_back_down/length_q2_back_down  # in the singularity: the angle of the reference
+        cos_q2_back_down = along_q2_back_down/length_q2_back_down  # if singular: that of the reference
         sin_q2_back_down = across_q2_back_down/length_q2_back_down
-        # rotation by q2 that takes the arm to the point that it must reach
+        # rotation by q2 that takes the arm to its target point
         along_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
-        cos_q2_back_up = along_q2_back_up/length_q2_back_down  # in the singularity: the angle of the reference
+        cos_q2_back_up = along_q2_back_up/length_q2_back_down  # if singular: that of the reference
         across_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
         sin_q2_back_up = across_q2_back_up/length_q2_back_down
         cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up = elsewhere(
@@ -1066,10 +1066,10 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q4_back_down_down(ref_a4: Real) -> Reals:
             reference_a4 = (ref_a4 - offset_a4)*DEGREE
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             direction_x_q4_back_down_down = cos(reference_a4)
             direction_y_q4_back_down_down = sin(reference_a4)
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             direction_x_q4_back_down_up = direction_x_q4_back_down_down
             direction_y_q4_back_down_up = direction_y_q4_back_down_down
             return (
@@ -1077,10 +1077,10 @@ class ArrayPrograms(Programs):
                 direction_y_q4_back_down_up,
             )
 
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         direction_x_q4_back_down_down = -r13_from_q123_back_down
         direction_y_q4_back_down_down = r23_from_q1_back
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         direction_x_q4_back_down_up = -direction_x_q4_back_down_down
         direction_y_q4_back_down_up = -r23_from_q1_back
         found = elsewhere(
@@ -1155,10 +1155,10 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q4_back_up_down(ref_a4: Real) -> Reals:
             reference_a4 = (ref_a4 - offset_a4)*DEGREE
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             direction_x_q4_back_up_down = cos(reference_a4)
             direction_y_q4_back_up_down = sin(reference_a4)
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             direction_x_q4_back_up_up = direction_x_q4_back_up_down
             direction_y_q4_back_up_up = direction_y_q4_back_up_down
             return (
@@ -1166,10 +1166,10 @@ class ArrayPrograms(Programs):
                 direction_y_q4_back_up_up,
             )
 
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         direction_x_q4_back_up_down = -r13_from_q123_back_up
         direction_y_q4_back_up_down = r23_from_q1_back
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         direction_x_q4_back_up_up = -direction_x_q4_back_up_down
         direction_y_q4_back_up_up = -r23_from_q1_back
         found = elsewhere(

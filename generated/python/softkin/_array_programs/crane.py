@@ -107,11 +107,11 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_theta(ref_theta: Real) -> Reals:
             reference_theta = (ref_theta - offset_theta)*DEGREE
-            direction_x_theta = cos(reference_theta)  # in the singularity: the angle of the reference
+            direction_x_theta = cos(reference_theta)  # if singular: that of the reference
             direction_y_theta = sin(reference_theta)
             return (direction_x_theta, direction_y_theta)
 
-        direction_x_theta = x  # in the singularity: the angle of the reference
+        direction_x_theta = x  # if singular: that of the reference
         direction_y_theta = y
         direction_x_theta, direction_y_theta = elsewhere(
             radius_theta > machine_scale_times_free_angle,
@@ -128,11 +128,11 @@ class ArrayPrograms(Programs):
         def elsewhere_direction_x_phi(ref_phi: Real) -> Reals:
             reference_phi = (ref_phi - offset_phi)*DEGREE
             part_of_direction_y_phi = nearest_on_arc(reference_phi, 90.0*DEGREE, 90.0*DEGREE)
-            direction_x_phi = cos(part_of_direction_y_phi)  # in the singularity: the angle of the reference
+            direction_x_phi = cos(part_of_direction_y_phi)  # if singular: that of the reference
             direction_y_phi = sin(part_of_direction_y_phi)
             return (direction_x_phi, direction_y_phi)
 
-        direction_x_phi = z  # in the singularity: the angle of the reference
+        direction_x_phi = z  # if singular: that of the reference
         direction_y_phi = radius_theta
         direction_x_phi, direction_y_phi = elsewhere(
             radius_phi > machine_scale_times_free_angle,

@@ -118,14 +118,14 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - offset_a1)*DEGREE
-            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by a1 that takes the arm to its target point; if singular: that of the reference
             direction_x_a1 = cos(reference_a1)
             direction_y_a1 = sin(reference_a1)
             return (direction_x_a1, direction_y_a1)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
         arm_across_a1 = link_length_2*sin_a2_from_a1
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         direction_x_a1 = arm_across_a1*y + arm_along_a1*x
         direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         direction_x_a1, direction_y_a1 = elsewhere(
@@ -223,20 +223,20 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - offset_a1)*DEGREE
-            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by a1 that takes the arm to its target point; if singular: that of the reference
             direction_x_a1_right = cos(reference_a1)
             direction_y_a1_right = sin(reference_a1)
-            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by a1 that takes the arm to its target point; if singular: that of the reference
             direction_x_a1_left = direction_x_a1_right
             direction_y_a1_left = direction_y_a1_right
             return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
         arm_across_a1_right = link_length_2*sin_a2_from_a1_right
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
         direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
         direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(

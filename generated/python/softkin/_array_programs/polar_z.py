@@ -89,11 +89,11 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
             reference_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(reference_c)  # in the singularity: the angle of the reference
+            direction_x_c = cos(reference_c)  # if singular: that of the reference
             direction_y_c = sin(reference_c)
             return (direction_x_c, direction_y_c)
 
-        direction_x_c = x  # in the singularity: the angle of the reference
+        direction_x_c = x  # if singular: that of the reference
         direction_y_c = y
         direction_x_c, direction_y_c = elsewhere(
             radius_c > machine_scale_times_free_angle,

@@ -166,13 +166,13 @@ class ArrayPrograms(Programs):
         rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
 
         def elsewhere_turn_q1_for_q3() -> Reals:
-            turn_q1_for_q3 = 0.0  # turn of q1 to the bound, to first order
+            turn_q1_for_q3 = 0.0  # turn of q1 to first order
             return (turn_q1_for_q3,)
 
         excess_q1_for_q3 = select(
             value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3_2, size_q1_for_q3_2 + value_q1_for_q3,
         )
-        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # turn of q1 to the bound, to first order
+        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # turn of q1 to first order
         (turn_q1_for_q3,) = elsewhere(
             absolute(rate_q1_for_q3) > size_q1_for_q3_2_times_rounding,
             (turn_q1_for_q3,),
@@ -185,12 +185,12 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - offset_a1)*DEGREE
-            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            # rotation by q1 that points the arm at the point; if singular: that of the reference
             cos_q1_before_q1_for_q3 = cos(reference_a1)
             sin_q1_before_q1_for_q3 = sin(reference_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/distance_q1_squared
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
@@ -207,7 +207,7 @@ class ArrayPrograms(Programs):
         )
         # residual of the equation of q1
         turned_cost_q1_for_q3 = absolute(d3 + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         ahead_q1 = select(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             ahead_q1_before_q1_for_q3,
@@ -242,12 +242,12 @@ class ArrayPrograms(Programs):
             ) -> Reals:
 
                 def elsewhere_cos_q1(turned_cos_q1_for_q3: Real, turned_sin_q1_for_q3: Real) -> Reals:
-                    cos_q1 = turned_cos_q1_for_q3  # turned, within rounding, to where q3 has a solution
-                    sin_q1 = turned_sin_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                    cos_q1 = turned_cos_q1_for_q3  # turned so that q3 has a solution
+                    sin_q1 = turned_sin_q1_for_q3  # turned so that q3 has a solution
                     return (cos_q1, sin_q1)
 
-                cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
-                sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                cos_q1 = cos_q1_before_q1_for_q3  # turned so that q3 has a solution
+                sin_q1 = sin_q1_before_q1_for_q3  # turned so that q3 has a solution
                 cos_q1, sin_q1 = elsewhere(
                     turned_cost_q1_for_q3 > machine_scale_times_rounding,
                     (cos_q1, sin_q1),
@@ -256,8 +256,8 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q1, sin_q1)
 
-            cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
-            sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+            cos_q1 = cos_q1_before_q1_for_q3  # turned so that q3 has a solution
+            sin_q1 = sin_q1_before_q1_for_q3  # turned so that q3 has a solution
             cos_q1, sin_q1 = elsewhere(
                 absolute(value_q1_for_q3) <= size_q1_for_q3_2,
                 (cos_q1, sin_q1),
@@ -269,8 +269,8 @@ class ArrayPrograms(Programs):
             )
             return (cos_q1, sin_q1)
 
-        cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
-        sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+        cos_q1 = cos_q1_before_q1_for_q3  # turned so that q3 has a solution
+        sin_q1 = sin_q1_before_q1_for_q3  # turned so that q3 has a solution
         cos_q1, sin_q1 = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (cos_q1, sin_q1),
@@ -290,14 +290,14 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2 = cos(reference_a2)
             direction_y_q2 = sin(reference_a2)
             return (direction_x_q2, direction_y_q2)
 
         arm_along_q2 = -effective_q3_2*sin_swing_q3
         arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
         direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         direction_x_q2, direction_y_q2 = elsewhere(
@@ -401,14 +401,14 @@ class ArrayPrograms(Programs):
         rate_q1_for_q3_front = -twice_d3*wrist_x_from_q1_before_q1_for_q3_front  # its derivative by q1
 
         def elsewhere_turn_q1_for_q3_front() -> Reals:
-            turn_q1_for_q3_front = 0.0  # turn of q1 to the bound, to first order
+            turn_q1_for_q3_front = 0.0  # turn of q1 to first order
             return (turn_q1_for_q3_front,)
 
         excess_q1_for_q3_front = select(
             value_q1_for_q3_front > 0.0, value_q1_for_q3_front - size_q1_for_q3_2,
             size_q1_for_q3_2 + value_q1_for_q3_front,
         )
-        turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # turn of q1 to the bound, to first order
+        turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # turn of q1 to first order
         (turn_q1_for_q3_front,) = elsewhere(
             absolute(rate_q1_for_q3_front) > size_q1_for_q3_2_times_rounding,
             (turn_q1_for_q3_front,),
@@ -418,10 +418,10 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q1_before_q1_for_q3_front(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - offset_a1)*DEGREE
-            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            # rotation by q1 that points the arm at the point; if singular: that of the reference
             cos_q1_before_q1_for_q3_front = cos(reference_a1)
             sin_q1_before_q1_for_q3_front = sin(reference_a1)
-            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            # rotation by q1 that points the arm at the point; if singular: that of the reference
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
             return (
@@ -429,10 +429,10 @@ class ArrayPrograms(Programs):
                 sin_q1_before_q1_for_q3_back,
             )
 
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*x - d3*y)/distance_q1_squared
         sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*y + d3*x)/distance_q1_squared
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front*x - d3*y)/distance_q1_squared
         sin_q1_before_q1_for_q3_back = (d3*x - ahead_q1_before_q1_for_q3_front*y)/distance_q1_squared
         found = elsewhere(
@@ -480,14 +480,14 @@ class ArrayPrograms(Programs):
                 def elsewhere_ahead_q1_front(
                     turned_ahead_q1_for_q3_front: Real, turned_cos_q1_for_q3_front: Real, turned_sin_q1_for_q3_front: Real,
                 ) -> Reals:
-                    ahead_q1_front = turned_ahead_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-                    cos_q1_front = turned_cos_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-                    sin_q1_front = turned_sin_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                    ahead_q1_front = turned_ahead_q1_for_q3_front  # turned so that q3 has a solution
+                    cos_q1_front = turned_cos_q1_for_q3_front  # turned so that q3 has a solution
+                    sin_q1_front = turned_sin_q1_for_q3_front  # turned so that q3 has a solution
                     return (ahead_q1_front, cos_q1_front, sin_q1_front)
 
-                ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-                cos_q1_front = cos_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-                sin_q1_front = sin_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+                cos_q1_front = cos_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+                sin_q1_front = sin_q1_before_q1_for_q3_front  # turned so that q3 has a solution
                 ahead_q1_front, cos_q1_front, sin_q1_front = elsewhere(
                     turned_cost_q1_for_q3_front > machine_scale_times_rounding,
                     (ahead_q1_front, cos_q1_front, sin_q1_front),
@@ -496,9 +496,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_front, cos_q1_front, sin_q1_front)
 
-            ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-            cos_q1_front = cos_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-            sin_q1_front = sin_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+            ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+            cos_q1_front = cos_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+            sin_q1_front = sin_q1_before_q1_for_q3_front  # turned so that q3 has a solution
             ahead_q1_front, cos_q1_front, sin_q1_front = elsewhere(
                 absolute(value_q1_for_q3_front) <= size_q1_for_q3_2,
                 (ahead_q1_front, cos_q1_front, sin_q1_front),
@@ -523,14 +523,14 @@ class ArrayPrograms(Programs):
                 rate_q1_for_q3_back = -twice_d3*wrist_x_from_q1_before_q1_for_q3_back  # its derivative by q1
 
                 def elsewhere_turn_q1_for_q3_back() -> Reals:
-                    turn_q1_for_q3_back = 0.0  # turn of q1 to the bound, to first order
+                    turn_q1_for_q3_back = 0.0  # turn of q1 to first order
                     return (turn_q1_for_q3_back,)
 
                 excess_q1_for_q3_back = select(
                     value_q1_for_q3_back > 0.0, value_q1_for_q3_back - size_q1_for_q3_2,
                     size_q1_for_q3_2 + value_q1_for_q3_back,
                 )
-                turn_q1_for_q3_back = -excess_q1_for_q3_back/rate_q1_for_q3_back  # turn of q1 to the bound, to first order
+                turn_q1_for_q3_back = -excess_q1_for_q3_back/rate_q1_for_q3_back  # turn of q1 to first order
                 (turn_q1_for_q3_back,) = elsewhere(
                     absolute(rate_q1_for_q3_back) > size_q1_for_q3_2_times_rounding,
                     (turn_q1_for_q3_back,),
@@ -558,14 +558,14 @@ class ArrayPrograms(Programs):
                         (-ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_back)
                         *one_by_turned_length_q1_for_q3_back
                     )
-                    ahead_q1_back = turned_ahead_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
-                    cos_q1_back = turned_cos_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
-                    sin_q1_back = turned_sin_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+                    ahead_q1_back = turned_ahead_q1_for_q3_back  # turned so that q3 has a solution
+                    cos_q1_back = turned_cos_q1_for_q3_back  # turned so that q3 has a solution
+                    sin_q1_back = turned_sin_q1_for_q3_back  # turned so that q3 has a solution
                     return (ahead_q1_back, cos_q1_back, sin_q1_back)
 
-                ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-                cos_q1_back = cos_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
-                sin_q1_back = sin_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+                ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+                cos_q1_back = cos_q1_before_q1_for_q3_back  # turned so that q3 has a solution
+                sin_q1_back = sin_q1_before_q1_for_q3_back  # turned so that q3 has a solution
                 ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
                     turned_cost_q1_for_q3_back > machine_scale_times_rounding,
                     (ahead_q1_back, cos_q1_back, sin_q1_back),
@@ -577,9 +577,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_back, cos_q1_back, sin_q1_back)
 
-            ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-            cos_q1_back = cos_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
-            sin_q1_back = sin_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+            ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+            cos_q1_back = cos_q1_before_q1_for_q3_back  # turned so that q3 has a solution
+            sin_q1_back = sin_q1_before_q1_for_q3_back  # turned so that q3 has a solution
             ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
                 absolute(value_q1_for_q3_back) <= size_q1_for_q3_2,
                 (ahead_q1_back, cos_q1_back, sin_q1_back),
@@ -591,12 +591,12 @@ class ArrayPrograms(Programs):
             )
             return (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back)
 
-        ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-        cos_q1_front = cos_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-        sin_q1_front = sin_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-        ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
-        cos_q1_back = cos_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
-        sin_q1_back = sin_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+        ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+        cos_q1_front = cos_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+        sin_q1_front = sin_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+        ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned so that q3 has a solution
+        cos_q1_back = cos_q1_before_q1_for_q3_back  # turned so that q3 has a solution
+        sin_q1_back = sin_q1_before_q1_for_q3_back  # turned so that q3 has a solution
         ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back),
@@ -629,10 +629,10 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q2_front_down(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2_front_down = cos(reference_a2)
             direction_y_q2_front_down = sin(reference_a2)
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2_front_up = direction_x_q2_front_down
             direction_y_q2_front_up = direction_y_q2_front_down
             return (
@@ -641,14 +641,14 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_front_down = effective_q3_2*sin_swing_q3_front_up
         arm_across_q2_front = a2 + effective_q3_2*cos_swing_q3_front
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2_front_down = (
             arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
         )
         direction_y_q2_front_down = (
             arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
         )
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
         direction_y_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
         found = elsewhere(
@@ -701,20 +701,20 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_q2_back_down(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2_back_down = cos(reference_a2)
             direction_y_q2_back_down = sin(reference_a2)
-            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by q2 that takes the arm to its target point; if singular: that of the reference
             direction_x_q2_back_up = direction_x_q2_back_down
             direction_y_q2_back_up = direction_y_q2_back_down
             return (direction_x_q2_back_down, direction_y_q2_back_down, direction_x_q2_back_up, direction_y_q2_back_up)
 
         arm_along_q2_back_down = effective_q3_2*sin_swing_q3_back_up
         arm_across_q2_back = a2 + effective_q3_2*cos_swing_q3_back
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
         direction_y_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
         direction_y_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
         found = elsewhere(

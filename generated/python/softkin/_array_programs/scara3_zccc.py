@@ -146,14 +146,14 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by a2 that takes the arm to its target point; if singular: that of the reference
             direction_x_a2 = cos(reference_a2)
             direction_y_a2 = sin(reference_a2)
             return (direction_x_a2, direction_y_a2)
 
         arm_along_a2 = link_length_1 + link_length_2*cos_a3
         arm_across_a2 = link_length_2*sin_a3
-        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a2 that takes the arm to its target point; if singular: that of the reference
         direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
         direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
         direction_x_a2, direction_y_a2 = elsewhere(
@@ -263,20 +263,20 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_a2_right(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - offset_a2)*DEGREE
-            # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by a2 that takes the arm to its target point; if singular: that of the reference
             direction_x_a2_right = cos(reference_a2)
             direction_y_a2_right = sin(reference_a2)
-            # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by a2 that takes the arm to its target point; if singular: that of the reference
             direction_x_a2_left = direction_x_a2_right
             direction_y_a2_left = direction_y_a2_right
             return (direction_x_a2_right, direction_y_a2_right, direction_x_a2_left, direction_y_a2_left)
 
         arm_along_a2 = link_length_1 + link_length_2*cos_a3
         arm_across_a2_right = link_length_2*sin_a3_right
-        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a2 that takes the arm to its target point; if singular: that of the reference
         direction_x_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
         direction_y_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
-        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a2 that takes the arm to its target point; if singular: that of the reference
         direction_x_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y
         direction_y_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
         direction_x_a2_right, direction_y_a2_right, direction_x_a2_left, direction_y_a2_left = elsewhere(

@@ -152,14 +152,14 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - offset_a1)*DEGREE
-            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by a1 that takes the arm to its target point; if singular: that of the reference
             direction_x_a1 = cos(reference_a1)
             direction_y_a1 = sin(reference_a1)
             return (direction_x_a1, direction_y_a1)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2
         arm_across_a1 = link_length_2*sin_a2
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
         direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
         direction_x_a1, direction_y_a1 = elsewhere(
@@ -339,20 +339,20 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - offset_a1)*DEGREE
-            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by a1 that takes the arm to its target point; if singular: that of the reference
             direction_x_a1_right = cos(reference_a1)
             direction_y_a1_right = sin(reference_a1)
-            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            # rotation by a1 that takes the arm to its target point; if singular: that of the reference
             direction_x_a1_left = direction_x_a1_right
             direction_y_a1_left = direction_y_a1_right
             return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2
         arm_across_a1_right = link_length_2*sin_a2_right
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         direction_x_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
         direction_y_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         direction_x_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y
         direction_y_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(

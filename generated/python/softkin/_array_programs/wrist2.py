@@ -104,12 +104,12 @@ class ArrayPrograms(OrientationPrograms):
 
         def elsewhere_direction_x_a(ref_a: Real) -> Reals:
             reference_a = (ref_a - offset_a)*DEGREE
-            # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
             direction_x_a = cos(reference_a)
             direction_y_a = sin(reference_a)
             return (direction_x_a, direction_y_a)
 
-        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
         direction_x_a = sigma_roll*r13_of_a
         direction_y_a = sigma_roll*r23_of_a
         direction_x_a, direction_y_a = elsewhere(
@@ -196,18 +196,18 @@ class ArrayPrograms(OrientationPrograms):
 
         def elsewhere_direction_x_a_positive(ref_a: Real) -> Reals:
             reference_a = (ref_a - offset_a)*DEGREE
-            # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
             direction_x_a_positive = cos(reference_a)
             direction_y_a_positive = sin(reference_a)
-            # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
             return (direction_x_a_positive, direction_y_a_positive, direction_x_a_negative, direction_y_a_negative)
 
-        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
         direction_x_a_positive = r13_of_a
         direction_y_a_positive = r23_of_a
-        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
         direction_x_a_negative = -r13_of_a
         direction_y_a_negative = -r23_of_a
         direction_x_a_positive, direction_y_a_positive, direction_x_a_negative, direction_y_a_negative = elsewhere(

@@ -117,12 +117,12 @@ class ArrayPrograms(OrientationPrograms):
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
             reference_c = (ref_c - offset_c)*DEGREE
-            # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
             direction_x_c = cos(reference_c)
             direction_y_c = sin(reference_c)
             return (direction_x_c, direction_y_c)
 
-        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
         direction_x_c = sigma_hand*r31
         direction_y_c = -sigma_hand*r32
         direction_x_c, direction_y_c = elsewhere(
@@ -210,18 +210,18 @@ class ArrayPrograms(OrientationPrograms):
 
         def elsewhere_direction_x_c_down(ref_c: Real) -> Reals:
             reference_c = (ref_c - offset_c)*DEGREE
-            # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
             direction_x_c_down = cos(reference_c)
             direction_y_c_down = sin(reference_c)
-            # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
             direction_x_c_up = direction_x_c_down
             direction_y_c_up = direction_y_c_down
             return (direction_x_c_down, direction_y_c_down, direction_x_c_up, direction_y_c_up)
 
-        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
         direction_x_c_down = r31
         direction_y_c_down = -r32
-        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
         direction_x_c_up = -r31
         direction_y_c_up = -direction_y_c_down
         direction_x_c_down, direction_y_c_down, direction_x_c_up, direction_y_c_up = elsewhere(

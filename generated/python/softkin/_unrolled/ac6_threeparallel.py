@@ -94,7 +94,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(3,)
             ahead_q1_before_q1_for_q3 = 0.0
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             d4_times_wrist_y = d4*wrist_y
             ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
@@ -118,7 +118,7 @@ def unrolled(k: Constants) -> Unrolled:
         r33_times_radius_q6 = r33*radius_q6
         # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
@@ -142,7 +142,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
@@ -159,7 +159,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # moved to where q3 has a solution, if that changes the pose by rounding only
+            # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
@@ -227,7 +227,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
@@ -301,7 +301,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
@@ -313,7 +313,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # moved to where q3 has a solution, if that changes the pose by rounding only
+            # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
@@ -381,7 +381,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
@@ -503,7 +503,7 @@ def unrolled(k: Constants) -> Unrolled:
         r33_times_radius_q6 = r33*radius_q6
         # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
@@ -526,7 +526,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
@@ -543,7 +543,7 @@ def unrolled(k: Constants) -> Unrolled:
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # moved to where q3 has a solution, if that changes the pose by rounding only
+            # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
@@ -611,7 +611,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
@@ -679,7 +679,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
@@ -691,7 +691,7 @@ def unrolled(k: Constants) -> Unrolled:
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # moved to where q3 has a solution, if that changes the pose by rounding only
+            # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
@@ -759,7 +759,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
@@ -961,7 +961,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(None,)
             ahead_q1_before_q1_for_q3 = 0.0
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             d4_times_wrist_y = d4*wrist_y
             ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
@@ -985,7 +985,7 @@ def unrolled(k: Constants) -> Unrolled:
         r33_times_radius_q6 = r33*radius_q6
         # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
@@ -1009,7 +1009,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
@@ -1026,7 +1026,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # moved to where q3 has a solution, if that changes the pose by rounding only
+            # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
@@ -1094,7 +1094,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
@@ -1149,7 +1149,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
@@ -1161,7 +1161,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # moved to where q3 has a solution, if that changes the pose by rounding only
+            # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
@@ -1229,7 +1229,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
@@ -1281,7 +1281,7 @@ def unrolled(k: Constants) -> Unrolled:
         r33_times_radius_q6 = r33*radius_q6
         # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
@@ -1304,7 +1304,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
@@ -1321,7 +1321,7 @@ def unrolled(k: Constants) -> Unrolled:
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # moved to where q3 has a solution, if that changes the pose by rounding only
+            # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
@@ -1389,7 +1389,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
@@ -1444,7 +1444,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
@@ -1456,7 +1456,7 @@ def unrolled(k: Constants) -> Unrolled:
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # moved to where q3 has a solution, if that changes the pose by rounding only
+            # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
@@ -1524,7 +1524,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
@@ -1660,7 +1660,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return None
             ahead_q1_before_q1_for_q3 = 0.0
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1*distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/divisor_q1
@@ -1676,7 +1676,7 @@ def unrolled(k: Constants) -> Unrolled:
         # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         q6_radius_of_q5 = sigma_wrist*radius_q6
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_q6 > 1e-11:
             along_q6 = sigma_wrist*minus_r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6/radius_q6
@@ -1697,7 +1697,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3
@@ -1707,7 +1707,7 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            # moved to where q3 has a solution, if that changes the pose by rounding only
+            # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
@@ -1766,7 +1766,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3
                     sin_q6 = sin_q6_before_q6_of_q3

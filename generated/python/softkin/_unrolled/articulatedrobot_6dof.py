@@ -94,7 +94,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(3,)
             ahead_q1_before_q1_for_q3 = 0.0
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_wrist_y = d3*wrist_y
             ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
@@ -146,7 +146,7 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23*cos_q1_before_q1_for_q3_front - r13*sin_q1_before_q1_for_q3_front
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 1e-11:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -222,7 +222,7 @@ def unrolled(k: Constants) -> Unrolled:
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 1e-11:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -355,7 +355,7 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23*cos_q1_before_q1_for_q3_back - r13*sin_q1_before_q1_for_q3_back
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 1e-11:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -425,7 +425,7 @@ def unrolled(k: Constants) -> Unrolled:
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 1e-11:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -624,7 +624,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         refusal_front = 0 if sine_square_q3 >= -swing_scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_wrist_y = d3*wrist_y
             ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
@@ -669,7 +669,7 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         r12_from_q1 = r12*cos_q1_before_q1_for_q3_front + r22*sin_q1_before_q1_for_q3_front
         r11_from_q1 = r11*cos_q1_before_q1_for_q3_front + r21*sin_q1_before_q1_for_q3_front
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -679,7 +679,7 @@ def unrolled(k: Constants) -> Unrolled:
             reference_a4 = (ref_a4 - offset_a4)*DEGREE
             r21_from_q1 = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -723,7 +723,7 @@ def unrolled(k: Constants) -> Unrolled:
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -733,7 +733,7 @@ def unrolled(k: Constants) -> Unrolled:
             reference_a4 = (ref_a4 - offset_a4)*DEGREE
             r21_from_q1 = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -808,7 +808,7 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         r12_from_q1 = r12*cos_q1_before_q1_for_q3_back + r22*sin_q1_before_q1_for_q3_back
         r11_from_q1 = r11*cos_q1_before_q1_for_q3_back + r21*sin_q1_before_q1_for_q3_back
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -818,7 +818,7 @@ def unrolled(k: Constants) -> Unrolled:
             reference_a4 = (ref_a4 - offset_a4)*DEGREE
             r21_from_q1 = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -862,7 +862,7 @@ def unrolled(k: Constants) -> Unrolled:
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -872,7 +872,7 @@ def unrolled(k: Constants) -> Unrolled:
             reference_a4 = (ref_a4 - offset_a4)*DEGREE
             r21_from_q1 = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -1008,7 +1008,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (sine_square_q3 >= -swing_scale_q3_squared_times_rounding_2):
             return None
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1*distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/divisor_q1
@@ -1037,7 +1037,7 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23*cos_q1_before_q1_for_q3 - r13*sin_q1_before_q1_for_q3
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 0.1:
             direction_x_q4 = sigma_hand*minus_r13_from_q123
             direction_y_q4 = sigma_hand*r23_from_q1
@@ -1048,7 +1048,7 @@ def unrolled(k: Constants) -> Unrolled:
                 -sigma_hand*((r11*cos_q1_before_q1_for_q3 + r21*sin_q1_before_q1_for_q3)*cos_q23 + r31*sin_q23)
             )
         else:
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             if radius_q4 > 1e-11:
                 direction_x_q4 = sigma_hand*minus_r13_from_q123
                 direction_y_q4 = sigma_hand*r23_from_q1

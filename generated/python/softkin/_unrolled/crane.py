@@ -41,7 +41,7 @@ def unrolled(k: Constants) -> Unrolled:
         ):
             return (2,)
         radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_theta > machine_scale_times_free_angle_2:
             direction_x_theta = x
             direction_y_theta = y
@@ -63,7 +63,7 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of R
         if not (axis_r >= lowest_r and axis_r <= highest_r):
             return (3,)
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_phi > machine_scale_times_free_angle_2:
             direction_x_phi = z
             direction_y_phi = radius_theta
@@ -85,7 +85,7 @@ def unrolled(k: Constants) -> Unrolled:
         _, ref_theta, ref_phi = 3*(0.0,) if reference is None else reference
         radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # polar coordinates: the radius at angle phi
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_theta > machine_scale_times_free_angle_2:
             direction_x_theta = x
             direction_y_theta = y
@@ -93,7 +93,7 @@ def unrolled(k: Constants) -> Unrolled:
             reference_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(reference_theta)
             direction_y_theta = sin(reference_theta)
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_phi > machine_scale_times_free_angle_2:
             direction_x_phi = z
             direction_y_phi = radius_theta
@@ -114,7 +114,7 @@ def unrolled(k: Constants) -> Unrolled:
         _, ref_theta, ref_phi = 3*(0.0,) if reference is None else reference
         radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # polar coordinates: the radius at angle phi
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_theta > machine_scale_times_free_angle_2:
             direction_x_theta = x
             direction_y_theta = y
@@ -122,7 +122,7 @@ def unrolled(k: Constants) -> Unrolled:
             reference_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(reference_theta)
             direction_y_theta = sin(reference_theta)
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_phi > machine_scale_times_free_angle_2:
             direction_x_phi = z
             direction_y_phi = radius_theta

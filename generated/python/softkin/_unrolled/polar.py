@@ -39,7 +39,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane_2):
             return (3,)
         radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y
@@ -70,7 +70,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane_2):
             return (None,)
         radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y
@@ -90,7 +90,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
         radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y

@@ -38,7 +38,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
             return (2,)
         radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y
@@ -70,7 +70,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_c, _, _ = 3*(0.0,) if reference is None else reference
         radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y
@@ -87,7 +87,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_c, _, _ = 3*(0.0,) if reference is None else reference
         radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y

@@ -107,7 +107,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
             axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_y = d3*y
             ahead_q1_before_q1_for_q3_times_x = ahead_q1_before_q1_for_q3*x
@@ -259,7 +259,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         refusal_front = 0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2 else 3  # q3: out of reach
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_y = d3*y
             ahead_q1_before_q1_for_q3_times_x = ahead_q1_before_q1_for_q3*x
@@ -385,7 +385,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2):
             return None
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1*distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/divisor_q1

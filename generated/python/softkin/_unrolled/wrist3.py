@@ -41,7 +41,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9 and -1e9 <= ref_c <= 1e9):
             return 2*(2,)
         radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
-        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
         if radius_c > 1e-11:
             direction_x_c_down = r31
             direction_y_c_down = -r32
@@ -111,7 +111,7 @@ def unrolled(k: Constants) -> Unrolled:
         _, ((r11, r12, _), (r21, r22, _), (r31, r32, r33)) = frame
         _, _, ref_c = 3*(0.0,) if reference is None else reference
         radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
-        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
         if radius_c > 1e-11:
             direction_x_c_down = r31
             direction_y_c_down = -r32
@@ -151,7 +151,7 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_hand,) = signs
         _, _, ref_c = 3*(0.0,) if reference is None else reference
         radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
-        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
         if radius_c > 1e-11:
             direction_x_c = sigma_hand*r31
             direction_y_c = -sigma_hand*r32
