@@ -134,7 +134,7 @@ class ArrayPrograms(StartedPrograms):
         start_arm_6_x = platform_6_x*start_r11 + platform_6_y*start_r12 + platform_6_z*start_r13
         start_arm_6_y = platform_6_x*start_r21 + platform_6_y*start_r22 + platform_6_z*start_r23
         start_arm_6_z = platform_6_x*start_r31 + platform_6_y*start_r32 + platform_6_z*start_r33
-        # Newton's method: every pass improves the pose until all legs have their lengths
+        # Newton's method: every pass improves the pose until all legs fit
         x, y, z, roll, pitch, yaw, fitted = initial(start_x, start_y, start_z, 0.0, 0.0, 0.0, False)
         for _ in range(20):
             cos_pitch = cos(pitch)
