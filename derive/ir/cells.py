@@ -36,7 +36,7 @@ GAP = 1e-6
 NEAR_ZERO = 0.5
 """A cubic may hide two roots where its extremum is below this fraction of the values at the ends."""
 BENT = 0.125
-"""Tangents that miss zero by this fraction of the change of slope may still hide a root, because the value has kinks."""
+"""Tangents that miss zero by this fraction of the change of slope may still hide a root: the value has kinks."""
 SEAM = 1e-3
 """A cell is not cut closer than this to the point where the two sides join: there a slope has no digits."""
 ASIDE = 0.47
@@ -167,9 +167,9 @@ def _hides_roots(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Fl
 
 
 def _comes_back(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Flags:
-    """Whether a value with one sign at both ends falls towards zero from both, and its tangents meet beyond zero, or nearly.
+    """Whether a value with one sign at both ends falls towards zero from both, and its tangents meet about beyond zero.
 
-    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks tangents are no bound.
+    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks they are no bound.
     """
     margin = TOUCHED + NEAR_ZERO * np.minimum(np.abs(f), np.abs(f1)) + BENT * np.abs(df1 - df) * width
     sign = np.where(f < 0.0, -1.0, 1.0)

@@ -155,7 +155,7 @@ def _over_the_end(trial: Trial, cells: Cells) -> Cells:
     """
     swap = cells.first[:, GUARD] < 0.0
     within, beyond = (cells.joint(np.where(swap == flag, cells.low, cells.high)) for flag in (False, True))
-    low, high = np.zeros(len(cells)), np.ones(len(cells))  # as fractions of the way from the end with solutions to the other
+    low, high = np.zeros(len(cells)), np.ones(len(cells))  # fractions of the way from the inner end
     path = Cells(cells.rows, within, beyond - within, cells.curved, cells.cuts, low, high, *_ordered(cells, swap))
     level = np.where(path.first[:, GUARD] > TOUCHED, TOUCHED, 0.0)
     meet, rim = (_closing(trial, path, GUARD, at)[2] for at in (level, 0.0 * level))
@@ -182,9 +182,9 @@ def _ordered(cells: Cells, swap: Flags) -> tuple[Reals, Reals]:
 
 
 def _closing(trial: Trial, cells: Cells, column: int, level: Reals) -> tuple[Reals, Reals, Reals]:
-    """Find the place where a column equals a level. Returns the end on the side of the first, the other end, and the better one.
+    """Find the place where a column equals a level. Returns the end on the side of the first, the other, and the better.
 
-    Newton's method from the end that is nearer to zero; bisection where that leads out of the cell, and in every third step.
+    Newton's method from the end that is nearer to zero; bisection outside the cell, and in every third step.
     """
     low, high = cells.low.copy(), cells.high.copy()
     first, last = cells.first[:, column : column + 2].copy(), cells.last[:, column : column + 2].copy()

@@ -26,6 +26,6 @@ MECHANISM = Mechanism(
     bars=(rod("inner", (0, 0), KNEE, L1), rod("outer", KNEE, TIP, L2)),
     task=Task("xy"),
     branches=(branch("elbow", sin(A2 - A1), right=+1, left=-1),),
-    limited=(limited("elbow", A2 - A1, "the angle between the arms", angle=True),),
+    limited=(limited("elbow", A2 - A1, "the outer arm relative to the inner arm", angle=True),),
     notes=("Angles are right-handed about +Z.",),
 )

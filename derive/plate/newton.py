@@ -141,7 +141,7 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
         done=sp.And(fit, fitted),
         limit=LIMIT,
         otherwise=Status.IMPOSSIBLE,
-        note="Newton's method: every pass improves the pose until all legs have their lengths",
+        note="Newton's method: every pass improves the pose until all legs fit",
         reason=about_machine(Why.NOT_CONVERGED),
     )
     arms = (let for rod in mechanism.rods for let in turned(START_ROTATION, point_of(rod), names("start_arm", rod)))

@@ -262,7 +262,7 @@ def _bound(measure: Measure, condition: _Condition, names: dict[sp.Symbol, sp.Sy
             Let(
                 f(measure.angle),
                 Select(reached, b, Select(beyond, b, Select(stays, b, a))),
-                f"moved to where {condition.step.name} has a solution, if that changes the pose by rounding only",
+                f"moved so that {condition.step.name} has a solution",
             )
             for f, a, b in zip((cosine, sine), names_after, before, strict=True)
         ),

@@ -161,7 +161,7 @@ def _motion(later: _Later, sweep: Sweep | None) -> tuple[Let, ...]:
         Let(rate, slope.xreplace(names), f"its derivative by {later.angle.name}"),
         Let(excess, Select(sp.Gt(value, 0), value - size, value + size)),
         Let(divisor, Select(is_steep, rate, sp.Integer(1))),
-        Let(turn, Select(is_steep, -excess / divisor, flat), f"turn of {later.angle.name} to the bound, to first order"),
+        Let(turn, Select(is_steep, -excess / divisor, flat), f"turn of {later.angle.name} to first order"),
         *_turned(later, turn),
         *follows,
         *_taken(later, is_swept=sweep is not None),
@@ -206,7 +206,7 @@ def _taken(later: _Later, *, is_swept: bool) -> tuple[Let, ...]:
     if is_swept:
         others = [later.name(f"swept_{word}") for word in ("cost", "ahead", "cos", "sin")]
         chosen = [Select(flag(later.name("follows").name), b, a) for a, b in zip(chosen, others, strict=True)]
-    note = f"turned, within rounding, to where {later.step.name} has a solution"
+    note = f"turned so that {later.step.name} has a solution"
     return (
         *(Let(n, c) for n, c in zip(bests, chosen, strict=True)),
         *(Let(n, _where_turned(later, n, v), note) for n, v in zip(later.bound, bests[1:], strict=True)),

@@ -122,7 +122,7 @@ def swept(
         _follows(sweep, names, rates, word),
         *nearest_on_arc(target, real(f"value_{word}"), (1 - INSIDE) * real(f"size_{word}"), slopes, before),
         *_followed(sweep, moved, (names[cosine(first)], names[sine(first)]), WAYS[0], word),
-        Let(mirrored, 2 * real(f"centre_{target}") - moved, "mirror image: on the other arc"),
+        Let(mirrored, 2 * real(f"centre_{target}") - moved, "mirror image on the other arc"),
         *_followed(sweep, mirrored, (names[cosine(first)], names[sine(first)]), WAYS[1], word),
     )
 
@@ -158,6 +158,6 @@ def _followed(sweep: Sweep, u: sp.Symbol, before: Row, way: str, word: str) -> t
         Let(length, Select(is_long, radius, one)),
         Let(turned, ahead, "positive where the vector points along the later angle"),
         Let(side, Select(sp.Lt(turned, 0), -one, one)),
-        Let(cos_v, Select(is_long, -q * side / length, cos_before), "the earlier angle follows the later one"),
-        Let(sin_v, Select(is_long, p * side / length, sin_before), "it stays where every angle gives this later one"),
+        Let(cos_v, Select(is_long, -q * side / length, cos_before), "the earlier angle follows"),
+        Let(sin_v, Select(is_long, p * side / length, sin_before), "it stays where it has no effect"),
     )

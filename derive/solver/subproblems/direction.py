@@ -26,7 +26,7 @@ from derive.ir.symbols import (
     real,
 )
 
-AT_THE_SINGULARITY = "in the singularity: the angle of the reference"
+AT_THE_SINGULARITY = "if singular: that of the reference"
 
 
 def direction(

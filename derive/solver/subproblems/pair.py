@@ -61,7 +61,7 @@ def _solve(problem: Problem, angle: sp.Symbol, used: tuple[Equation, Equation], 
             return _bound(angle, naming, cos_part, sin_part, note)
         reach = naming.length("reach", e1, e2)
         scale = problem.scale_of(used[0])
-        moved = "arm to the point that it must reach" if used[0].is_length else "machine's direction to the commanded one"
+        moved = "arm to its target point" if used[0].is_length else "machine's direction to the commanded one"
         note = f"rotation by {angle.name} that takes the {moved}"
         known = direction(problem, angle, along=cos_part, across=sin_part, measure=reach, note=note, scale=scale)
         measure, residual = Measure(angle, reach, scale), reach**2 - along**2 - across**2

@@ -162,7 +162,7 @@ class Coupled(Mechanism):
     def _orientation_first(
         self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
     ) -> Reals | Diagnosis | Status:
-        """On a flange that keeps its orientation: first the orientation axes, then the end point, then the position axes."""
+        """On a flange that keeps its orientation: first the orientation axes, then end point and position axes."""
         flange = self._flange
         assert flange is not None
         own = self.orientation_part._branch(_ORIGIN, seen_from(flange, rotation), *wrist)
@@ -206,7 +206,7 @@ class Coupled(Mechanism):
         return own if isinstance(own, Status) else carried + own
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian: the flange moves the end point as a rigid body; the orientation axes move it relative to the flange."""
+        """The Jacobian: the flange moves the end point as a rigid body, the orientation axes relative to it."""
         first, second = axes[: self._count], axes[self._count :]
         carried, own = self.position_part._twist(first), self.orientation_part._twist(second)
         flange, end = self.position_part._orientation(first), self.orientation_part._forward(second)

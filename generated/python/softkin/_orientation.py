@@ -30,7 +30,7 @@ class OrientationKinematics(Mechanism):
     __slots__ = ()
 
     def is_compatible(self, image: OrientationImage) -> bool:
-        """Whether a coupling with a flange of these orientations is possible: a commanded frame must determine the axes."""
+        """Whether a coupling with a flange of these orientations is possible: a frame must determine the axes."""
         flange_axis, _ = turning_axis(image)
         return image.freedom == "zero" or self._compatible(flange_axis) is Status.OK
 

@@ -2,7 +2,7 @@
 """All roots of a trial along one joint, on plain numbers: the rules are those of `_cells` and `_roots`, for arrays.
 
 The circle is cut into cells until each holds at most one root. A cell is a list of its map (joint = base + scale s, or
-base + scale s² with the other side of the two roots at s < 0), its number of cuts, and both ends, each s and the trial there.
+base + scale s² with the other side of the two roots at s < 0), its number of cuts, and both ends: s, and the trial there.
 """
 
 from __future__ import annotations
@@ -53,8 +53,8 @@ def nearest_root(
     count: int,
     scan: Scan,
 ) -> Values:
-    """True and the results of `finish` at the root that fits and is nearest to the start; False and zeros where there is none,
-    or none is wanted.
+    """True and the results of `finish` at the root that fits and is nearest to the start; False and zeros where there
+    is none, or none is wanted.
 
     given: the arguments as values; the parts of a place by their names.
     """
@@ -237,7 +237,7 @@ class _Search:
         return cells
 
     def offer(self, base: float, scale: float, curved: bool, s: float, said: Said) -> None:
-        """Keep a trial that is at a root by its value alone. Where the guard vanishes, the value has half of its digits."""
+        """Keep a trial that is at a root by its value alone. Where the guard vanishes, it has half of its digits."""
         value, guard = abs(said[0]), said[2]
         if (value <= VANISHING and guard >= 0.0) or (value <= NEXT and abs(guard) <= VANISHING):
             place = self.place(base, scale, curved, s)
@@ -247,7 +247,7 @@ class _Search:
     def closing(self, cell: Cell, column: int, level: float) -> tuple[float, float, float, Said]:
         """Find the place where a column equals a level. Returns both ends, the better one, and the trial there.
 
-        Newton's method from the end nearer to zero; bisection where that leads out of the cell, and in every third step.
+        Newton's method from the end nearer to zero; bisection outside the cell, and in every third step.
         """
         base, scale, curved, _, low, first, high, last = cell
         a, b = first[column] - level, last[column] - level
@@ -280,7 +280,7 @@ class _Search:
             self.jump((base, scale, curved, 0, low, ends[0], high, ends[1]))
 
     def jump(self, cell: Cell) -> None:
-        """The roots at a constant joint, with the angle that turns most free: both angles at which the value vanishes."""
+        """The roots at a constant joint, the angle that turns most being free: both angles at which the value is 0."""
         base, scale, curved, _, low, first, high, last = cell
         if len(first) == 4:
             return
@@ -310,7 +310,7 @@ def _turned(first: Said, last: Said) -> float:
 
 
 def _between(f: float, df: float, f1: float, df1: float, width: float) -> float:
-    """The distance from the first end at which the tangents of both ends meet; about half of the cell where they do not."""
+    """The distance from the first end at which the tangents of both ends meet; else about half of the cell."""
     if df == df1:
         return ASIDE * width
     met = (f1 - f - df1 * width) / (df - df1)
@@ -327,9 +327,9 @@ def _hides_roots(f: float, df: float, f1: float, df1: float, width: float) -> bo
 
 
 def _comes_back(f: float, df: float, f1: float, df1: float, width: float) -> bool:
-    """Whether a value with one sign at both ends falls towards zero from both, and its tangents meet beyond zero, or nearly.
+    """Whether a value with one sign at both ends falls towards zero from both, and its tangents meet about beyond zero.
 
-    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks tangents are no bound.
+    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks they are no bound.
     """
     sign = -1.0 if f < 0.0 else 1.0
     if not (f * f1 > 0.0 and sign * df < 0.0 < sign * df1):

@@ -23,14 +23,14 @@ from softkin._types import (
 )
 
 _SAME = 2e-3
-"""Axes nearer than this (degrees, lengths) are one solution of a branch. Where the residual only touches zero, the scan finds
-the same root twice; and between two solutions of a branch there is one of another branch."""
+"""Axes nearer than this (degrees, lengths) are one solution of a branch. Where the residual only touches zero, the
+scan finds the same root twice; and between two solutions of a branch there is one of another branch."""
 _COINCIDE = 1e-11
 """A solution whose margin is smaller lies on both branches."""
 
 
 class SearchedInverse(Mechanism):
-    """A mechanism whose inverse scans one joint: a call for one branch returns the solution nearest to the reference."""
+    """A mechanism whose inverse scans one joint: for one branch, the solution nearest to the reference."""
 
     __slots__ = ()
 
@@ -41,7 +41,7 @@ class SearchedInverse(Mechanism):
         """Every branch of the inverse, in fixed slots: branch 1 before branch 2, the first byte varies fastest.
 
         A branch may have several solutions: `axes` is the one nearest to the reference along the joint that is scanned,
-        `others` has the rest in this order. Solutions beyond the limits are left out; periods are open, as in `inverse`.
+        `others` has the rest in this order. Solutions beyond limits are left out; periods are open, as in `inverse`.
         A slot without axes has the status instead. Raises BAD_INPUT only for input that has not the form of a frame.
         """
         position, rows = self._pose(frame)

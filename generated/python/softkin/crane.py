@@ -186,7 +186,7 @@ class Crane(OffsetKinematics):
         radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
         radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
         axis_r = offset_r + radius_phi
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
             direction_y_theta = y
@@ -201,7 +201,7 @@ class Crane(OffsetKinematics):
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0) / DEGREE
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
             direction_y_phi = radius_theta
@@ -313,7 +313,7 @@ class Crane(OffsetKinematics):
         # polar coordinates: the radius at angle phi
         radius_phi = sqrt(flange_z * flange_z + radius_theta * radius_theta)
         axis_r = offset_r + radius_phi
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = flange_x
             direction_y_theta = flange_y
@@ -328,7 +328,7 @@ class Crane(OffsetKinematics):
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0) / DEGREE
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = flange_z
             direction_y_phi = radius_theta
