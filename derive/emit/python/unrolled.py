@@ -33,15 +33,14 @@ from derive.ir.symbols import (
 )
 from derive.ir.tree import Item
 from derive.kinematics.kinematics import Kinematics
+from derive.lowering.lower import lowered
 from derive.lowering.scheduling import scheduled, spared
 from derive.optimize.angle_addition import angles_first
 from derive.optimize.coalesce import reused_names
-from derive.optimize.common_parts import common_parts
-from derive.optimize.constant_parts import constant_parts
 from derive.optimize.guards import guarded
-from derive.optimize.inline import written_where_read
+from derive.optimize.inline import squares_where_read, written_where_read
 from derive.optimize.known_projection import aimed
-from derive.optimize.negation import with_fewer_signs, without_minus
+from derive.optimize.negation import without_minus
 from derive.optimize.rotation_identities import shorter_columns
 from derive.optimize.symmetry import with_twins
 from derive.optimize.unroll import (
@@ -96,13 +95,12 @@ def signs(kin: Kinematics) -> tuple[Sign, ...]:
 
 def every_branch(kin: Kinematics) -> Program:
     """All branches, periods open, limits tested."""
-    program = with_twins(unroll(with_fewer_signs(_nearest(kin, with_limits(kin.branch, kin.limits))), signs(kin)))
-    return common_parts(program, signs(kin), _constants(kin))
+    return with_twins(unroll(_nearest(kin, with_limits(kin.branch, kin.limits)), signs(kin)))
 
 
 def branches(kin: Kinematics, one: Program) -> Program:
     """All branches, each axis in any turn. one: a single branch for input that is trusted."""
-    return common_parts(any_turn(with_twins(unroll(one, signs(kin)))), signs(kin), _constants(kin))
+    return any_turn(with_twins(unroll(one, signs(kin))))
 
 
 def array_method(kin: Kinematics) -> Method:
@@ -135,7 +133,7 @@ def _nearest(kin: Kinematics, program: Program) -> Program:
 
 def _trusted(kin: Kinematics) -> Program:
     """One branch for input that is trusted, before its turns are let go."""
-    return with_fewer_signs(shorter_columns(_nearest(kin, kin.branch)))
+    return shorter_columns(_nearest(kin, kin.branch))
 
 
 def _constants(kin: Kinematics) -> frozenset[str]:
@@ -145,7 +143,7 @@ def _constants(kin: Kinematics) -> frozenset[str]:
 def unrolled(kin: Kinematics) -> Unrolled:
     """The functions on plain numbers. Near a fold they have no answer, an empty tuple: one branch after the other has."""
     kin = replace(kin, branch=untold(far_from_folds(kin.derived_branch)), limits=untold(kin.limits))
-    methods, parts = _with_constant_parts(kin, _methods(kin))
+    methods, parts = _shorter(kin, _methods(kin))
     known = (*kin.setup.lets(), *parts)
     functions = (_slots(kin, methods[0], known), _directions(kin, methods[1], known), _direction(kin, methods[2], known, parts))
     read = {c for m in methods for c in constants_of(m)} | {s.name for p in parts for s in symbols_of(p.value)}
@@ -158,10 +156,11 @@ def unrolled(kin: Kinematics) -> Unrolled:
     return Unrolled(functions, [spelled(c) for c in constants], lines, primitives)
 
 
-def _with_constant_parts(kin: Kinematics, methods: Sequence[Method]) -> tuple[list[Method], tuple[Let, ...]]:
-    """The methods, and what they read that is computed from constants."""
-    programs, parts = constant_parts((m.program for m in methods), (o.name for o in kin.setup.outputs))
-    return [replace(m, program=p) for m, p in zip(methods, programs, strict=True)], parts
+def _shorter(kin: Kinematics, methods: Sequence[Method]) -> tuple[list[Method], tuple[Let, ...]]:
+    """The methods with fewer operations, and what they read that is computed from constants."""
+    named = [replace(m.program, name=m.name) for m in methods]
+    programs, parts = lowered(named, _constants(kin), any_turn=True, inverts=False)
+    return [replace(m, program=squares_where_read(p)) for m, p in zip(methods, programs, strict=True)], parts
 
 
 def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:

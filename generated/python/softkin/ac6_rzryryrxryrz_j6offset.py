@@ -141,15 +141,15 @@ class Constants(NamedTuple):
     swing_scale_q3_tried: float
     searched: bool
     machine_scale_times_free_angle: float
+    size_of_j6_offset_x: float
+    part_of_constant: float
     a2_plus_effective_q3_tried: float
     a2_minus_effective_q3_tried: float
     d4_by_effective_q3_tried: float
     a3_by_effective_q3_tried: float
     swing_scale_q3_tried_squared: float
-    size_of_j6_offset_x: float
     part_of_fits: float
     one_by_machine_scale: float
-    part_of_constant: float
 
 
 class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
@@ -471,15 +471,15 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         swing_scale_q3_tried = 2.0*a2*effective_q3_tried  # q3: law of cosines in the x_from_q1² + z_from_q1² equation
         searched = abs(j6_offset_x) > 0.0  # whether to search along A6
         machine_scale_times_free_angle = 1e-11*machine_scale
+        size_of_j6_offset_x = abs(j6_offset_x)
+        part_of_constant = 1e-12*swing_scale_q3_tried*swing_scale_q3_tried
         a2_plus_effective_q3_tried = a2 + effective_q3_tried
         a2_minus_effective_q3_tried = a2 - effective_q3_tried
         d4_by_effective_q3_tried = d4/effective_q3_tried
         a3_by_effective_q3_tried = a3/effective_q3_tried
         swing_scale_q3_tried_squared = swing_scale_q3_tried*swing_scale_q3_tried
-        size_of_j6_offset_x = abs(j6_offset_x)
         part_of_fits = 0.5*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
         one_by_machine_scale = 1.0/machine_scale
-        part_of_constant = 1e-12*swing_scale_q3_tried*swing_scale_q3_tried
         return Constants(
             d1=d1, a1=a1, a2=a2, a3=a3, d4=d4, j6_offset_x=j6_offset_x, d6=d6, offset_a1=offset_a1,
             offset_a2=offset_a2, offset_a3=offset_a3, offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6,
@@ -495,12 +495,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             upper_a6=effective_upper_a6, unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6,
             single_a6=single_a6, mid_a6=mid_a6, machine_scale=machine_scale, effective_q3_tried=effective_q3_tried,
             swing_scale_q3_tried=swing_scale_q3_tried, searched=searched,
-            machine_scale_times_free_angle=machine_scale_times_free_angle,
-            a2_plus_effective_q3_tried=a2_plus_effective_q3_tried,
+            machine_scale_times_free_angle=machine_scale_times_free_angle, size_of_j6_offset_x=size_of_j6_offset_x,
+            part_of_constant=part_of_constant, a2_plus_effective_q3_tried=a2_plus_effective_q3_tried,
             a2_minus_effective_q3_tried=a2_minus_effective_q3_tried,
             d4_by_effective_q3_tried=d4_by_effective_q3_tried, a3_by_effective_q3_tried=a3_by_effective_q3_tried,
-            swing_scale_q3_tried_squared=swing_scale_q3_tried_squared, size_of_j6_offset_x=size_of_j6_offset_x,
-            part_of_fits=part_of_fits, one_by_machine_scale=one_by_machine_scale, part_of_constant=part_of_constant,
+            swing_scale_q3_tried_squared=swing_scale_q3_tried_squared, part_of_fits=part_of_fits,
+            one_by_machine_scale=one_by_machine_scale,
         )
 
     def _try_joint(self, given: Values) -> Values | Status:
@@ -537,14 +537,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
             if distance_q1_tried > machine_scale_times_free_angle:
                 length_q1_tried = distance_q1_tried
-                slope_distance_q1_tried = (
+                slope_length_q1_tried = (
                     (
                         slope_wrist_x_tried*wrist_x_tried + slope_wrist_y_tried*wrist_y_tried
                     )/(distance_q1_tried if distance_q1_tried > 0.0 else 1.0)
                     if distance_q1_tried > 0.0
                     else 0.0
                 )
-                slope_length_q1_tried = slope_distance_q1_tried
             else:
                 length_q1_tried = 1.0
                 slope_length_q1_tried = 0.0
@@ -597,8 +596,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
         if both_q3_tried > 0.0:
             sum_q3_tried = both_q3_tried
-            slope_both_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-            slope_sum_q3_tried = slope_both_q3_tried
+            slope_sum_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
         else:
             sum_q3_tried = 1.0
             slope_sum_q3_tried = 0.0
@@ -651,16 +649,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 - arm_along_q2_tried*slope_wrist_z_tried - slope_arm_along_q2_tried*wrist_z_from_q1_tried
             )
             if part_of_length_q2_tried > 0.0 and reach_tried > machine_scale_times_free_angle:
-                root_of_length_q2_tried = (sqrt(part_of_length_q2_tried) if part_of_length_q2_tried > 0.0 else 0.0)
-                length_q2_tried = root_of_length_q2_tried
-                slope_root_of_length_q2_tried = (
+                length_q2_tried = (sqrt(part_of_length_q2_tried) if part_of_length_q2_tried > 0.0 else 0.0)
+                slope_length_q2_tried = (
                     (
                         across_q2_tried*slope_across_q2_tried + along_q2_tried*slope_along_q2_tried
-                    )/(root_of_length_q2_tried if root_of_length_q2_tried > 0.0 else 1.0)
-                    if root_of_length_q2_tried > 0.0
+                    )/(length_q2_tried if length_q2_tried > 0.0 else 1.0)
+                    if length_q2_tried > 0.0
                     else 0.0
                 )
-                slope_length_q2_tried = slope_root_of_length_q2_tried
             else:
                 length_q2_tried = 1.0
                 slope_length_q2_tried = 0.0
@@ -1286,16 +1282,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             # the point that the last joints turn about
             wrist_x_tried = wrist_x_closed + (r12_at_q6*sin_q6 - r11_at_q6*cos_q6)*j6_offset_x
             wrist_y_tried = wrist_y_closed + (r22_at_q6*sin_q6 - r21_at_q6*cos_q6)*j6_offset_x
-            margin_shoulder_tried = one_by_machine_scale*(wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)
-            branch_shoulder = margin_shoulder_tried
+            branch_shoulder = one_by_machine_scale*(wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)
             branch_wrist = (sin_q4 if size_of_j6_offset_x > 0.0 else cos_q5)*one_by_machine_scale
             branch_crossing = (
-                -(1.0 if margin_elbow_closed >= 0.0 else -1.0)*(1.0 if margin_shoulder_tried >= 0.0 else -1.0)*determinant
+                -(1.0 if branch_shoulder >= 0.0 else -1.0)*(1.0 if margin_elbow_closed >= 0.0 else -1.0)*determinant
                 *part_of_fits
             )
         else:
-            margin_shoulder_closed = one_by_machine_scale*(wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)
-            branch_shoulder = margin_shoulder_closed
+            branch_shoulder = one_by_machine_scale*(wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)
             branch_wrist = cos_q5
             branch_crossing = 1.0
         return (

@@ -743,8 +743,7 @@ class Ac6ThreeParallel(Mechanism):
                 part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
                 cos_q6_before_q1_for_q3 = -part_of_cos_q6_before_q1_for_q3
                 across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
-                part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
-                sin_q6_before_q1_for_q3 = part_of_sin_q6_before_q1_for_q3
+                sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
                 radius_q6_rate_q1_for_q3 = (
                     -(
                         -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
@@ -757,7 +756,7 @@ class Ac6ThreeParallel(Mechanism):
                     *one_by_radius_q6_before_q1_for_q3
                 )
                 sin_q6_rate_q1_for_q3 = (
-                    (across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
+                    (across_q6_rate_q1_for_q3 - radius_q6_rate_q1_for_q3*sin_q6_before_q1_for_q3)
                     *one_by_radius_q6_before_q1_for_q3
                 )
             else:
@@ -931,38 +930,29 @@ class Ac6ThreeParallel(Mechanism):
                             mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3
                         mirrored_cost_q1_for_q3 = abs(d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
                         if near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3:
-                            swept_cost_q1_for_q3 = near_cost_q1_for_q3
-                            swept_cos_q1_for_q3 = near_cos_q1_for_q3
-                            swept_sin_q1_for_q3 = near_sin_q1_for_q3
+                            best_cost_q1_for_q3 = near_cost_q1_for_q3
+                            best_cos_q1_for_q3 = near_cos_q1_for_q3
+                            best_sin_q1_for_q3 = near_sin_q1_for_q3
                         else:
-                            swept_cost_q1_for_q3 = mirrored_cost_q1_for_q3
-                            swept_cos_q1_for_q3 = mirrored_cos_q1_for_q3
-                            swept_sin_q1_for_q3 = mirrored_sin_q1_for_q3
+                            best_cost_q1_for_q3 = mirrored_cost_q1_for_q3
+                            best_cos_q1_for_q3 = mirrored_cos_q1_for_q3
+                            best_sin_q1_for_q3 = mirrored_sin_q1_for_q3
                     else:
-                        swept_cost_q1_for_q3 = 0.0
-                        swept_cos_q1_for_q3 = near_cos_q1_for_q3
-                        swept_sin_q1_for_q3 = near_sin_q1_for_q3
-                    best_cost_q1_for_q3 = swept_cost_q1_for_q3
-                    swept_ahead_q1_for_q3 = swept_cos_q1_for_q3*wrist_x + swept_sin_q1_for_q3*wrist_y
-                    best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
-                    best_cos_q1_for_q3 = swept_cos_q1_for_q3
-                    best_sin_q1_for_q3 = swept_sin_q1_for_q3
+                        best_cost_q1_for_q3 = 0.0
+                        best_cos_q1_for_q3 = near_cos_q1_for_q3
+                        best_sin_q1_for_q3 = near_sin_q1_for_q3
+                    best_ahead_q1_for_q3 = best_cos_q1_for_q3*wrist_x + best_sin_q1_for_q3*wrist_y
                 else:
                     turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3_squared)
                     one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-                    turned_cos_q1_for_q3 = (
+                    best_cos_q1_for_q3 = (
                         one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
                     )
-                    turned_sin_q1_for_q3 = (
+                    best_sin_q1_for_q3 = (
                         one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
                     )
-                    # what is left of its own equation
-                    turned_cost_q1_for_q3 = abs(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
-                    best_cost_q1_for_q3 = turned_cost_q1_for_q3
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
-                    best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
-                    best_cos_q1_for_q3 = turned_cos_q1_for_q3
-                    best_sin_q1_for_q3 = turned_sin_q1_for_q3
+                    best_cost_q1_for_q3 = abs(d4 + best_cos_q1_for_q3*wrist_y - best_sin_q1_for_q3*wrist_x)
+                    best_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
                 # turned within rounding, where the rest can be reached
                 if best_cost_q1_for_q3 > machine_scale_times_rounding:
                     ahead_q1 = ahead_q1_before_q1_for_q3
@@ -1002,14 +992,13 @@ class Ac6ThreeParallel(Mechanism):
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
         )
-        size_of_value_q6_of_q3 = abs(value_q6_of_q3)
         # kept where the rest can be reached
-        if size_of_value_q6_of_q3 <= size_q1_for_q3:
+        if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
         else:
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and size_of_value_q6_of_q3 > part_of_cos_q6:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:

@@ -781,8 +781,7 @@ class ArticulatedRobot6DOF(Mechanism):
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
                 else:
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
-                    ahead_q1 = turned_ahead_q1_for_q3
+                    ahead_q1 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
                     cos_q1 = turned_cos_q1_for_q3
                     sin_q1 = turned_sin_q1_for_q3
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span

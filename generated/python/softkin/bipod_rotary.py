@@ -89,15 +89,15 @@ class Constants(NamedTuple):
     part_of_normal_divisor: float
     twice_outer_arm: float
     outer_arm_squared_times_rounding: float
-    tcp_displacement_minus_displacement: float
     machine_scale_times_plane: float
     inner_arm_times_shortest_link: float
+    machine_scale_squared_times_free_angle: float
+    tcp_displacement_minus_displacement: float
     twice_inner_arm: float
     inner_arm_minus_outer_arm: float
     inner_arm_plus_outer_arm: float
     assembly_sign_by_outer_arm_squared: float
     outer_arm_squared: float
-    machine_scale_squared_times_free_angle: float
     part_of_slope_1_by_x: float
 
 
@@ -288,15 +288,15 @@ class BipodRotary(OffsetKinematics):
         part_of_normal_divisor = 1e-22*outer_arm*outer_arm
         twice_outer_arm = 2.0*outer_arm
         outer_arm_squared_times_rounding = 1e-12*outer_arm*outer_arm
-        tcp_displacement_minus_displacement = tcp_displacement - displacement
         machine_scale_times_plane = 1e-6*machine_scale
         inner_arm_times_shortest_link = 1e-9*inner_arm
+        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
+        tcp_displacement_minus_displacement = tcp_displacement - displacement
         twice_inner_arm = 2.0*inner_arm
         inner_arm_minus_outer_arm = inner_arm - outer_arm
         inner_arm_plus_outer_arm = inner_arm + outer_arm
         assembly_sign_by_outer_arm_squared = assembly_sign/(outer_arm*outer_arm)
         outer_arm_squared = outer_arm*outer_arm
-        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
         part_of_slope_1_by_x = 2.0*tcp_displacement - 2.0*displacement
         return Constants(
             inner_arm=inner_arm, outer_arm=outer_arm, displacement=displacement, tcp_displacement=tcp_displacement,
@@ -307,14 +307,13 @@ class BipodRotary(OffsetKinematics):
             highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, machine_scale=machine_scale,
             assembly_sign=assembly_sign, part_of_normal_divisor=part_of_normal_divisor,
             twice_outer_arm=twice_outer_arm, outer_arm_squared_times_rounding=outer_arm_squared_times_rounding,
-            tcp_displacement_minus_displacement=tcp_displacement_minus_displacement,
             machine_scale_times_plane=machine_scale_times_plane,
-            inner_arm_times_shortest_link=inner_arm_times_shortest_link, twice_inner_arm=twice_inner_arm,
+            inner_arm_times_shortest_link=inner_arm_times_shortest_link,
+            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
+            tcp_displacement_minus_displacement=tcp_displacement_minus_displacement, twice_inner_arm=twice_inner_arm,
             inner_arm_minus_outer_arm=inner_arm_minus_outer_arm, inner_arm_plus_outer_arm=inner_arm_plus_outer_arm,
             assembly_sign_by_outer_arm_squared=assembly_sign_by_outer_arm_squared,
-            outer_arm_squared=outer_arm_squared,
-            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
-            part_of_slope_1_by_x=part_of_slope_1_by_x,
+            outer_arm_squared=outer_arm_squared, part_of_slope_1_by_x=part_of_slope_1_by_x,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:

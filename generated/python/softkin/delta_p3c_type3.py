@@ -124,6 +124,10 @@ class Constants(NamedTuple):
     part_of_normal_divisor: float
     outer_arm_1_squared: float
     outer_arm_1_squared_times_rounding: float
+    inner_arm_1_times_shortest_link: float
+    inner_arm_2_times_shortest_link: float
+    inner_arm_3_times_shortest_link: float
+    part_of_determinant_divisor: float
     inner_arm_1_times_sin_azimuth_1: float
     part_of_pivot_1_y: float
     inner_arm_2_times_sin_azimuth_2: float
@@ -138,15 +142,11 @@ class Constants(NamedTuple):
     part_of_pivot_3_x: float
     part_of_share_2: float
     part_of_share_3: float
-    inner_arm_1_times_shortest_link: float
-    inner_arm_2_times_shortest_link: float
-    inner_arm_3_times_shortest_link: float
     twice_inner_arm_1: float
     twice_inner_arm_2: float
     twice_inner_arm_3: float
     part_of_type2_rods_coplanar: float
     part_of_margin_rods_coplanar: float
-    part_of_determinant_divisor: float
     twice_cos_azimuth_1: float
     twice_sin_azimuth_1: float
     twice_cos_azimuth_2: float
@@ -535,6 +535,10 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_normal_divisor = 1e-22*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1
         outer_arm_1_squared = outer_arm_1*outer_arm_1
         outer_arm_1_squared_times_rounding = 1e-12*outer_arm_1*outer_arm_1
+        inner_arm_1_times_shortest_link = 1e-9*inner_arm_1
+        inner_arm_2_times_shortest_link = 1e-9*inner_arm_2
+        inner_arm_3_times_shortest_link = 1e-9*inner_arm_3
+        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
         inner_arm_1_times_sin_azimuth_1 = inner_arm_1*sin_azimuth_1
         part_of_pivot_1_y = base_radius_1*sin_azimuth_1 - sin_azimuth_1_times_tcp_radius_1
         inner_arm_2_times_sin_azimuth_2 = inner_arm_2*sin_azimuth_2
@@ -550,15 +554,11 @@ class DeltaP3CType3(OffsetKinematics):
         outer_arm_1_squared_times_half = 0.5*outer_arm_1*outer_arm_1
         part_of_share_2 = outer_arm_1_squared_times_half - 0.5*outer_arm_2*outer_arm_2
         part_of_share_3 = outer_arm_1_squared_times_half - 0.5*outer_arm_3*outer_arm_3
-        inner_arm_1_times_shortest_link = 1e-9*inner_arm_1
-        inner_arm_2_times_shortest_link = 1e-9*inner_arm_2
-        inner_arm_3_times_shortest_link = 1e-9*inner_arm_3
         twice_inner_arm_1 = 2.0*inner_arm_1
         twice_inner_arm_2 = 2.0*inner_arm_2
         twice_inner_arm_3 = 2.0*inner_arm_3
         part_of_type2_rods_coplanar = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
         part_of_margin_rods_coplanar = outer_arm_1*outer_arm_2*outer_arm_3
-        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
         twice_cos_azimuth_1 = 2.0*cos_azimuth_1
         twice_sin_azimuth_1 = 2.0*sin_azimuth_1
         twice_cos_azimuth_2 = 2.0*cos_azimuth_2
@@ -593,20 +593,20 @@ class DeltaP3CType3(OffsetKinematics):
             cos_azimuth_3_times_tcp_radius_3=cos_azimuth_3_times_tcp_radius_3,
             part_of_normal_divisor=part_of_normal_divisor, outer_arm_1_squared=outer_arm_1_squared,
             outer_arm_1_squared_times_rounding=outer_arm_1_squared_times_rounding,
+            inner_arm_1_times_shortest_link=inner_arm_1_times_shortest_link,
+            inner_arm_2_times_shortest_link=inner_arm_2_times_shortest_link,
+            inner_arm_3_times_shortest_link=inner_arm_3_times_shortest_link,
+            part_of_determinant_divisor=part_of_determinant_divisor,
             inner_arm_1_times_sin_azimuth_1=inner_arm_1_times_sin_azimuth_1, part_of_pivot_1_y=part_of_pivot_1_y,
             inner_arm_2_times_sin_azimuth_2=inner_arm_2_times_sin_azimuth_2, part_of_pivot_2_y=part_of_pivot_2_y,
             inner_arm_3_times_sin_azimuth_3=inner_arm_3_times_sin_azimuth_3, part_of_pivot_3_y=part_of_pivot_3_y,
             cos_azimuth_1_times_inner_arm_1=cos_azimuth_1_times_inner_arm_1, part_of_pivot_1_x=part_of_pivot_1_x,
             cos_azimuth_2_times_inner_arm_2=cos_azimuth_2_times_inner_arm_2, part_of_pivot_2_x=part_of_pivot_2_x,
             cos_azimuth_3_times_inner_arm_3=cos_azimuth_3_times_inner_arm_3, part_of_pivot_3_x=part_of_pivot_3_x,
-            part_of_share_2=part_of_share_2, part_of_share_3=part_of_share_3,
-            inner_arm_1_times_shortest_link=inner_arm_1_times_shortest_link,
-            inner_arm_2_times_shortest_link=inner_arm_2_times_shortest_link,
-            inner_arm_3_times_shortest_link=inner_arm_3_times_shortest_link, twice_inner_arm_1=twice_inner_arm_1,
+            part_of_share_2=part_of_share_2, part_of_share_3=part_of_share_3, twice_inner_arm_1=twice_inner_arm_1,
             twice_inner_arm_2=twice_inner_arm_2, twice_inner_arm_3=twice_inner_arm_3,
             part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
-            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
-            part_of_determinant_divisor=part_of_determinant_divisor, twice_cos_azimuth_1=twice_cos_azimuth_1,
+            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar, twice_cos_azimuth_1=twice_cos_azimuth_1,
             twice_sin_azimuth_1=twice_sin_azimuth_1, twice_cos_azimuth_2=twice_cos_azimuth_2,
             twice_sin_azimuth_2=twice_sin_azimuth_2, twice_cos_azimuth_3=twice_cos_azimuth_3,
             twice_sin_azimuth_3=twice_sin_azimuth_3,
@@ -881,7 +881,7 @@ class DeltaP3CType3(OffsetKinematics):
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         swing_scale_a1 = effective_a1*twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
-        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
@@ -913,7 +913,7 @@ class DeltaP3CType3(OffsetKinematics):
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         swing_scale_a2 = effective_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
-        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
@@ -944,7 +944,7 @@ class DeltaP3CType3(OffsetKinematics):
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         swing_scale_a3 = effective_a3*twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
-        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
@@ -1469,7 +1469,7 @@ class DeltaP3CType3(OffsetKinematics):
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         swing_scale_a1 = effective_a1*twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
-        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
@@ -1501,7 +1501,7 @@ class DeltaP3CType3(OffsetKinematics):
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         swing_scale_a2 = effective_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
-        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
@@ -1532,7 +1532,7 @@ class DeltaP3CType3(OffsetKinematics):
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         swing_scale_a3 = effective_a3*twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
-        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3

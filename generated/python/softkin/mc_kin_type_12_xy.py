@@ -93,14 +93,15 @@ class Constants(NamedTuple):
     link_length_2_plus_radius_2: float
     link_length_2_minus_radius_2: float
     part_of_along_centres: float
-    part_of_pivot_rear_x: float
-    link_length_2_by_link_length_3: float
-    link_length_3_by_link_length_2: float
-    link_length_2_times_link_length_4: float
-    part_of_branch_w: float
     machine_scale_times_plane: float
     link_length_1_times_shortest_link: float
     link_length_5_times_shortest_link: float
+    link_length_3_by_link_length_2: float
+    machine_scale_squared_times_free_angle: float
+    part_of_pivot_rear_x: float
+    link_length_2_by_link_length_3: float
+    link_length_2_times_link_length_4: float
+    part_of_branch_w: float
     twice_link_length_1: float
     link_length_1_minus_link_length_2: float
     link_length_1_plus_link_length_2: float
@@ -109,7 +110,6 @@ class Constants(NamedTuple):
     link_length_4_plus_link_length_5: float
     part_of_type2_arms_aligned: float
     part_of_margin_arms_aligned: float
-    machine_scale_squared_times_free_angle: float
     part_of_slope_2_by_x: float
     link_length_3_times_2_by_link_length_2: float
     part_of_slope_2_by_a1: float
@@ -332,14 +332,15 @@ class KinType12XY(OffsetKinematics):
         link_length_2_plus_radius_2 = link_length_2 + radius_2
         link_length_2_minus_radius_2 = link_length_2 - radius_2
         part_of_along_centres = link_length_2_minus_radius_2*link_length_2_plus_radius_2
-        part_of_pivot_rear_x = link_length_1*link_length_3/link_length_2
-        link_length_2_by_link_length_3 = link_length_2/link_length_3
-        link_length_3_by_link_length_2 = link_length_3/link_length_2
-        link_length_2_times_link_length_4 = link_length_2*link_length_4
-        part_of_branch_w = link_length_1*(link_length_2 + link_length_3)
         machine_scale_times_plane = 1e-6*machine_scale
         link_length_1_times_shortest_link = 1e-9*link_length_1
         link_length_5_times_shortest_link = 1e-9*link_length_5
+        link_length_3_by_link_length_2 = link_length_3/link_length_2
+        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
+        part_of_pivot_rear_x = link_length_1*link_length_3/link_length_2
+        link_length_2_by_link_length_3 = link_length_2/link_length_3
+        link_length_2_times_link_length_4 = link_length_2*link_length_4
+        part_of_branch_w = link_length_1*(link_length_2 + link_length_3)
         twice_link_length_1 = 2.0*link_length_1
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
@@ -348,7 +349,6 @@ class KinType12XY(OffsetKinematics):
         link_length_4_plus_link_length_5 = link_length_4 + link_length_5
         part_of_type2_arms_aligned = assembly_sign*link_length_3/(link_length_4*link_length_2*link_length_2)
         part_of_margin_arms_aligned = link_length_3/(link_length_4*link_length_2*link_length_2)
-        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
         link_length_3_by_link_length_2_plus_one = 1.0 + link_length_3_by_link_length_2
         part_of_slope_2_by_x = link_length_1*link_length_3_by_link_length_2_plus_one
         link_length_3_times_2_by_link_length_2 = 2.0*link_length_3/link_length_2
@@ -365,12 +365,13 @@ class KinType12XY(OffsetKinematics):
             link_length_2_squared_times_rounding=link_length_2_squared_times_rounding,
             link_length_2_plus_radius_2=link_length_2_plus_radius_2,
             link_length_2_minus_radius_2=link_length_2_minus_radius_2, part_of_along_centres=part_of_along_centres,
-            part_of_pivot_rear_x=part_of_pivot_rear_x, link_length_2_by_link_length_3=link_length_2_by_link_length_3,
-            link_length_3_by_link_length_2=link_length_3_by_link_length_2,
-            link_length_2_times_link_length_4=link_length_2_times_link_length_4, part_of_branch_w=part_of_branch_w,
             machine_scale_times_plane=machine_scale_times_plane,
             link_length_1_times_shortest_link=link_length_1_times_shortest_link,
             link_length_5_times_shortest_link=link_length_5_times_shortest_link,
+            link_length_3_by_link_length_2=link_length_3_by_link_length_2,
+            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
+            part_of_pivot_rear_x=part_of_pivot_rear_x, link_length_2_by_link_length_3=link_length_2_by_link_length_3,
+            link_length_2_times_link_length_4=link_length_2_times_link_length_4, part_of_branch_w=part_of_branch_w,
             twice_link_length_1=twice_link_length_1,
             link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
             link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
@@ -378,9 +379,7 @@ class KinType12XY(OffsetKinematics):
             link_length_5_minus_link_length_4=link_length_5_minus_link_length_4,
             link_length_4_plus_link_length_5=link_length_4_plus_link_length_5,
             part_of_type2_arms_aligned=part_of_type2_arms_aligned,
-            part_of_margin_arms_aligned=part_of_margin_arms_aligned,
-            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
-            part_of_slope_2_by_x=part_of_slope_2_by_x,
+            part_of_margin_arms_aligned=part_of_margin_arms_aligned, part_of_slope_2_by_x=part_of_slope_2_by_x,
             link_length_3_times_2_by_link_length_2=link_length_3_times_2_by_link_length_2,
             part_of_slope_2_by_a1=part_of_slope_2_by_a1,
         )

@@ -92,9 +92,9 @@ class Constants(NamedTuple):
     part_of_along_centres: float
     machine_scale_times_plane: float
     arm_length_2_squared_times_rounding: float
+    machine_scale_squared_times_free_angle: float
     part_of_type2_arms_aligned: float
     arm_length_1_times_arm_length_2: float
-    machine_scale_squared_times_free_angle: float
 
 
 class P2XType1(OffsetKinematics):
@@ -295,9 +295,9 @@ class P2XType1(OffsetKinematics):
         part_of_along_centres = arm_length_1_minus_arm_length_2*arm_length_1_plus_arm_length_2
         machine_scale_times_plane = 1e-6*machine_scale
         arm_length_2_squared_times_rounding = 1e-12*arm_length_2*arm_length_2
+        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
         part_of_type2_arms_aligned = assembly_sign/(arm_length_1*arm_length_2)
         arm_length_1_times_arm_length_2 = arm_length_1*arm_length_2
-        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
         return Constants(
             arm_length_1=arm_length_1, arm_length_2=arm_length_2, rail_y_1=rail_y_1, rail_y_2=rail_y_2,
             tcp_offset_1=tcp_offset_1, tcp_offset_2=tcp_offset_2, offset_a1=offset_a1, offset_a2=offset_a2,
@@ -312,9 +312,9 @@ class P2XType1(OffsetKinematics):
             arm_length_1_minus_arm_length_2=arm_length_1_minus_arm_length_2,
             part_of_along_centres=part_of_along_centres, machine_scale_times_plane=machine_scale_times_plane,
             arm_length_2_squared_times_rounding=arm_length_2_squared_times_rounding,
+            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
             part_of_type2_arms_aligned=part_of_type2_arms_aligned,
             arm_length_1_times_arm_length_2=arm_length_1_times_arm_length_2,
-            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -611,9 +611,9 @@ class P2XType1(OffsetKinematics):
         slope_1_by_y_times_slope_2_by_x = slope_1_by_y*slope_2_by_x
         slope_1_by_x = 2.0*(x - pivot_1_x)
         slope_2_by_y = 2.0*(y - rail_y_2)
-        slope_1_by_x_times_slope_2_by_y = -slope_1_by_x*slope_2_by_y
+        slope_1_by_x_times_slope_2_by_y = slope_1_by_x*slope_2_by_y
         # of the closure by the position: zero in a type 2 singularity
-        determinant = -slope_1_by_x_times_slope_2_by_y - slope_1_by_y_times_slope_2_by_x
+        determinant = slope_1_by_x_times_slope_2_by_y - slope_1_by_y_times_slope_2_by_x
         # nothing controls the plate
         if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
@@ -621,7 +621,7 @@ class P2XType1(OffsetKinematics):
         part = one_by_determinant_divisor*slope_1_by_x*slope_2_by_x
         return (
             (
-                -one_by_determinant_divisor*slope_1_by_x_times_slope_2_by_y,
+                one_by_determinant_divisor*slope_1_by_x_times_slope_2_by_y,
                 -one_by_determinant_divisor*slope_1_by_y_times_slope_2_by_x,
             ),
             (-part, part),

@@ -78,8 +78,8 @@ class Constants(NamedTuple):
     arm_length_squared_times_rounding: float
     machine_scale_times_plane: float
     part_of_constant: float
-    assembly_sign_by_arm_length: float
     machine_scale_squared_times_free_angle: float
+    assembly_sign_by_arm_length: float
 
 
 class P2XType2(OffsetKinematics):
@@ -237,8 +237,8 @@ class P2XType2(OffsetKinematics):
         arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
         machine_scale_times_plane = 1e-6*machine_scale
         part_of_constant = 2.5e-13*arm_length*arm_length
-        assembly_sign_by_arm_length = assembly_sign/arm_length
         machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
+        assembly_sign_by_arm_length = assembly_sign/arm_length
         return Constants(
             arm_length=arm_length, tcp_link_distance=tcp_link_distance, offset_a1=offset_a1, offset_a2=offset_a2,
             tcp_above=tcp_above, min_type2_margin=min_type2_margin, check_limits=check_limits,
@@ -248,8 +248,8 @@ class P2XType2(OffsetKinematics):
             assembly_sign=assembly_sign, span_1_x=span_1_x, machine_scale_times_rounding=machine_scale_times_rounding,
             arm_length_squared_times_rounding=arm_length_squared_times_rounding,
             machine_scale_times_plane=machine_scale_times_plane, part_of_constant=part_of_constant,
-            assembly_sign_by_arm_length=assembly_sign_by_arm_length,
             machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
+            assembly_sign_by_arm_length=assembly_sign_by_arm_length,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:

@@ -104,13 +104,13 @@ class Constants(NamedTuple):
     machine_scale_squared_times_plane: float
     machine_scale_times_rounding: float
     swing_scale_q3_2_squared_times_rounding: float
+    a2_times_shortest_link: float
     a2_squared_plus_effective_q3_2_squared: float
     twice_d3: float
     a2_plus_effective_q3_2: float
     a2_minus_effective_q3_2: float
     d4_by_effective_q3_2: float
     a3_by_effective_q3_2: float
-    a2_times_shortest_link: float
     twice_a2: float
 
 
@@ -328,13 +328,13 @@ class PosRRR(OffsetKinematics):
         machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
         machine_scale_times_rounding = 1e-12*machine_scale
         swing_scale_q3_2_squared_times_rounding = 1e-12*swing_scale_q3_2*swing_scale_q3_2
+        a2_times_shortest_link = 1e-9*a2
         a2_squared_plus_effective_q3_2_squared = a2_squared + effective_q3_2*effective_q3_2
         twice_d3 = 2.0*d3
         a2_plus_effective_q3_2 = a2 + effective_q3_2
         a2_minus_effective_q3_2 = a2 - effective_q3_2
         d4_by_effective_q3_2 = d4/effective_q3_2
         a3_by_effective_q3_2 = a3/effective_q3_2
-        a2_times_shortest_link = 1e-9*a2
         twice_a2 = 2.0*a2
         return Constants(
             d1=d1, a1=a1, a2=a2, d3=d3, a3=a3, d4=d4, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
@@ -350,10 +350,10 @@ class PosRRR(OffsetKinematics):
             machine_scale_squared_times_plane=machine_scale_squared_times_plane,
             machine_scale_times_rounding=machine_scale_times_rounding,
             swing_scale_q3_2_squared_times_rounding=swing_scale_q3_2_squared_times_rounding,
+            a2_times_shortest_link=a2_times_shortest_link,
             a2_squared_plus_effective_q3_2_squared=a2_squared_plus_effective_q3_2_squared, twice_d3=twice_d3,
             a2_plus_effective_q3_2=a2_plus_effective_q3_2, a2_minus_effective_q3_2=a2_minus_effective_q3_2,
-            d4_by_effective_q3_2=d4_by_effective_q3_2, a3_by_effective_q3_2=a3_by_effective_q3_2,
-            a2_times_shortest_link=a2_times_shortest_link, twice_a2=twice_a2,
+            d4_by_effective_q3_2=d4_by_effective_q3_2, a3_by_effective_q3_2=a3_by_effective_q3_2, twice_a2=twice_a2,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -538,8 +538,7 @@ class PosRRR(OffsetKinematics):
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
                 else:
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
-                    ahead_q1 = turned_ahead_q1_for_q3
+                    ahead_q1 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
                     cos_q1 = turned_cos_q1_for_q3
                     sin_q1 = turned_sin_q1_for_q3
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
@@ -896,8 +895,7 @@ class PosRRR(OffsetKinematics):
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
                 else:
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - tool_z*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
-                    ahead_q1 = turned_ahead_q1_for_q3
+                    ahead_q1 = (ahead_q1_before_q1_for_q3 - tool_z*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
                     cos_q1 = turned_cos_q1_for_q3
                     sin_q1 = turned_sin_q1_for_q3
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span

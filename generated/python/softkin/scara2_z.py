@@ -88,9 +88,9 @@ class Constants(NamedTuple):
     scale_a2: float
     scale_a2_squared_times_rounding: float
     machine_scale_times_free_angle: float
+    arm_length_1_times_shortest_link: float
     arm_length_1_plus_arm_length_2: float
     arm_length_1_minus_arm_length_2: float
-    arm_length_1_times_shortest_link: float
     twice_arm_length_1: float
 
 
@@ -267,9 +267,9 @@ class Scara2Z(OffsetKinematics):
         scale_a2 = 2.0*arm_length_1*arm_length_2  # a2: law of cosines in the x² + y² equation
         scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
         machine_scale_times_free_angle = 1e-11*machine_scale
+        arm_length_1_times_shortest_link = 1e-9*arm_length_1
         arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
-        arm_length_1_times_shortest_link = 1e-9*arm_length_1
         twice_arm_length_1 = 2.0*arm_length_1
         return Constants(
             arm_length_1=arm_length_1, arm_length_2=arm_length_2, offset_a1=offset_a1, offset_a2=offset_a2,
@@ -281,9 +281,9 @@ class Scara2Z(OffsetKinematics):
             machine_scale=machine_scale, scale_a2=scale_a2,
             scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
+            arm_length_1_times_shortest_link=arm_length_1_times_shortest_link,
             arm_length_1_plus_arm_length_2=arm_length_1_plus_arm_length_2,
-            arm_length_1_minus_arm_length_2=arm_length_1_minus_arm_length_2,
-            arm_length_1_times_shortest_link=arm_length_1_times_shortest_link, twice_arm_length_1=twice_arm_length_1,
+            arm_length_1_minus_arm_length_2=arm_length_1_minus_arm_length_2, twice_arm_length_1=twice_arm_length_1,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:

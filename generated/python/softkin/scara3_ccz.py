@@ -89,9 +89,9 @@ class Constants(NamedTuple):
     scale_a2: float
     scale_a2_squared_times_rounding: float
     machine_scale_times_free_angle: float
+    link_length_1_times_shortest_link: float
     link_length_1_plus_link_length_2: float
     link_length_1_minus_link_length_2: float
-    link_length_1_times_shortest_link: float
     twice_link_length_1: float
 
 
@@ -268,9 +268,9 @@ class Scara3CCZ(OffsetKinematics):
         scale_a2 = 2.0*link_length_1*link_length_2  # a2: law of cosines in the x² + y² equation
         scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
         machine_scale_times_free_angle = 1e-11*machine_scale
+        link_length_1_times_shortest_link = 1e-9*link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        link_length_1_times_shortest_link = 1e-9*link_length_1
         twice_link_length_1 = 2.0*link_length_1
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, offset_a1=offset_a1, offset_a2=offset_a2,
@@ -282,9 +282,9 @@ class Scara3CCZ(OffsetKinematics):
             machine_scale=machine_scale, scale_a2=scale_a2,
             scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
+            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
             link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
             link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
-            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
             twice_link_length_1=twice_link_length_1,
         )
 

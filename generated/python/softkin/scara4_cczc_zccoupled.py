@@ -107,13 +107,13 @@ class Constants(NamedTuple):
     machine_scale: float
     scale_a2: float
     part_of_constant: float
-    part_of_z: float
     scale_a2_squared_times_rounding: float
     machine_scale_times_free_angle: float
-    link_length_1_plus_link_length_2: float
-    link_length_1_minus_link_length_2: float
     part_of_constant_2: float
     link_length_1_times_shortest_link: float
+    part_of_z: float
+    link_length_1_plus_link_length_2: float
+    link_length_1_minus_link_length_2: float
     twice_link_length_1: float
 
 
@@ -377,13 +377,13 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         machine_scale = link_length_1 + link_length_2  # a length of the machine
         scale_a2 = 2.0*link_length_1*link_length_2  # a2: law of cosines in the x² + y² equation
         part_of_constant = -1.0 if flange_down else 1.0
-        part_of_z = (gear_coupling - pitch_zc/360.0)/DEGREE
         scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
         machine_scale_times_free_angle = 1e-11*machine_scale
+        part_of_constant_2 = gear_coupling/DEGREE - pitch_zc/(360.0*DEGREE)
+        link_length_1_times_shortest_link = 1e-9*link_length_1
+        part_of_z = (gear_coupling - pitch_zc/360.0)/DEGREE
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        part_of_constant_2 = pitch_zc/(360.0*DEGREE) - gear_coupling/DEGREE
-        link_length_1_times_shortest_link = 1e-9*link_length_1
         twice_link_length_1 = 2.0*link_length_1
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, pitch_zc=pitch_zc, gear_coupling=gear_coupling,
@@ -395,13 +395,11 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
             lower_a4=effective_lower_a4, upper_a4=effective_upper_a4, unlimited_a4=unlimited_a4, lowest_a4=lowest_a4,
             highest_a4=highest_a4, single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale, scale_a2=scale_a2,
-            part_of_constant=part_of_constant, part_of_z=part_of_z,
-            scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
-            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            part_of_constant=part_of_constant, scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
+            machine_scale_times_free_angle=machine_scale_times_free_angle, part_of_constant_2=part_of_constant_2,
+            link_length_1_times_shortest_link=link_length_1_times_shortest_link, part_of_z=part_of_z,
             link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
             link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
-            part_of_constant_2=part_of_constant_2,
-            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
             twice_link_length_1=twice_link_length_1,
         )
 
@@ -666,7 +664,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         return (
             (-link_length_2_times_sin_a12 - link_length_1*sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
             (cos_a12_times_link_length_2 + link_length_1*cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
-            (0.0, 0.0, 1.0, -part_of_constant_2),
+            (0.0, 0.0, 1.0, part_of_constant_2),
             (1.0, 1.0, 0.0, 1.0),
         )
 
@@ -706,7 +704,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         return (
             (-link_length_2_times_sin_a12 - link_length_1*sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
             (cos_a12_times_link_length_2 + link_length_1*cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
-            (0.0, 0.0, 1.0, -part_of_constant_2),
+            (0.0, 0.0, 1.0, part_of_constant_2),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 1.0, 0.0, 1.0),

@@ -106,9 +106,9 @@ class Constants(NamedTuple):
     scale_a3: float
     scale_a3_squared_times_rounding: float
     machine_scale_times_free_angle: float
+    link_length_1_times_shortest_link: float
     link_length_1_plus_link_length_2: float
     link_length_1_minus_link_length_2: float
-    link_length_1_times_shortest_link: float
     twice_link_length_1: float
 
 
@@ -328,9 +328,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         scale_a3 = 2.0*link_length_1*link_length_2  # a3: law of cosines in the x² + y² equation
         scale_a3_squared_times_rounding = 1e-12*scale_a3*scale_a3
         machine_scale_times_free_angle = 1e-11*machine_scale
+        link_length_1_times_shortest_link = 1e-9*link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        link_length_1_times_shortest_link = 1e-9*link_length_1
         twice_link_length_1 = 2.0*link_length_1
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, link_length_3=link_length_3,
@@ -344,9 +344,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             highest_a4=highest_a4, single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale, scale_a3=scale_a3,
             scale_a3_squared_times_rounding=scale_a3_squared_times_rounding,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
+            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
             link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
             link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
-            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
             twice_link_length_1=twice_link_length_1,
         )
 

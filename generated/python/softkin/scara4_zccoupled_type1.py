@@ -99,12 +99,12 @@ class Constants(NamedTuple):
     mid_a4: float
     machine_scale: float
     scale_a2: float
-    part_of_z: float
     scale_a2_squared_times_rounding: float
     machine_scale_times_free_angle: float
+    part_of_z: float
+    link_length_1_times_shortest_link: float
     link_length_1_plus_link_length_2: float
     link_length_1_minus_link_length_2: float
-    link_length_1_times_shortest_link: float
     twice_link_length_1: float
 
 
@@ -341,12 +341,12 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         machine_scale = link_length_1 + link_length_2  # a length of the machine
         scale_a2 = 2.0*link_length_1*link_length_2  # a2: law of cosines in the x² + y² equation
-        part_of_z = pitch_zc/(360.0*DEGREE)
         scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
         machine_scale_times_free_angle = 1e-11*machine_scale
+        part_of_z = pitch_zc/(360.0*DEGREE)
+        link_length_1_times_shortest_link = 1e-9*link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        link_length_1_times_shortest_link = 1e-9*link_length_1
         twice_link_length_1 = 2.0*link_length_1
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, pitch_zc=pitch_zc, offset_a1=offset_a1,
@@ -357,12 +357,12 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
             single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3, upper_a3=effective_upper_a3,
             unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3, lower_a4=effective_lower_a4,
             upper_a4=effective_upper_a4, unlimited_a4=unlimited_a4, lowest_a4=lowest_a4, highest_a4=highest_a4,
-            single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale, scale_a2=scale_a2, part_of_z=part_of_z,
+            single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale, scale_a2=scale_a2,
             scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
-            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            machine_scale_times_free_angle=machine_scale_times_free_angle, part_of_z=part_of_z,
+            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
             link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
             link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
-            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
             twice_link_length_1=twice_link_length_1,
         )
 

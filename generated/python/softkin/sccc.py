@@ -116,15 +116,15 @@ class Constants(NamedTuple):
     machine_scale_times_plane: float
     scale_a2_squared_times_rounding: float
     machine_scale_times_free_angle: float
+    coupling_12_plus_coupling_13_plus_one: float
+    coupling_23_plus_one: float
+    link_length_1_times_shortest_link: float
     link_length_1_plus_link_length_2: float
     link_length_1_minus_link_length_2: float
     part_of_open_a2: float
-    coupling_12_plus_coupling_13_plus_one: float
-    coupling_23_plus_one: float
     part_of_constant: float
     part_of_constant_2: float
     part_of_constant_3: float
-    link_length_1_times_shortest_link: float
     twice_link_length_1: float
 
 
@@ -399,15 +399,15 @@ class SCCC(OffsetKinematics, TwistChoice):
         machine_scale_times_plane = 1e-6*machine_scale
         scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
         machine_scale_times_free_angle = 1e-11*machine_scale
+        coupling_12_plus_coupling_13_plus_one = 1.0 + coupling_12 + coupling_13
+        coupling_23_plus_one = 1.0 + coupling_23
+        link_length_1_times_shortest_link = 1e-9*link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         part_of_open_a2 = coupling_12/DEGREE
-        coupling_12_plus_coupling_13_plus_one = 1.0 + coupling_12 + coupling_13
-        coupling_23_plus_one = 1.0 + coupling_23
         part_of_constant = link_length_3 + (coupling_12 + coupling_13)*link_length_3
         part_of_constant_2 = link_length_2 + coupling_12*link_length_2
         part_of_constant_3 = link_length_3 + coupling_23*link_length_3
-        link_length_1_times_shortest_link = 1e-9*link_length_1
         twice_link_length_1 = 2.0*link_length_1
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, link_length_3=link_length_3,
@@ -425,13 +425,13 @@ class SCCC(OffsetKinematics, TwistChoice):
             machine_scale_times_plane=machine_scale_times_plane,
             scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
+            coupling_12_plus_coupling_13_plus_one=coupling_12_plus_coupling_13_plus_one,
+            coupling_23_plus_one=coupling_23_plus_one,
+            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
             link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
             link_length_1_minus_link_length_2=link_length_1_minus_link_length_2, part_of_open_a2=part_of_open_a2,
-            coupling_12_plus_coupling_13_plus_one=coupling_12_plus_coupling_13_plus_one,
-            coupling_23_plus_one=coupling_23_plus_one, part_of_constant=part_of_constant,
-            part_of_constant_2=part_of_constant_2, part_of_constant_3=part_of_constant_3,
-            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
-            twice_link_length_1=twice_link_length_1,
+            part_of_constant=part_of_constant, part_of_constant_2=part_of_constant_2,
+            part_of_constant_3=part_of_constant_3, twice_link_length_1=twice_link_length_1,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -587,8 +587,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
-            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + free_a2/DEGREE  # A2: where its turn is open
-            near_a2 = open_a2
+            near_a2 = mid_a2 if single_a2 else part_of_axis_a2 + free_a2/DEGREE
         axis_a2 = part_of_axis_a2 + angle_a2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
@@ -602,12 +601,11 @@ class SCCC(OffsetKinematics, TwistChoice):
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             # A3: where its turn is open
             if single_a3:
-                open_a3 = mid_a3
+                near_a3 = mid_a3
             else:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                open_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE
-            near_a3 = open_a3
+                near_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3 = offset_a3 + (angle_heading + part_of_axis_a3 - angle_a1 - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
@@ -946,8 +944,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2)
         else:
             free_a2 = ref_motor_a2 + coupling_12*free_a1
-            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + free_a2/DEGREE  # A2: where its turn is open
-            near_a2 = open_a2
+            near_a2 = mid_a2 if single_a2 else part_of_axis_a2 + free_a2/DEGREE
         axis_a2 = part_of_axis_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)

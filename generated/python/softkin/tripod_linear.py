@@ -97,6 +97,7 @@ class Constants(NamedTuple):
     part_of_normal_divisor: float
     arm_length_squared: float
     arm_length_squared_times_rounding: float
+    part_of_determinant_divisor: float
     part_of_pivot_2_y: float
     part_of_pivot_2_y_2: float
     inner_radius_minus_outer_radius: float
@@ -116,7 +117,6 @@ class Constants(NamedTuple):
     part_of_type2_rods_coplanar: float
     root_of_3_times_half_by_arm_length: float
     part_of_margin_rods_coplanar: float
-    part_of_determinant_divisor: float
     twice_sin_rail_angle: float
     part_of_slope_1_by_x: float
 
@@ -358,6 +358,7 @@ class TripodLinear(OffsetKinematics):
         part_of_normal_divisor = 1e-22*arm_length*arm_length*arm_length*arm_length
         arm_length_squared = arm_length*arm_length
         arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
+        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
         root_of_3 = root(3.0)
         part_of_pivot_2_y = 0.5*root_of_3*sin_rail_angle
         part_of_pivot_2_y_2 = 0.5*inner_radius*root_of_3 - 0.5*outer_radius*root_of_3
@@ -378,7 +379,6 @@ class TripodLinear(OffsetKinematics):
         part_of_type2_rods_coplanar = assembly_sign/(arm_length*arm_length*arm_length)
         root_of_3_times_half_by_arm_length = 0.5*root_of_3/arm_length
         part_of_margin_rods_coplanar = arm_length*arm_length*arm_length
-        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
         twice_sin_rail_angle = 2.0*sin_rail_angle
         part_of_slope_1_by_x = 2.0*inner_radius - 2.0*outer_radius
         return Constants(
@@ -392,7 +392,8 @@ class TripodLinear(OffsetKinematics):
             machine_scale=machine_scale, tie=tie, sin_rail_angle=sin_rail_angle, cos_rail_angle=cos_rail_angle,
             assembly_sign=assembly_sign, sin_max_angle_ball_joint=sin_max_angle_ball_joint,
             part_of_normal_divisor=part_of_normal_divisor, arm_length_squared=arm_length_squared,
-            arm_length_squared_times_rounding=arm_length_squared_times_rounding, part_of_pivot_2_y=part_of_pivot_2_y,
+            arm_length_squared_times_rounding=arm_length_squared_times_rounding,
+            part_of_determinant_divisor=part_of_determinant_divisor, part_of_pivot_2_y=part_of_pivot_2_y,
             part_of_pivot_2_y_2=part_of_pivot_2_y_2, inner_radius_minus_outer_radius=inner_radius_minus_outer_radius,
             half_sin_rail_angle=half_sin_rail_angle, part_of_pivot_2_x=part_of_pivot_2_x,
             sin_rail_angle_times_root_of_3=sin_rail_angle_times_root_of_3, twice_cos_rail_angle=twice_cos_rail_angle,
@@ -404,8 +405,7 @@ class TripodLinear(OffsetKinematics):
             sin_rail_angle_squared_times_1_by_4=sin_rail_angle_squared_times_1_by_4,
             part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
             root_of_3_times_half_by_arm_length=root_of_3_times_half_by_arm_length,
-            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
-            part_of_determinant_divisor=part_of_determinant_divisor, twice_sin_rail_angle=twice_sin_rail_angle,
+            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar, twice_sin_rail_angle=twice_sin_rail_angle,
             part_of_slope_1_by_x=part_of_slope_1_by_x,
         )
 
@@ -606,57 +606,57 @@ class TripodLinear(OffsetKinematics):
         z_minus_cos_rail_angle_squared_times_z = z - z*cos_rail_angle_squared
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z
-            - (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x - y*y
+            arm_length_squared + span_1_x*(span_1_x*sin_rail_angle_squared - span_1_x)
+            + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z - y*y
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    y*y + (z_minus_cos_rail_angle_squared_times_z - part_of_root_square_a1*span_1_x)*z
-                    - span_1_x*(span_1_x*sin_rail_angle_squared - span_1_x)
+                    (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x + y*y
+                    + (z_minus_cos_rail_angle_squared_times_z - part_of_root_square_a1*span_1_x)*z
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y_2  # rod 2
         part_of_root_square_a2_3 = (
-            -z_minus_cos_rail_angle_squared_times_z - span_2_x*cos_rail_angle_times_sin_rail_angle
+            z_minus_cos_rail_angle_squared_times_z + span_2_x*cos_rail_angle_times_sin_rail_angle
         )
-        part_of_root_square_a2_4 = span_2_x*sin_rail_angle_squared_times_1_by_4 - span_2_x
+        part_of_root_square_a2_4 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + (part_of_root_square_a2_3 + part_of_root_square_a2*span_2_y)*z
-            - (part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
-            - (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
+            arm_length_squared + (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_2_y)*span_2_x
+            + span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4 - span_2_y)
+            + (part_of_root_square_a2*span_2_y - part_of_root_square_a2_3)*z
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (-part_of_root_square_a2_3 - part_of_root_square_a2*span_2_y)*z
-                    - (part_of_root_square_a2_4 - part_of_root_square_a2_2*span_2_y)*span_2_x
-                    - span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4 - span_2_y)
+                    (part_of_root_square_a2_4 + part_of_root_square_a2_2*span_2_y)*span_2_x
+                    + (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
+                    + (part_of_root_square_a2_3 - part_of_root_square_a2*span_2_y)*z
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_3_y = part_of_pivot_2_y_2 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
-            + (part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*z
-            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
+            arm_length_squared + (part_of_root_square_a2_2*span_3_y - part_of_root_square_a2_4)*span_2_x
+            + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
+            + (-part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*z
         )
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (span_3_y - span_3_y*sin_rail_angle_squared_times_3_by_4)*span_3_y
-                    + (part_of_root_square_a2*span_3_y - part_of_root_square_a2_3)*z
-                    - (part_of_root_square_a2_4 + part_of_root_square_a2_2*span_3_y)*span_2_x
+                    (part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
+                    + (span_3_y - span_3_y*sin_rail_angle_squared_times_3_by_4)*span_3_y
+                    + (part_of_root_square_a2_3 + part_of_root_square_a2*span_3_y)*z
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
@@ -1001,20 +1001,21 @@ class TripodLinear(OffsetKinematics):
             (pivot_3_x - x)*sin_rail_angle + (-0.5*part_of_slope_3_by_y - y)*sin_rail_angle_times_root_of_3
             + (z - pivot_3_z)*twice_cos_rail_angle
         )
-        part_3 = one_by_determinant_divisor*slope_3_by_a3
+        part_3 = -one_by_determinant_divisor*slope_3_by_a3
         return (
             (
-                part*part_of_determinant, (slope_1_by_z*slope_3_by_y - slope_1_by_y*slope_3_by_z)*part_2,
-                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
+                part*part_of_determinant,
+                (slope_1_by_z*slope_3_by_y - slope_1_by_y*slope_3_by_z)*part_2,
+                part_3*(slope_1_by_y*slope_2_by_z - slope_1_by_z*slope_2_by_y),
             ),
             (
                 part*part_of_determinant_2,
                 part_2*(slope_1_by_x*slope_3_by_z - slope_1_by_z*slope_3_by_x),
-                part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
+                -part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
             ),
             (
                 part*part_of_determinant_3, (slope_1_by_y*slope_3_by_x - slope_1_by_x*slope_3_by_y)*part_2,
-                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*part_3,
+                -(slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*part_3,
             ),
         )
 
@@ -1070,7 +1071,7 @@ class TripodLinear(OffsetKinematics):
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
             arm_length_squared + flange_z*(part_of_root_square_a1*span_1_x - part_of_root_square_a1_2)
-            - flange_y*flange_y - (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x
+            + span_1_x*(span_1_x*sin_rail_angle_squared - span_1_x) - flange_y*flange_y
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding):
@@ -1078,46 +1079,46 @@ class TripodLinear(OffsetKinematics):
                 arm_length
                 - root(
                     flange_y*flange_y + (part_of_root_square_a1_2 - part_of_root_square_a1*span_1_x)*flange_z
-                    - span_1_x*(span_1_x*sin_rail_angle_squared - span_1_x)
+                    + (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_x = flange_x - part_of_pivot_2_x  # rod 2
         span_2_y = flange_y - part_of_pivot_2_y_2  # rod 2
-        part_of_root_square_a2_3 = -part_of_root_square_a1_2 - span_2_x*cos_rail_angle_times_sin_rail_angle
-        part_of_root_square_a2_4 = span_2_x*sin_rail_angle_squared_times_1_by_4 - span_2_x
+        part_of_root_square_a2_3 = part_of_root_square_a1_2 + span_2_x*cos_rail_angle_times_sin_rail_angle
+        part_of_root_square_a2_4 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + flange_z*(part_of_root_square_a2_3 + part_of_root_square_a2*span_2_y)
-            - (part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
-            - (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
+            arm_length_squared + flange_z*(part_of_root_square_a2*span_2_y - part_of_root_square_a2_3)
+            + (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_2_y)*span_2_x
+            + span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4 - span_2_y)
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (-part_of_root_square_a2_3 - part_of_root_square_a2*span_2_y)*flange_z
-                    - (part_of_root_square_a2_4 - part_of_root_square_a2_2*span_2_y)*span_2_x
-                    - span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4 - span_2_y)
+                    (part_of_root_square_a2_3 - part_of_root_square_a2*span_2_y)*flange_z
+                    + (part_of_root_square_a2_4 + part_of_root_square_a2_2*span_2_y)*span_2_x
+                    + (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_3_y = flange_y + part_of_pivot_2_y_2  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + (part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*flange_z
+            arm_length_squared + (-part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*flange_z
+            + (part_of_root_square_a2_2*span_3_y - part_of_root_square_a2_4)*span_2_x
             + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
-            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
         )
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    flange_z*(part_of_root_square_a2*span_3_y - part_of_root_square_a2_3)
+                    flange_z*(part_of_root_square_a2_3 + part_of_root_square_a2*span_3_y)
+                    + (part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
                     + (span_3_y - span_3_y*sin_rail_angle_squared_times_3_by_4)*span_3_y
-                    - (part_of_root_square_a2_4 + part_of_root_square_a2_2*span_3_y)*span_2_x
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)

@@ -113,9 +113,9 @@ class Constants(NamedTuple):
     apart_2_x_times_normal_z: float
     arm_length_squared: float
     arm_length_squared_times_rounding: float
+    part_of_determinant_divisor: float
     part_of_share_2: float
     part_of_share_3: float
-    one_by_arm_length: float
     part_of_span_1_x: float
     part_of_span_1_y: float
     part_of_span_2_x: float
@@ -124,13 +124,13 @@ class Constants(NamedTuple):
     part_of_span_3_y: float
     part_of_type2_rods_coplanar: float
     part_of_margin_rods_coplanar: float
-    part_of_determinant_divisor: float
     part_of_slope_1_by_x: float
     part_of_slope_1_by_y: float
     part_of_slope_2_by_x: float
     part_of_slope_2_by_y: float
     part_of_slope_3_by_x: float
     part_of_slope_3_by_y: float
+    one_by_arm_length: float
 
 
 class TripodP3Z(OffsetKinematics):
@@ -450,9 +450,9 @@ class TripodP3Z(OffsetKinematics):
         apart_2_x_times_normal_z = apart_2_x*normal_z
         arm_length_squared = arm_length*arm_length
         arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
+        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
         part_of_share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y
         part_of_share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y
-        one_by_arm_length = 1.0/arm_length
         part_of_span_1_x_2 = sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)
         part_of_span_1_x = rail_x_1 - rail_x_1*tcp_displacement/part_of_span_1_x_2
         part_of_span_1_y = rail_y_1 - rail_y_1*tcp_displacement/part_of_span_1_x_2
@@ -464,7 +464,6 @@ class TripodP3Z(OffsetKinematics):
         part_of_span_3_y = rail_y_3 - rail_y_3*tcp_displacement/part_of_span_3_x_2
         part_of_type2_rods_coplanar = assembly_sign/(arm_length*arm_length*arm_length)
         part_of_margin_rods_coplanar = arm_length*arm_length*arm_length
-        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
         part_of_slope_1_by_x_2 = tcp_displacement/part_of_span_1_x_2 - 1.0
         part_of_slope_1_by_x = -part_of_slope_1_by_x_2*rail_x_1
         part_of_slope_1_by_y = -part_of_slope_1_by_x_2*rail_y_1
@@ -474,6 +473,7 @@ class TripodP3Z(OffsetKinematics):
         part_of_slope_3_by_x_2 = tcp_displacement/part_of_span_3_x_2 - 1.0
         part_of_slope_3_by_x = -part_of_slope_3_by_x_2*rail_x_3
         part_of_slope_3_by_y = -part_of_slope_3_by_x_2*rail_y_3
+        one_by_arm_length = 1.0/arm_length
         return Constants(
             arm_length=arm_length, tcp_displacement=tcp_displacement, rail_x_1=rail_x_1, rail_y_1=rail_y_1,
             rail_x_2=rail_x_2, rail_y_2=rail_y_2, rail_x_3=rail_x_3, rail_y_3=rail_y_3, offset_a1=offset_a1,
@@ -489,16 +489,15 @@ class TripodP3Z(OffsetKinematics):
             part_of_normal_divisor=part_of_normal_divisor, apart_3_y_times_normal_z=apart_3_y_times_normal_z,
             apart_2_y_times_normal_z=apart_2_y_times_normal_z, apart_3_x_times_normal_z=apart_3_x_times_normal_z,
             apart_2_x_times_normal_z=apart_2_x_times_normal_z, arm_length_squared=arm_length_squared,
-            arm_length_squared_times_rounding=arm_length_squared_times_rounding, part_of_share_2=part_of_share_2,
-            part_of_share_3=part_of_share_3, one_by_arm_length=one_by_arm_length, part_of_span_1_x=part_of_span_1_x,
-            part_of_span_1_y=part_of_span_1_y, part_of_span_2_x=part_of_span_2_x, part_of_span_2_y=part_of_span_2_y,
-            part_of_span_3_x=part_of_span_3_x, part_of_span_3_y=part_of_span_3_y,
-            part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
-            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
-            part_of_determinant_divisor=part_of_determinant_divisor, part_of_slope_1_by_x=part_of_slope_1_by_x,
+            arm_length_squared_times_rounding=arm_length_squared_times_rounding,
+            part_of_determinant_divisor=part_of_determinant_divisor, part_of_share_2=part_of_share_2,
+            part_of_share_3=part_of_share_3, part_of_span_1_x=part_of_span_1_x, part_of_span_1_y=part_of_span_1_y,
+            part_of_span_2_x=part_of_span_2_x, part_of_span_2_y=part_of_span_2_y, part_of_span_3_x=part_of_span_3_x,
+            part_of_span_3_y=part_of_span_3_y, part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
+            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar, part_of_slope_1_by_x=part_of_slope_1_by_x,
             part_of_slope_1_by_y=part_of_slope_1_by_y, part_of_slope_2_by_x=part_of_slope_2_by_x,
             part_of_slope_2_by_y=part_of_slope_2_by_y, part_of_slope_3_by_x=part_of_slope_3_by_x,
-            part_of_slope_3_by_y=part_of_slope_3_by_y,
+            part_of_slope_3_by_y=part_of_slope_3_by_y, one_by_arm_length=one_by_arm_length,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -939,14 +938,14 @@ class TripodP3Z(OffsetKinematics):
         slope_2_by_z = 2.0*(z - a2)
         slope_3_by_y = 2.0*(y - part_of_slope_3_by_y)
         slope_3_by_z = 2.0*(z - a3)
-        part_of_determinant = slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z
+        part_of_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y
         slope_2_by_x = 2.0*(x - part_of_slope_2_by_x)
         slope_3_by_x = 2.0*(x - part_of_slope_3_by_x)
-        part_of_determinant_2 = slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x
+        part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
         part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
         # of the closure by the position: zero in a type 2 singularity
         determinant = (
-            part_of_determinant_3*slope_1_by_z - part_of_determinant*slope_1_by_x - part_of_determinant_2*slope_1_by_y
+            part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
         )
         # nothing controls the plate
         if not (abs(determinant) > part_of_determinant_divisor):
@@ -957,12 +956,12 @@ class TripodP3Z(OffsetKinematics):
         slope_3_by_z_times_one_by_determinant = -one_by_determinant*slope_3_by_z
         return (
             (
-                part_of_determinant*slope_1_by_z_times_one_by_determinant,
+                -part_of_determinant*slope_1_by_z_times_one_by_determinant,
                 (slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y)*slope_2_by_z_times_one_by_determinant,
                 (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*slope_3_by_z_times_one_by_determinant,
             ),
             (
-                part_of_determinant_2*slope_1_by_z_times_one_by_determinant,
+                -part_of_determinant_2*slope_1_by_z_times_one_by_determinant,
                 (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*slope_2_by_z_times_one_by_determinant,
                 (slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x)*slope_3_by_z_times_one_by_determinant,
             ),

@@ -106,20 +106,20 @@ class Constants(NamedTuple):
     part_of_normal_divisor: float
     arm_length_2_squared: float
     arm_length_2_squared_times_rounding: float
+    arm_length_1_times_shortest_link: float
+    fixed_length_1_minus_arm_1_radius: float
+    part_of_scaled_cosine_a1: float
+    part_of_divisor_a2: float
+    part_of_determinant_divisor: float
     arm_length_1_times_root_of_3_times_half: float
     part_of_pivot_2_y: float
-    fixed_length_1_minus_arm_1_radius: float
     half_arm_length_1: float
     part_of_pivot_2_x: float
     half_by_arm_length_2: float
-    arm_length_1_times_shortest_link: float
-    part_of_scaled_cosine_a1: float
-    part_of_divisor_a2: float
     twice_arm_length_1: float
     part_of_type2_rods_coplanar: float
     root_of_3_times_half_by_arm_length_2: float
     part_of_margin_rods_coplanar: float
-    part_of_determinant_divisor: float
     part_of_slope_1_by_x: float
     arm_length_1_times_root_of_3: float
 
@@ -392,21 +392,21 @@ class TripodRotary(OffsetKinematics):
         part_of_normal_divisor = 1e-22*arm_length_2*arm_length_2*arm_length_2*arm_length_2
         arm_length_2_squared = arm_length_2*arm_length_2
         arm_length_2_squared_times_rounding = 1e-12*arm_length_2*arm_length_2
+        arm_length_1_times_shortest_link = 1e-9*arm_length_1
+        fixed_length_1_minus_arm_1_radius = fixed_length_1 - arm_1_radius
+        part_of_scaled_cosine_a1 = 2.0*arm_length_1*fixed_length_1_minus_arm_1_radius
+        part_of_divisor_a2 = 5e-10*arm_length_1
+        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
         root_of_3 = root(3.0)
         arm_length_1_times_root_of_3_times_half = 0.5*arm_length_1*root_of_3
         part_of_pivot_2_y = 0.5*fixed_length_1*root_of_3 - 0.5*arm_1_radius*root_of_3
-        fixed_length_1_minus_arm_1_radius = fixed_length_1 - arm_1_radius
         half_arm_length_1 = 0.5*arm_length_1
         part_of_pivot_2_x = 0.5*arm_1_radius - 0.5*fixed_length_1
         half_by_arm_length_2 = 0.5/arm_length_2
-        arm_length_1_times_shortest_link = 1e-9*arm_length_1
-        part_of_scaled_cosine_a1 = 2.0*arm_length_1*fixed_length_1_minus_arm_1_radius
-        part_of_divisor_a2 = 5e-10*arm_length_1
         twice_arm_length_1 = 2.0*arm_length_1
         part_of_type2_rods_coplanar = assembly_sign/(arm_length_2*arm_length_2*arm_length_2)
         root_of_3_times_half_by_arm_length_2 = 0.5*root_of_3/arm_length_2
         part_of_margin_rods_coplanar = arm_length_2*arm_length_2*arm_length_2
-        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
         part_of_slope_1_by_x = 2.0*fixed_length_1 - 2.0*arm_1_radius
         arm_length_1_times_root_of_3 = arm_length_1*root_of_3
         return Constants(
@@ -423,16 +423,16 @@ class TripodRotary(OffsetKinematics):
             sin_max_angle_ball_joint=sin_max_angle_ball_joint, part_of_normal_divisor=part_of_normal_divisor,
             arm_length_2_squared=arm_length_2_squared,
             arm_length_2_squared_times_rounding=arm_length_2_squared_times_rounding,
-            arm_length_1_times_root_of_3_times_half=arm_length_1_times_root_of_3_times_half,
-            part_of_pivot_2_y=part_of_pivot_2_y, fixed_length_1_minus_arm_1_radius=fixed_length_1_minus_arm_1_radius,
-            half_arm_length_1=half_arm_length_1, part_of_pivot_2_x=part_of_pivot_2_x,
-            half_by_arm_length_2=half_by_arm_length_2,
             arm_length_1_times_shortest_link=arm_length_1_times_shortest_link,
+            fixed_length_1_minus_arm_1_radius=fixed_length_1_minus_arm_1_radius,
             part_of_scaled_cosine_a1=part_of_scaled_cosine_a1, part_of_divisor_a2=part_of_divisor_a2,
+            part_of_determinant_divisor=part_of_determinant_divisor,
+            arm_length_1_times_root_of_3_times_half=arm_length_1_times_root_of_3_times_half,
+            part_of_pivot_2_y=part_of_pivot_2_y, half_arm_length_1=half_arm_length_1,
+            part_of_pivot_2_x=part_of_pivot_2_x, half_by_arm_length_2=half_by_arm_length_2,
             twice_arm_length_1=twice_arm_length_1, part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
             root_of_3_times_half_by_arm_length_2=root_of_3_times_half_by_arm_length_2,
-            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
-            part_of_determinant_divisor=part_of_determinant_divisor, part_of_slope_1_by_x=part_of_slope_1_by_x,
+            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar, part_of_slope_1_by_x=part_of_slope_1_by_x,
             arm_length_1_times_root_of_3=arm_length_1_times_root_of_3,
         )
 
@@ -688,7 +688,7 @@ class TripodRotary(OffsetKinematics):
         swing_scale_a2 = arm_length_1*effective_a2  # a2: law of cosines in the rod 2 equation
         part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y)*y
+        scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y)*y - part_of_scaled_cosine_a2
         one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
         one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
@@ -701,19 +701,19 @@ class TripodRotary(OffsetKinematics):
                     + 0.5*abs(
                         (arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
                         + (
-                            0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
+                            0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
                     )
                     + 0.5*(arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
                     + 0.5*(arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
                     + (
-                        0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
-                    )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
+                        0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
+                    )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
                     - 0.5*abs(
                         (arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
                         + (
-                            0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
+                            0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
                     )
                 )
             )
@@ -1260,7 +1260,7 @@ class TripodRotary(OffsetKinematics):
         swing_scale_a2 = arm_length_1*effective_a2  # a2: law of cosines in the rod 2 equation
         part_of_scaled_cosine_a2 = flange_x*(part_of_pivot_2_x - span_2_x) - part_of_scaled_cosine_a1_2
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = -part_of_scaled_cosine_a2 - flange_y*(part_of_pivot_2_y - span_2_y)
+        scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y)*flange_y - part_of_scaled_cosine_a2
         one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
         one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
@@ -1273,19 +1273,19 @@ class TripodRotary(OffsetKinematics):
                     + 0.5*abs(
                         (arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
                         + (
-                            0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
+                            0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
                     )
                     + 0.5*(arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
                     + 0.5*(arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
                     + (
-                        0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
-                    )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
+                        0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
+                    )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
                     - 0.5*abs(
                         (arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
                         + (
-                            0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
+                            0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
                     )
                 )
             )

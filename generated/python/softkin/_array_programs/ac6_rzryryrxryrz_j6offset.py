@@ -94,7 +94,7 @@ class ArrayPrograms(Programs):
             return (length_q1_tried, slope_length_q1_tried)
 
         length_q1_tried = distance_q1_tried
-        slope_distance_q1_tried = select(
+        slope_length_q1_tried = select(
             distance_q1_tried > 0.0,
             (
                 (slope_wrist_x_tried*wrist_x_tried + slope_wrist_y_tried*wrist_y_tried)
@@ -102,7 +102,6 @@ class ArrayPrograms(Programs):
             ),
             0.0,
         )
-        slope_length_q1_tried = slope_distance_q1_tried
         length_q1_tried, slope_length_q1_tried = elsewhere(
             distance_q1_tried > machine_scale_times_free_angle,
             (length_q1_tried, slope_length_q1_tried),
@@ -164,8 +163,7 @@ class ArrayPrograms(Programs):
             return (sum_q3_tried, slope_sum_q3_tried)
 
         sum_q3_tried = both_q3_tried
-        slope_both_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-        slope_sum_q3_tried = slope_both_q3_tried
+        slope_sum_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
         sum_q3_tried, slope_sum_q3_tried = elsewhere(
             both_q3_tried > 0.0,
             (sum_q3_tried, slope_sum_q3_tried),
@@ -236,17 +234,15 @@ class ArrayPrograms(Programs):
             slope_length_q2_tried = 0.0
             return (length_q2_tried, slope_length_q2_tried)
 
-        root_of_length_q2_tried = root(part_of_length_q2_tried)
-        length_q2_tried = root_of_length_q2_tried
-        slope_root_of_length_q2_tried = select(
-            root_of_length_q2_tried > 0.0,
+        length_q2_tried = root(part_of_length_q2_tried)
+        slope_length_q2_tried = select(
+            length_q2_tried > 0.0,
             (
                 (across_q2_tried*slope_across_q2_tried + along_q2_tried*slope_along_q2_tried)
-                /select(root_of_length_q2_tried > 0.0, root_of_length_q2_tried, 1.0)
+                /select(length_q2_tried > 0.0, length_q2_tried, 1.0)
             ),
             0.0,
         )
-        slope_length_q2_tried = slope_root_of_length_q2_tried
         length_q2_tried, slope_length_q2_tried = elsewhere(
             (part_of_length_q2_tried > 0.0) & (reach_tried > machine_scale_times_free_angle),
             (length_q2_tried, slope_length_q2_tried),
@@ -811,8 +807,7 @@ class ArrayPrograms(Programs):
         def elsewhere_branch_shoulder(
             cos_q1: Real, cos_q5: Real, sin_q1: Real, wrist_x_closed: Real, wrist_y_closed: Real,
         ) -> Reals:
-            margin_shoulder_closed = one_by_machine_scale*(wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)
-            branch_shoulder = margin_shoulder_closed
+            branch_shoulder = one_by_machine_scale*(wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)
             branch_wrist = cos_q5
             branch_crossing = 1.0
             return (branch_shoulder, branch_wrist, branch_crossing)
@@ -820,11 +815,10 @@ class ArrayPrograms(Programs):
         # the point that the last joints turn about
         wrist_x_tried = wrist_x_closed + (r12_at_q6*sin_q6 - r11_at_q6*cos_q6)*j6_offset_x
         wrist_y_tried = wrist_y_closed + (r22_at_q6*sin_q6 - r21_at_q6*cos_q6)*j6_offset_x
-        margin_shoulder_tried = one_by_machine_scale*(wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)
-        branch_shoulder = margin_shoulder_tried
+        branch_shoulder = one_by_machine_scale*(wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)
         branch_wrist = select(size_of_j6_offset_x > 0.0, sin_q4, cos_q5)*one_by_machine_scale
         branch_crossing = (
-            -select(margin_elbow_closed >= 0.0, 1.0, -1.0)*select(margin_shoulder_tried >= 0.0, 1.0, -1.0)*determinant
+            -select(branch_shoulder >= 0.0, 1.0, -1.0)*select(margin_elbow_closed >= 0.0, 1.0, -1.0)*determinant
             *part_of_fits
         )
         branch_shoulder, branch_wrist, branch_crossing = elsewhere(

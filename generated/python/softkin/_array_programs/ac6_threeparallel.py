@@ -292,8 +292,7 @@ class ArrayPrograms(Programs):
             part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
             cos_q6_before_q1_for_q3 = -part_of_cos_q6_before_q1_for_q3
             across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
-            part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
-            sin_q6_before_q1_for_q3 = part_of_sin_q6_before_q1_for_q3
+            sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
             radius_q6_rate_q1_for_q3 = (
                 -(
                     -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
@@ -306,7 +305,7 @@ class ArrayPrograms(Programs):
                 *one_by_radius_q6_before_q1_for_q3
             )
             sin_q6_rate_q1_for_q3 = (
-                (across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
+                (across_q6_rate_q1_for_q3 - radius_q6_rate_q1_for_q3*sin_q6_before_q1_for_q3)
                 *one_by_radius_q6_before_q1_for_q3
             )
             found = elsewhere(
@@ -391,25 +390,21 @@ class ArrayPrograms(Programs):
                     )
                 )
 
-                def elsewhere_best_cost_q1_for_q3(
+                def elsewhere_best_cost_q1_for_q3_3(
                     ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real,
                     turn_q1_for_q3: Real, turn_q1_for_q3_squared: Real, wrist_x: Real, wrist_y: Real,
                 ) -> Reals:
                     turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3_squared)
                     one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-                    turned_cos_q1_for_q3 = (
+                    best_cos_q1_for_q3 = (
                         one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
                     )
-                    turned_sin_q1_for_q3 = (
+                    best_sin_q1_for_q3 = (
                         one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
                     )
                     # what is left of its own equation
-                    turned_cost_q1_for_q3 = absolute(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
-                    best_cost_q1_for_q3 = turned_cost_q1_for_q3
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
-                    best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
-                    best_cos_q1_for_q3 = turned_cos_q1_for_q3
-                    best_sin_q1_for_q3 = turned_sin_q1_for_q3
+                    best_cost_q1_for_q3 = absolute(d4 + best_cos_q1_for_q3*wrist_y - best_sin_q1_for_q3*wrist_x)
+                    best_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
                     return (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
 
                 part_of_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5*wrist_z
@@ -492,11 +487,11 @@ class ArrayPrograms(Programs):
                     (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
                 )
 
-                def elsewhere_swept_cost_q1_for_q3_2(near_cos_q1_for_q3: Real, near_sin_q1_for_q3: Real) -> Reals:
-                    swept_cost_q1_for_q3 = 0.0
-                    swept_cos_q1_for_q3 = near_cos_q1_for_q3
-                    swept_sin_q1_for_q3 = near_sin_q1_for_q3
-                    return (swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3)
+                def elsewhere_best_cost_q1_for_q3_2(near_cos_q1_for_q3: Real, near_sin_q1_for_q3: Real) -> Reals:
+                    best_cost_q1_for_q3 = 0.0
+                    best_cos_q1_for_q3 = near_cos_q1_for_q3
+                    best_sin_q1_for_q3 = near_sin_q1_for_q3
+                    return (best_cost_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
 
                 near_cost_q1_for_q3 = absolute(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
                 mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
@@ -536,38 +531,34 @@ class ArrayPrograms(Programs):
                 )
                 mirrored_cost_q1_for_q3 = absolute(d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
 
-                def elsewhere_swept_cost_q1_for_q3(
+                def elsewhere_best_cost_q1_for_q3(
                     mirrored_cos_q1_for_q3: Real, mirrored_cost_q1_for_q3: Real, mirrored_sin_q1_for_q3: Real,
                 ) -> Reals:
-                    swept_cost_q1_for_q3 = mirrored_cost_q1_for_q3
-                    swept_cos_q1_for_q3 = mirrored_cos_q1_for_q3
-                    swept_sin_q1_for_q3 = mirrored_sin_q1_for_q3
-                    return (swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3)
+                    best_cost_q1_for_q3 = mirrored_cost_q1_for_q3
+                    best_cos_q1_for_q3 = mirrored_cos_q1_for_q3
+                    best_sin_q1_for_q3 = mirrored_sin_q1_for_q3
+                    return (best_cost_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
 
-                swept_cost_q1_for_q3 = near_cost_q1_for_q3
-                swept_cos_q1_for_q3 = near_cos_q1_for_q3
-                swept_sin_q1_for_q3 = near_sin_q1_for_q3
-                swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3 = elsewhere(
+                best_cost_q1_for_q3 = near_cost_q1_for_q3
+                best_cos_q1_for_q3 = near_cos_q1_for_q3
+                best_sin_q1_for_q3 = near_sin_q1_for_q3
+                best_cost_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3 = elsewhere(
                     near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3,
-                    (swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3),
-                    elsewhere_swept_cost_q1_for_q3,
+                    (best_cost_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
+                    elsewhere_best_cost_q1_for_q3,
                     (mirrored_cos_q1_for_q3, mirrored_cost_q1_for_q3, mirrored_sin_q1_for_q3),
                 )
-                swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3 = elsewhere(
+                best_cost_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3 = elsewhere(
                     distance_q1 > machine_scale_times_free_angle,
-                    (swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3),
-                    elsewhere_swept_cost_q1_for_q3_2,
+                    (best_cost_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
+                    elsewhere_best_cost_q1_for_q3_2,
                     (near_cos_q1_for_q3, near_sin_q1_for_q3),
                 )
-                best_cost_q1_for_q3 = swept_cost_q1_for_q3
-                swept_ahead_q1_for_q3 = swept_cos_q1_for_q3*wrist_x + swept_sin_q1_for_q3*wrist_y
-                best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
-                best_cos_q1_for_q3 = swept_cos_q1_for_q3
-                best_sin_q1_for_q3 = swept_sin_q1_for_q3
+                best_ahead_q1_for_q3 = best_cos_q1_for_q3*wrist_x + best_sin_q1_for_q3*wrist_y
                 best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3 = elsewhere(
                     follows_q1_for_q3,
                     (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
-                    elsewhere_best_cost_q1_for_q3,
+                    elsewhere_best_cost_q1_for_q3_3,
                     (
                         ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, turn_q1_for_q3,
                         turn_q1_for_q3_squared, wrist_x, wrist_y,
@@ -661,12 +652,11 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
         )
-        size_of_value_q6_of_q3 = absolute(value_q6_of_q3)
 
         def elsewhere_cos_q6(
             ahead_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5_times_r33: Real, r31: Real,
-            r32: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, size_of_value_q6_of_q3: Real,
-            value_q6_of_q3: Real, wrist_y_from_q1_fixed: Real,
+            r32: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real,
+            wrist_y_from_q1_fixed: Real,
         ) -> Reals:
 
             def elsewhere_cos_q6(
@@ -755,7 +745,7 @@ class ArrayPrograms(Programs):
             cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
             sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
             cos_q6, sin_q6 = elsewhere(
-                (radius_q6 > 0.1) & (size_of_value_q6_of_q3 > part_of_cos_q6),
+                (radius_q6 > 0.1) & (absolute(value_q6_of_q3) > part_of_cos_q6),
                 (cos_q6, sin_q6),
                 elsewhere_cos_q6,
                 (
@@ -768,12 +758,12 @@ class ArrayPrograms(Programs):
         cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
         sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
         cos_q6, sin_q6 = elsewhere(
-            size_of_value_q6_of_q3 <= size_q1_for_q3,
+            absolute(value_q6_of_q3) <= size_q1_for_q3,
             (cos_q6, sin_q6),
             elsewhere_cos_q6,
             (
                 ahead_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5_times_r33, r31, r32, radius_q6,
-                sin_q6_before_q6_of_q3, size_of_value_q6_of_q3, value_q6_of_q3, wrist_y_from_q1_fixed,
+                sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_y_from_q1_fixed,
             ),
         )
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
@@ -1029,10 +1019,7 @@ class ArrayPrograms(Programs):
                 one_by_radius_q6_before_q1_for_q3_left*r21_from_q1_before_q1_for_q3_left
             )
             cos_q6_before_q1_for_q3_left_down = -part_of_cos_q6_before_q1_for_q3_left_down
-            part_of_sin_q6_before_q1_for_q3_left_down = (
-                one_by_radius_q6_before_q1_for_q3_left*r22_from_q1_before_q1_for_q3_left
-            )
-            sin_q6_before_q1_for_q3_left_down = part_of_sin_q6_before_q1_for_q3_left_down
+            sin_q6_before_q1_for_q3_left_down = one_by_radius_q6_before_q1_for_q3_left*r22_from_q1_before_q1_for_q3_left
             radius_q6_rate_q1_for_q3_left = (
                 -(
                     -r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
@@ -1048,14 +1035,11 @@ class ArrayPrograms(Programs):
                 )
             )
             sin_q6_rate_q1_for_q3_left_down = (
-                (
-                    r22_from_q1_rate_q1_for_q3_left
-                    - part_of_sin_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
-                )
-                *one_by_radius_q6_before_q1_for_q3_left
+                one_by_radius_q6_before_q1_for_q3_left
+                *(r22_from_q1_rate_q1_for_q3_left - radius_q6_rate_q1_for_q3_left*sin_q6_before_q1_for_q3_left_down)
             )
             cos_q6_before_q1_for_q3_left_up = -cos_q6_before_q1_for_q3_left_down
-            sin_q6_before_q1_for_q3_left_up = -part_of_sin_q6_before_q1_for_q3_left_down
+            sin_q6_before_q1_for_q3_left_up = -sin_q6_before_q1_for_q3_left_down
             cos_q6_rate_q1_for_q3_left_up = (
                 (
                     r21_from_q1_rate_q1_for_q3_left
@@ -1064,11 +1048,8 @@ class ArrayPrograms(Programs):
                 *one_by_radius_q6_before_q1_for_q3_left
             )
             sin_q6_rate_q1_for_q3_left_up = (
-                one_by_radius_q6_before_q1_for_q3_left
-                *(
-                    part_of_sin_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
-                    - r22_from_q1_rate_q1_for_q3_left
-                )
+                (radius_q6_rate_q1_for_q3_left*sin_q6_before_q1_for_q3_left_down - r22_from_q1_rate_q1_for_q3_left)
+                *one_by_radius_q6_before_q1_for_q3_left
             )
             found = elsewhere(
                 radius_q6_before_q1_for_q3_left > 1e-11,
@@ -2040,36 +2021,29 @@ class ArrayPrograms(Programs):
                 ) -> Reals:
                     turned_length_q1_for_q3_left_down = root(1.0 + turn_q1_for_q3_squared_left_down)
                     one_by_turned_length_q1_for_q3_left_down = 1.0/turned_length_q1_for_q3_left_down
-                    turned_cos_q1_for_q3_left_down = (
+                    best_cos_q1_for_q3_left_down = (
                         one_by_turned_length_q1_for_q3_left_down
                         *(cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left)
                     )
-                    turned_sin_q1_for_q3_left_down = (
+                    best_sin_q1_for_q3_left_down = (
                         one_by_turned_length_q1_for_q3_left_down
                         *(sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left)
                     )
                     # what is left of its own equation
-                    turned_cost_q1_for_q3_left_down = absolute(
-                        d4 + turned_cos_q1_for_q3_left_down*wrist_y - turned_sin_q1_for_q3_left_down*wrist_x
+                    best_cost_q1_for_q3_left_down = absolute(
+                        d4 + best_cos_q1_for_q3_left_down*wrist_y - best_sin_q1_for_q3_left_down*wrist_x
                     )
-                    best_cost_q1_for_q3_left_down = turned_cost_q1_for_q3_left_down
-                    turned_ahead_q1_for_q3_left_down = (
+                    best_ahead_q1_for_q3_left_down = (
                         (-ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_left_down)
                         *one_by_turned_length_q1_for_q3_left_down
                     )
-                    best_ahead_q1_for_q3_left_down = turned_ahead_q1_for_q3_left_down
-                    best_cos_q1_for_q3_left_down = turned_cos_q1_for_q3_left_down
-                    best_sin_q1_for_q3_left_down = turned_sin_q1_for_q3_left_down
                     return (
                         best_cost_q1_for_q3_left_down, best_ahead_q1_for_q3_left_down, best_cos_q1_for_q3_left_down,
                         best_sin_q1_for_q3_left_down,
                     )
 
                 best_cost_q1_for_q3_left_down = swept_cost_q1_for_q3_left_down
-                swept_ahead_q1_for_q3_left_down = (
-                    swept_cos_q1_for_q3_left_down*wrist_x + swept_sin_q1_for_q3_left_down*wrist_y
-                )
-                best_ahead_q1_for_q3_left_down = swept_ahead_q1_for_q3_left_down
+                best_ahead_q1_for_q3_left_down = swept_cos_q1_for_q3_left_down*wrist_x + swept_sin_q1_for_q3_left_down*wrist_y
                 best_cos_q1_for_q3_left_down = swept_cos_q1_for_q3_left_down
                 best_sin_q1_for_q3_left_down = swept_sin_q1_for_q3_left_down
                 found = elsewhere(
@@ -2193,34 +2167,29 @@ class ArrayPrograms(Programs):
                 ) -> Reals:
                     turned_length_q1_for_q3_left_up = root(1.0 + turn_q1_for_q3_squared_left_up)
                     one_by_turned_length_q1_for_q3_left_up = 1.0/turned_length_q1_for_q3_left_up
-                    turned_cos_q1_for_q3_left_up = (
+                    best_cos_q1_for_q3_left_up = (
                         one_by_turned_length_q1_for_q3_left_up
                         *(cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_up*sin_q1_before_q1_for_q3_left)
                     )
-                    turned_sin_q1_for_q3_left_up = (
+                    best_sin_q1_for_q3_left_up = (
                         one_by_turned_length_q1_for_q3_left_up
                         *(sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_up*cos_q1_before_q1_for_q3_left)
                     )
                     # what is left of its own equation
-                    turned_cost_q1_for_q3_left_up = absolute(
-                        d4 + turned_cos_q1_for_q3_left_up*wrist_y - turned_sin_q1_for_q3_left_up*wrist_x
+                    best_cost_q1_for_q3_left_up = absolute(
+                        d4 + best_cos_q1_for_q3_left_up*wrist_y - best_sin_q1_for_q3_left_up*wrist_x
                     )
-                    best_cost_q1_for_q3_left_up = turned_cost_q1_for_q3_left_up
-                    turned_ahead_q1_for_q3_left_up = (
+                    best_ahead_q1_for_q3_left_up = (
                         (-ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_left_up)
                         *one_by_turned_length_q1_for_q3_left_up
                     )
-                    best_ahead_q1_for_q3_left_up = turned_ahead_q1_for_q3_left_up
-                    best_cos_q1_for_q3_left_up = turned_cos_q1_for_q3_left_up
-                    best_sin_q1_for_q3_left_up = turned_sin_q1_for_q3_left_up
                     return (
                         best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
                         best_sin_q1_for_q3_left_up,
                     )
 
                 best_cost_q1_for_q3_left_up = swept_cost_q1_for_q3_left_up
-                swept_ahead_q1_for_q3_left_up = swept_cos_q1_for_q3_left_up*wrist_x + swept_sin_q1_for_q3_left_up*wrist_y
-                best_ahead_q1_for_q3_left_up = swept_ahead_q1_for_q3_left_up
+                best_ahead_q1_for_q3_left_up = swept_cos_q1_for_q3_left_up*wrist_x + swept_sin_q1_for_q3_left_up*wrist_y
                 best_cos_q1_for_q3_left_up = swept_cos_q1_for_q3_left_up
                 best_sin_q1_for_q3_left_up = swept_sin_q1_for_q3_left_up
                 found = elsewhere(
@@ -2432,35 +2401,30 @@ class ArrayPrograms(Programs):
                 ) -> Reals:
                     turned_length_q1_for_q3_right_down = root(1.0 + turn_q1_for_q3_squared_right_down)
                     one_by_turned_length_q1_for_q3_right_down = 1.0/turned_length_q1_for_q3_right_down
-                    turned_cos_q1_for_q3_right_down = (
+                    best_cos_q1_for_q3_right_down = (
                         one_by_turned_length_q1_for_q3_right_down
                         *(cos_q1_before_q1_for_q3_right - turn_q1_for_q3_right_down*sin_q1_before_q1_for_q3_right)
                     )
-                    turned_sin_q1_for_q3_right_down = (
+                    best_sin_q1_for_q3_right_down = (
                         one_by_turned_length_q1_for_q3_right_down
                         *(sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_down*cos_q1_before_q1_for_q3_right)
                     )
                     # what is left of its own equation
-                    turned_cost_q1_for_q3_right_down = absolute(
-                        d4 + turned_cos_q1_for_q3_right_down*wrist_y - turned_sin_q1_for_q3_right_down*wrist_x
+                    best_cost_q1_for_q3_right_down = absolute(
+                        d4 + best_cos_q1_for_q3_right_down*wrist_y - best_sin_q1_for_q3_right_down*wrist_x
                     )
-                    best_cost_q1_for_q3_right_down = turned_cost_q1_for_q3_right_down
-                    turned_ahead_q1_for_q3_right_down = (
+                    best_ahead_q1_for_q3_right_down = (
                         (ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_right_down)*one_by_turned_length_q1_for_q3_right_down
                     )
-                    best_ahead_q1_for_q3_right_down = turned_ahead_q1_for_q3_right_down
-                    best_cos_q1_for_q3_right_down = turned_cos_q1_for_q3_right_down
-                    best_sin_q1_for_q3_right_down = turned_sin_q1_for_q3_right_down
                     return (
                         best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
                         best_sin_q1_for_q3_right_down,
                     )
 
                 best_cost_q1_for_q3_right_down = swept_cost_q1_for_q3_right_down
-                swept_ahead_q1_for_q3_right_down = (
+                best_ahead_q1_for_q3_right_down = (
                     swept_cos_q1_for_q3_right_down*wrist_x + swept_sin_q1_for_q3_right_down*wrist_y
                 )
-                best_ahead_q1_for_q3_right_down = swept_ahead_q1_for_q3_right_down
                 best_cos_q1_for_q3_right_down = swept_cos_q1_for_q3_right_down
                 best_sin_q1_for_q3_right_down = swept_sin_q1_for_q3_right_down
                 found = elsewhere(
@@ -2586,33 +2550,28 @@ class ArrayPrograms(Programs):
                 ) -> Reals:
                     turned_length_q1_for_q3_right_up = root(1.0 + turn_q1_for_q3_squared_right_up)
                     one_by_turned_length_q1_for_q3_right_up = 1.0/turned_length_q1_for_q3_right_up
-                    turned_cos_q1_for_q3_right_up = (
+                    best_cos_q1_for_q3_right_up = (
                         one_by_turned_length_q1_for_q3_right_up
                         *(cos_q1_before_q1_for_q3_right - turn_q1_for_q3_right_up*sin_q1_before_q1_for_q3_right)
                     )
-                    turned_sin_q1_for_q3_right_up = (
+                    best_sin_q1_for_q3_right_up = (
                         one_by_turned_length_q1_for_q3_right_up
                         *(sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_up*cos_q1_before_q1_for_q3_right)
                     )
                     # what is left of its own equation
-                    turned_cost_q1_for_q3_right_up = absolute(
-                        d4 + turned_cos_q1_for_q3_right_up*wrist_y - turned_sin_q1_for_q3_right_up*wrist_x
+                    best_cost_q1_for_q3_right_up = absolute(
+                        d4 + best_cos_q1_for_q3_right_up*wrist_y - best_sin_q1_for_q3_right_up*wrist_x
                     )
-                    best_cost_q1_for_q3_right_up = turned_cost_q1_for_q3_right_up
-                    turned_ahead_q1_for_q3_right_up = (
+                    best_ahead_q1_for_q3_right_up = (
                         (ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_right_up)*one_by_turned_length_q1_for_q3_right_up
                     )
-                    best_ahead_q1_for_q3_right_up = turned_ahead_q1_for_q3_right_up
-                    best_cos_q1_for_q3_right_up = turned_cos_q1_for_q3_right_up
-                    best_sin_q1_for_q3_right_up = turned_sin_q1_for_q3_right_up
                     return (
                         best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
                         best_sin_q1_for_q3_right_up,
                     )
 
                 best_cost_q1_for_q3_right_up = swept_cost_q1_for_q3_right_up
-                swept_ahead_q1_for_q3_right_up = swept_cos_q1_for_q3_right_up*wrist_x + swept_sin_q1_for_q3_right_up*wrist_y
-                best_ahead_q1_for_q3_right_up = swept_ahead_q1_for_q3_right_up
+                best_ahead_q1_for_q3_right_up = swept_cos_q1_for_q3_right_up*wrist_x + swept_sin_q1_for_q3_right_up*wrist_y
                 best_cos_q1_for_q3_right_up = swept_cos_q1_for_q3_right_up
                 best_sin_q1_for_q3_right_up = swept_sin_q1_for_q3_right_up
                 found = elsewhere(
@@ -2753,13 +2712,11 @@ class ArrayPrograms(Programs):
             + wrist_y_from_q1_before_q6_of_q3_left_down*wrist_y_from_q1_before_q6_of_q3_left_down
             - a2_squared_plus_a3_squared
         )
-        size_of_value_q6_of_q3_left_down = absolute(value_q6_of_q3_left_down)
 
         def elsewhere_cos_q6_left_down(
             ahead_q1_left_down: Real, cos_q5_left_down: Real, cos_q6_before_q6_of_q3_left_down: Real,
             q6_radius_of_q5_times_r33_left_down: Real, r31: Real, r32: Real, radius_q6_left_down: Real,
-            sin_q6_before_q6_of_q3_left_down: Real, size_of_value_q6_of_q3_left_down: Real,
-            value_q6_of_q3_left_down: Real, wrist_y_from_q1_fixed: Real,
+            sin_q6_before_q6_of_q3_left_down: Real, value_q6_of_q3_left_down: Real, wrist_y_from_q1_fixed: Real,
         ) -> Reals:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_along = d5*r32
@@ -2873,7 +2830,7 @@ class ArrayPrograms(Programs):
             cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
             sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
             cos_q6_left_down, sin_q6_left_down = elsewhere(
-                (radius_q6_left_down > 0.1) & (size_of_value_q6_of_q3_left_down > part_of_cos_q6),
+                (radius_q6_left_down > 0.1) & (absolute(value_q6_of_q3_left_down) > part_of_cos_q6),
                 (cos_q6_left_down, sin_q6_left_down),
                 elsewhere_cos_q6_left_down,
                 (
@@ -2887,13 +2844,13 @@ class ArrayPrograms(Programs):
         cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
         sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
         cos_q6_left_down, sin_q6_left_down = elsewhere(
-            size_of_value_q6_of_q3_left_down <= size_q1_for_q3,
+            absolute(value_q6_of_q3_left_down) <= size_q1_for_q3,
             (cos_q6_left_down, sin_q6_left_down),
             elsewhere_cos_q6_left_down,
             (
                 ahead_q1_left_down, cos_q5_left_down, cos_q6_before_q6_of_q3_left_down,
                 q6_radius_of_q5_times_r33_left_down, r31, r32, radius_q6_left_down, sin_q6_before_q6_of_q3_left_down,
-                size_of_value_q6_of_q3_left_down, value_q6_of_q3_left_down, wrist_y_from_q1_fixed,
+                value_q6_of_q3_left_down, wrist_y_from_q1_fixed,
             ),
         )
         r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
@@ -3033,13 +2990,11 @@ class ArrayPrograms(Programs):
             + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up
             - a2_squared_plus_a3_squared
         )
-        size_of_value_q6_of_q3_left_up = absolute(value_q6_of_q3_left_up)
 
         def elsewhere_cos_q6_left_up(
             ahead_q1_left_up: Real, cos_q5_left_up: Real, cos_q6_before_q6_of_q3_left_up: Real,
             q6_radius_of_q5_times_r33_left_up: Real, r31: Real, r32: Real, radius_q6_left_up: Real,
-            sin_q6_before_q6_of_q3_left_up: Real, size_of_value_q6_of_q3_left_up: Real, value_q6_of_q3_left_up: Real,
-            wrist_y_from_q1_fixed: Real,
+            sin_q6_before_q6_of_q3_left_up: Real, value_q6_of_q3_left_up: Real, wrist_y_from_q1_fixed: Real,
         ) -> Reals:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_along = d5*r32
@@ -3150,7 +3105,7 @@ class ArrayPrograms(Programs):
             cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
             sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
             cos_q6_left_up, sin_q6_left_up = elsewhere(
-                (radius_q6_left_up > 0.1) & (size_of_value_q6_of_q3_left_up > part_of_cos_q6),
+                (radius_q6_left_up > 0.1) & (absolute(value_q6_of_q3_left_up) > part_of_cos_q6),
                 (cos_q6_left_up, sin_q6_left_up),
                 elsewhere_cos_q6_left_up,
                 (
@@ -3164,13 +3119,13 @@ class ArrayPrograms(Programs):
         cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
         sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
         cos_q6_left_up, sin_q6_left_up = elsewhere(
-            size_of_value_q6_of_q3_left_up <= size_q1_for_q3,
+            absolute(value_q6_of_q3_left_up) <= size_q1_for_q3,
             (cos_q6_left_up, sin_q6_left_up),
             elsewhere_cos_q6_left_up,
             (
                 ahead_q1_left_up, cos_q5_left_up, cos_q6_before_q6_of_q3_left_up, q6_radius_of_q5_times_r33_left_up,
-                r31, r32, radius_q6_left_up, sin_q6_before_q6_of_q3_left_up, size_of_value_q6_of_q3_left_up,
-                value_q6_of_q3_left_up, wrist_y_from_q1_fixed,
+                r31, r32, radius_q6_left_up, sin_q6_before_q6_of_q3_left_up, value_q6_of_q3_left_up,
+                wrist_y_from_q1_fixed,
             ),
         )
         r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
@@ -3316,13 +3271,11 @@ class ArrayPrograms(Programs):
             + wrist_y_from_q1_before_q6_of_q3_right_down*wrist_y_from_q1_before_q6_of_q3_right_down
             - a2_squared_plus_a3_squared
         )
-        size_of_value_q6_of_q3_right_down = absolute(value_q6_of_q3_right_down)
 
         def elsewhere_cos_q6_right_down(
             ahead_q1_right_down: Real, cos_q5_right_down: Real, cos_q6_before_q6_of_q3_right_down: Real,
             q6_radius_of_q5_times_r33_right_down: Real, r31: Real, r32: Real, radius_q6_right_down: Real,
-            sin_q6_before_q6_of_q3_right_down: Real, size_of_value_q6_of_q3_right_down: Real,
-            value_q6_of_q3_right_down: Real, wrist_y_from_q1_fixed: Real,
+            sin_q6_before_q6_of_q3_right_down: Real, value_q6_of_q3_right_down: Real, wrist_y_from_q1_fixed: Real,
         ) -> Reals:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_along = d5*r32
@@ -3437,7 +3390,7 @@ class ArrayPrograms(Programs):
             cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
             sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
             cos_q6_right_down, sin_q6_right_down = elsewhere(
-                (radius_q6_right_down > 0.1) & (size_of_value_q6_of_q3_right_down > part_of_cos_q6),
+                (radius_q6_right_down > 0.1) & (absolute(value_q6_of_q3_right_down) > part_of_cos_q6),
                 (cos_q6_right_down, sin_q6_right_down),
                 elsewhere_cos_q6_right_down,
                 (
@@ -3451,14 +3404,13 @@ class ArrayPrograms(Programs):
         cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
         sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
         cos_q6_right_down, sin_q6_right_down = elsewhere(
-            size_of_value_q6_of_q3_right_down <= size_q1_for_q3,
+            absolute(value_q6_of_q3_right_down) <= size_q1_for_q3,
             (cos_q6_right_down, sin_q6_right_down),
             elsewhere_cos_q6_right_down,
             (
                 ahead_q1_right_down, cos_q5_right_down, cos_q6_before_q6_of_q3_right_down,
                 q6_radius_of_q5_times_r33_right_down, r31, r32, radius_q6_right_down,
-                sin_q6_before_q6_of_q3_right_down, size_of_value_q6_of_q3_right_down, value_q6_of_q3_right_down,
-                wrist_y_from_q1_fixed,
+                sin_q6_before_q6_of_q3_right_down, value_q6_of_q3_right_down, wrist_y_from_q1_fixed,
             ),
         )
         r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
@@ -3596,13 +3548,11 @@ class ArrayPrograms(Programs):
             + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up
             - a2_squared_plus_a3_squared
         )
-        size_of_value_q6_of_q3_right_up = absolute(value_q6_of_q3_right_up)
 
         def elsewhere_cos_q6_right_up(
             ahead_q1_right_up: Real, cos_q5_right_up: Real, cos_q6_before_q6_of_q3_right_up: Real,
             q6_radius_of_q5_times_r33_right_up: Real, r31: Real, r32: Real, radius_q6_right_up: Real,
-            sin_q6_before_q6_of_q3_right_up: Real, size_of_value_q6_of_q3_right_up: Real,
-            value_q6_of_q3_right_up: Real, wrist_y_from_q1_fixed: Real,
+            sin_q6_before_q6_of_q3_right_up: Real, value_q6_of_q3_right_up: Real, wrist_y_from_q1_fixed: Real,
         ) -> Reals:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_along = d5*r32
@@ -3713,7 +3663,7 @@ class ArrayPrograms(Programs):
             cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
             sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
             cos_q6_right_up, sin_q6_right_up = elsewhere(
-                (radius_q6_right_up > 0.1) & (size_of_value_q6_of_q3_right_up > part_of_cos_q6),
+                (radius_q6_right_up > 0.1) & (absolute(value_q6_of_q3_right_up) > part_of_cos_q6),
                 (cos_q6_right_up, sin_q6_right_up),
                 elsewhere_cos_q6_right_up,
                 (
@@ -3727,13 +3677,13 @@ class ArrayPrograms(Programs):
         cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
         sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
         cos_q6_right_up, sin_q6_right_up = elsewhere(
-            size_of_value_q6_of_q3_right_up <= size_q1_for_q3,
+            absolute(value_q6_of_q3_right_up) <= size_q1_for_q3,
             (cos_q6_right_up, sin_q6_right_up),
             elsewhere_cos_q6_right_up,
             (
                 ahead_q1_right_up, cos_q5_right_up, cos_q6_before_q6_of_q3_right_up,
                 q6_radius_of_q5_times_r33_right_up, r31, r32, radius_q6_right_up, sin_q6_before_q6_of_q3_right_up,
-                size_of_value_q6_of_q3_right_up, value_q6_of_q3_right_up, wrist_y_from_q1_fixed,
+                value_q6_of_q3_right_up, wrist_y_from_q1_fixed,
             ),
         )
         r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up

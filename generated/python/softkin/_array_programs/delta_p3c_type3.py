@@ -226,7 +226,7 @@ class ArrayPrograms(Programs):
         require(status, effective_a1 > inner_arm_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > inner_arm_1_times_shortest_link, effective_a1, 1.0)
         swing_scale_a1 = divisor_a1*twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
-        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
@@ -246,7 +246,7 @@ class ArrayPrograms(Programs):
         require(status, effective_a2 > inner_arm_2_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > inner_arm_2_times_shortest_link, effective_a2, 1.0)
         swing_scale_a2 = divisor_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
-        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
@@ -266,7 +266,7 @@ class ArrayPrograms(Programs):
         require(status, effective_a3 > inner_arm_3_times_shortest_link, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > inner_arm_3_times_shortest_link, effective_a3, 1.0)
         swing_scale_a3 = divisor_a3*twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
-        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
@@ -421,7 +421,7 @@ class ArrayPrograms(Programs):
         require(status, effective_a1 > inner_arm_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > inner_arm_1_times_shortest_link, effective_a1, 1.0)
         swing_scale_a1 = divisor_a1*twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
-        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
@@ -441,7 +441,7 @@ class ArrayPrograms(Programs):
         require(status, effective_a2 > inner_arm_2_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > inner_arm_2_times_shortest_link, effective_a2, 1.0)
         swing_scale_a2 = divisor_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
-        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
@@ -461,7 +461,7 @@ class ArrayPrograms(Programs):
         require(status, effective_a3 > inner_arm_3_times_shortest_link, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > inner_arm_3_times_shortest_link, effective_a3, 1.0)
         swing_scale_a3 = divisor_a3*twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
-        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3

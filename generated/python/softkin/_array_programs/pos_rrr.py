@@ -469,10 +469,10 @@ class ArrayPrograms(Programs):
                     ahead_q1_before_q1_for_q3_front: Real, one_by_turned_length_q1_for_q3_front: Real,
                     turn_q1_for_q3_front: Real, turned_cos_q1_for_q3_front: Real, turned_sin_q1_for_q3_front: Real,
                 ) -> Reals:
-                    turned_ahead_q1_for_q3_front = (
+                    # turned within rounding, where the rest can be reached
+                    ahead_q1_front = (
                         (ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_front)*one_by_turned_length_q1_for_q3_front
                     )
-                    ahead_q1_front = turned_ahead_q1_for_q3_front  # turned within rounding, where the rest can be reached
                     cos_q1_front = turned_cos_q1_for_q3_front  # turned within rounding, where the rest can be reached
                     sin_q1_front = turned_sin_q1_for_q3_front  # turned within rounding, where the rest can be reached
                     return (ahead_q1_front, cos_q1_front, sin_q1_front)
@@ -549,11 +549,11 @@ class ArrayPrograms(Programs):
                     ahead_q1_before_q1_for_q3_front: Real, one_by_turned_length_q1_for_q3_back: Real,
                     turn_q1_for_q3_back: Real, turned_cos_q1_for_q3_back: Real, turned_sin_q1_for_q3_back: Real,
                 ) -> Reals:
-                    turned_ahead_q1_for_q3_back = (
+                    # turned within rounding, where the rest can be reached
+                    ahead_q1_back = (
                         (-ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_back)
                         *one_by_turned_length_q1_for_q3_back
                     )
-                    ahead_q1_back = turned_ahead_q1_for_q3_back  # turned within rounding, where the rest can be reached
                     cos_q1_back = turned_cos_q1_for_q3_back  # turned within rounding, where the rest can be reached
                     sin_q1_back = turned_sin_q1_for_q3_back  # turned within rounding, where the rest can be reached
                     return (ahead_q1_back, cos_q1_back, sin_q1_back)

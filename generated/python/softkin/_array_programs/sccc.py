@@ -178,8 +178,7 @@ class ArrayPrograms(Programs):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
-            open_a2 = select(single_a2, mid_a2, part_of_axis_a2 + free_a2/DEGREE)  # A2: where its turn is open
-            near_a2 = open_a2
+            near_a2 = select(single_a2, mid_a2, part_of_axis_a2 + free_a2/DEGREE)  # A2: where its turn is open
             return (near_a2,)
 
         near_a2 = 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2)
@@ -200,20 +199,19 @@ class ArrayPrograms(Programs):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
 
-            def elsewhere_open_a3(free_a1: Real, part_of_axis_a3: Real, ref_a3: Real, ref_motor_a2: Real) -> Reals:
+            def elsewhere_near_a3(free_a1: Real, part_of_axis_a3: Real, ref_a3: Real, ref_motor_a2: Real) -> Reals:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                open_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE  # A3: where its turn is open
-                return (open_a3,)
+                near_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE  # A3: where its turn is open
+                return (near_a3,)
 
-            open_a3 = mid_a3  # A3: where its turn is open
-            (open_a3,) = elsewhere(
+            near_a3 = mid_a3  # A3: where its turn is open
+            (near_a3,) = elsewhere(
                 single_a3,
-                (open_a3,),
-                elsewhere_open_a3,
+                (near_a3,),
+                elsewhere_near_a3,
                 (free_a1, part_of_axis_a3, ref_a3, ref_motor_a2),
             )
-            near_a3 = open_a3
             return (near_a3,)
 
         near_a3 = 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3)
@@ -374,24 +372,22 @@ class ArrayPrograms(Programs):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
 
-            def elsewhere_open_a2_right(
+            def elsewhere_near_a2_right(
                 free_a1: Real, part_of_axis_a2_left: Real, part_of_axis_a2_right: Real, ref_motor_a2: Real,
             ) -> Reals:
                 free_a2 = ref_motor_a2 + coupling_12*free_a1
-                open_a2_right = part_of_axis_a2_right + free_a2/DEGREE  # A2: where its turn is open
-                open_a2_left = part_of_axis_a2_left + free_a2/DEGREE  # A2: where its turn is open
-                return (open_a2_right, open_a2_left)
+                near_a2_right = part_of_axis_a2_right + free_a2/DEGREE  # A2: where its turn is open
+                near_a2_left = part_of_axis_a2_left + free_a2/DEGREE  # A2: where its turn is open
+                return (near_a2_right, near_a2_left)
 
-            open_a2_right = mid_a2  # A2: where its turn is open
-            open_a2_left = mid_a2  # A2: where its turn is open
-            open_a2_right, open_a2_left = elsewhere(
+            near_a2_right = mid_a2  # A2: where its turn is open
+            near_a2_left = mid_a2  # A2: where its turn is open
+            near_a2_right, near_a2_left = elsewhere(
                 single_a2,
-                (open_a2_right, open_a2_left),
-                elsewhere_open_a2_right,
+                (near_a2_right, near_a2_left),
+                elsewhere_near_a2_right,
                 (free_a1, part_of_axis_a2_left, part_of_axis_a2_right, ref_motor_a2),
             )
-            near_a2_right = open_a2_right
-            near_a2_left = open_a2_left
             return (near_a2_right, near_a2_left)
 
         near_a2_right = 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2)
@@ -418,25 +414,23 @@ class ArrayPrograms(Programs):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
 
-            def elsewhere_open_a3_right(
+            def elsewhere_near_a3_right(
                 free_a1: Real, part_of_axis_a3_left: Real, part_of_axis_a3_right: Real, ref_a3: Real, ref_motor_a2: Real,
             ) -> Reals:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                open_a3_right = offset_a3 + (free_a3 + part_of_axis_a3_right)/DEGREE  # A3: where its turn is open
-                open_a3_left = offset_a3 + (free_a3 + part_of_axis_a3_left)/DEGREE  # A3: where its turn is open
-                return (open_a3_right, open_a3_left)
+                near_a3_right = offset_a3 + (free_a3 + part_of_axis_a3_right)/DEGREE  # A3: where its turn is open
+                near_a3_left = offset_a3 + (free_a3 + part_of_axis_a3_left)/DEGREE  # A3: where its turn is open
+                return (near_a3_right, near_a3_left)
 
-            open_a3_right = mid_a3  # A3: where its turn is open
-            open_a3_left = mid_a3  # A3: where its turn is open
-            open_a3_right, open_a3_left = elsewhere(
+            near_a3_right = mid_a3  # A3: where its turn is open
+            near_a3_left = mid_a3  # A3: where its turn is open
+            near_a3_right, near_a3_left = elsewhere(
                 single_a3,
-                (open_a3_right, open_a3_left),
-                elsewhere_open_a3_right,
+                (near_a3_right, near_a3_left),
+                elsewhere_near_a3_right,
                 (free_a1, part_of_axis_a3_left, part_of_axis_a3_right, ref_a3, ref_motor_a2),
             )
-            near_a3_right = open_a3_right
-            near_a3_left = open_a3_left
             return (near_a3_right, near_a3_left)
 
         near_a3_right = 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3)

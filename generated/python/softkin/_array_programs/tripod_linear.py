@@ -171,31 +171,31 @@ class ArrayPrograms(Programs):
         z_minus_cos_rail_angle_squared_times_z = z - z*cos_rail_angle_squared
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z
-            - (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x - y*y
+            arm_length_squared + span_1_x*(span_1_x*sin_rail_angle_squared - span_1_x)
+            + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z - y*y
         )
         # rod 1 cannot reach
         require(status, root_square_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y_2  # rod 2
         part_of_root_square_a2_3 = (
-            -z_minus_cos_rail_angle_squared_times_z - span_2_x*cos_rail_angle_times_sin_rail_angle
+            z_minus_cos_rail_angle_squared_times_z + span_2_x*cos_rail_angle_times_sin_rail_angle
         )
-        part_of_root_square_a2_4 = span_2_x*sin_rail_angle_squared_times_1_by_4 - span_2_x
+        part_of_root_square_a2_4 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + (part_of_root_square_a2_3 + part_of_root_square_a2*span_2_y)*z
-            - (part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
-            - (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
+            arm_length_squared + (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_2_y)*span_2_x
+            + span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4 - span_2_y)
+            + (part_of_root_square_a2*span_2_y - part_of_root_square_a2_3)*z
         )
         # rod 2 cannot reach
         require(status, root_square_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_3_y = part_of_pivot_2_y_2 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
-            + (part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*z
-            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
+            arm_length_squared + (part_of_root_square_a2_2*span_3_y - part_of_root_square_a2_4)*span_2_x
+            + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
+            + (-part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*z
         )
         # rod 3 cannot reach
         require(status, root_square_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
@@ -303,31 +303,31 @@ class ArrayPrograms(Programs):
         z_minus_cos_rail_angle_squared_times_z = z - z*cos_rail_angle_squared
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z
-            - (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x - y*y
+            arm_length_squared + span_1_x*(span_1_x*sin_rail_angle_squared - span_1_x)
+            + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z - y*y
         )
         # rod 1 cannot reach
         require(status, root_square_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y_2  # rod 2
         part_of_root_square_a2_3 = (
-            -z_minus_cos_rail_angle_squared_times_z - span_2_x*cos_rail_angle_times_sin_rail_angle
+            z_minus_cos_rail_angle_squared_times_z + span_2_x*cos_rail_angle_times_sin_rail_angle
         )
-        part_of_root_square_a2_4 = span_2_x*sin_rail_angle_squared_times_1_by_4 - span_2_x
+        part_of_root_square_a2_4 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + (part_of_root_square_a2_3 + part_of_root_square_a2*span_2_y)*z
-            - (part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
-            - (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
+            arm_length_squared + (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_2_y)*span_2_x
+            + span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4 - span_2_y)
+            + (part_of_root_square_a2*span_2_y - part_of_root_square_a2_3)*z
         )
         # rod 2 cannot reach
         require(status, root_square_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_3_y = part_of_pivot_2_y_2 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
-            + (part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*z
-            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
+            arm_length_squared + (part_of_root_square_a2_2*span_3_y - part_of_root_square_a2_4)*span_2_x
+            + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
+            + (-part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*z
         )
         # rod 3 cannot reach
         require(status, root_square_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)

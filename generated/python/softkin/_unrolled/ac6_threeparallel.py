@@ -57,11 +57,11 @@ def unrolled(k: Constants) -> Unrolled:
     size_q1_for_q3 = k.size_q1_for_q3
     machine_scale_squared_times_plane_2 = 1e-6*machine_scale*machine_scale
     machine_scale_times_free_angle_2 = 1e-11*machine_scale
-    a2_squared_plus_a3_squared_2 = a2*a2 + a3*a3
     size_q1_for_q3_times_rounding_2 = 1e-12*size_q1_for_q3
-    share_of_size_q1_for_q3 = 1.000000001*size_q1_for_q3
+    part_of_cos_q6_left_down = 1.000000001*size_q1_for_q3
     scale_q3_squared_times_rounding_2 = 1e-12*scale_q3*scale_q3
-    offset_a5_times_2 = 2.0*offset_a5
+    twice_offset_a5 = 2.0*offset_a5
+    a2_squared_plus_a3_squared_2 = a2*a2 + a3*a3
     a2_plus_a3_2 = a2 + a3
     a2_minus_a3_2 = a2 - a3
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,))
@@ -95,40 +95,41 @@ def unrolled(k: Constants) -> Unrolled:
             ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle_2:
-            d4_times_wrist_y = d4*wrist_y
-            ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
             divisor_q1 = distance_q1*distance_q1
-            cos_q1_before_q1_for_q3_left = (-ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y)/divisor_q1
-            ahead_q1_before_q1_for_q3_times_wrist_y = ahead_q1_before_q1_for_q3*wrist_y
+            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3*wrist_x
+            d4_times_wrist_y = d4*wrist_y
+            cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - part_of_cos_q1_before_q1_for_q3)/divisor_q1
             d4_times_wrist_x = d4*wrist_x
-            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - ahead_q1_before_q1_for_q3_times_wrist_y)/divisor_q1
-            cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y)/divisor_q1
-            sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_y + d4_times_wrist_x)/divisor_q1
+            part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3*wrist_y
+            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - part_of_sin_q1_before_q1_for_q3)/divisor_q1
+            cos_q1_before_q1_for_q3_right = (part_of_cos_q1_before_q1_for_q3 - d4_times_wrist_y)/divisor_q1
+            sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + part_of_sin_q1_before_q1_for_q3)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3_left = cos(free_a1)
             sin_q1_before_q1_for_q3_left = sin(free_a1)
             cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left
             sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
-        minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_left - r21*cos_q1_before_q1_for_q3_left
-        r22_from_q1 = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
-        # q6: direction and distance of a point
-        radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
-        r33_times_radius_q6 = r33*radius_q6
         # q5: linear pair in the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left
+        r21_from_q1 = r21*cos_q1_before_q1_for_q3_left - r11*sin_q1_before_q1_for_q3_left
+        r22_from_q1 = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         # its reference where it is free
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
+            cos_q6_before_q6_of_q3_down = -(r21_from_q1/radius_q6)
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)
-            sin_q6_before_q6_of_q3_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
-            sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = sin(free_a6)
+            cos_q6_before_q6_of_q3_down = cos_of_free_a6
+            sin_q6_before_q6_of_q3_down = sin_of_free_a6
+            cos_q6_before_q6_of_q3_up = cos_of_free_a6
+            sin_q6_before_q6_of_q3_up = sin_of_free_a6
+        r33_times_radius_q6 = r33*radius_q6
         r21_from_q1_before_q56_before_q6_of_q3_down = (
             (r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down)*cos_q5 - r33_times_radius_q6
         )
@@ -151,50 +152,38 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            wrist_y_from_q1_along = d5*r32
-            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            minus_wrist_x_from_q1_along = d5*r31*cos_q5
+            r33_times_radius_q6_left_times_d5 = d5*r33_times_radius_q6
             wrist_y_from_q1_across = d5*r31
-            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
+            wrist_y_from_q1_along = d5*r32
+            part_of_along_q6_of_q3 = wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
+            part_of_across_q6_of_q3 = wrist_y_from_q1_across*wrist_y_from_q1_fixed
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 - ahead_q1_before_q1_for_q3
-                along_q6_of_q3 = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
-                )
+                wrist_x_from_q1_fixed = r33_times_radius_q6_left_times_d5 - ahead_q1_before_q1_for_q3
+                along_q6_of_q3 = 2.0*part_of_along_q6_of_q3 + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0*part_of_across_q6_of_q3 + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_down - along_q6_of_q3*cos_q6_before_q6_of_q3_down
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -213,15 +202,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                part_of_cost_q6_of_q3_left_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
                 # what the motion changes of the pose
                 cost_q6_of_q3 = (
                     sqrt(
-                        (
-                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
-                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down)
-                        + (
-                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
-                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down)
+                        part_of_cost_q6_of_q3*part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_left_down_2*part_of_cost_q6_of_q3_left_down_2
                     )
                     *radius_q6
                 )
@@ -238,10 +225,8 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3_2)*(a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
@@ -260,9 +245,10 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left_up_down = offset_a2 + angle_q2_up_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_up_down - open_a2 < 179.999999999:
             axis_a2_left_up_down = nearest_period(axis_a2_left_up_down, open_a2)
-        angle_q3_down = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
-        axis_a3_left_up_down = offset_a3 + angle_q3_down/DEGREE  # A3: its turn
+        angle_q3_down = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
+        part_of_axis_a3_down = angle_q3_down/DEGREE
+        axis_a3_left_up_down = offset_a3 + part_of_axis_a3_down  # A3: its turn
         if not -180.000000001 <= axis_a3_left_up_down - open_a3 < 179.999999999:
             axis_a3_left_up_down = nearest_period(axis_a3_left_up_down, open_a3)
         angle_with_q4_down = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
@@ -304,50 +290,38 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
-            wrist_y_from_q1_along = d5*r32
-            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            minus_wrist_x_from_q1_along = d5*r31*cos_q5
+            r33_times_radius_q6_left_times_d5 = d5*r33_times_radius_q6
             wrist_y_from_q1_across = d5*r31
-            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
+            wrist_y_from_q1_along = d5*r32
+            part_of_along_q6_of_q3 = wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
+            part_of_across_q6_of_q3 = wrist_y_from_q1_across*wrist_y_from_q1_fixed
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - d5_times_r33_times_radius_q6
-                along_q6_of_q3 = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
-                )
+                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - r33_times_radius_q6_left_times_d5
+                along_q6_of_q3 = 2.0*part_of_along_q6_of_q3 + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0*part_of_across_q6_of_q3 + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_up - along_q6_of_q3*cos_q6_before_q6_of_q3_up
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -366,15 +340,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                part_of_cost_q6_of_q3_left_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
                 # what the motion changes of the pose
                 cost_q6_of_q3 = (
                     sqrt(
-                        (
-                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
-                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up)
-                        + (
-                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
-                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up)
+                        part_of_cost_q6_of_q3*part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_left_up_2*part_of_cost_q6_of_q3_left_up_2
                     )
                     *radius_q6
                 )
@@ -391,10 +363,8 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3_2)*(a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
@@ -413,7 +383,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_left_up_up - open_a2 < 179.999999999:
             axis_a2_left_up_up = nearest_period(axis_a2_left_up_up, open_a2)
         angle_q3_up = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
-        axis_a3_left_up_up = offset_a3 + angle_q3_up/DEGREE  # A3: its turn
+        part_of_axis_a3_up = angle_q3_up/DEGREE
+        axis_a3_left_up_up = offset_a3 + part_of_axis_a3_up  # A3: its turn
         if not -180.000000001 <= axis_a3_left_up_up - open_a3 < 179.999999999:
             axis_a3_left_up_up = nearest_period(axis_a3_left_up_up, open_a3)
         angle_with_q4_up = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
@@ -421,7 +392,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)/DEGREE
         if not -180.000000001 <= axis_a4_left_up_up - open_a4 < 179.999999999:
             axis_a4_left_up_up = nearest_period(axis_a4_left_up_up, open_a4)
-        axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down  # A5: its turn
+        axis_a5_left_up = twice_offset_a5 - axis_a5_left_down  # A5: its turn
         if not -180.000000001 <= axis_a5_left_up - open_a5 < 179.999999999:
             axis_a5_left_up = nearest_period(axis_a5_left_up, open_a5)
         axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
@@ -430,7 +401,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left_down_down = offset_a2 + angle_q2_down_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_down_down - open_a2 < 179.999999999:
             axis_a2_left_down_down = nearest_period(axis_a2_left_down_down, open_a2)
-        axis_a3_left_down_down = offset_a3 - angle_q3_down/DEGREE  # A3: its turn
+        axis_a3_left_down_down = offset_a3 - part_of_axis_a3_down  # A3: its turn
         if not -180.000000001 <= axis_a3_left_down_down - open_a3 < 179.999999999:
             axis_a3_left_down_down = nearest_period(axis_a3_left_down_down, open_a3)
         # q4: what the sum q234 leaves; A4: its turn
@@ -440,7 +411,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left_down_up = offset_a2 + angle_q2_down_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_down_up - open_a2 < 179.999999999:
             axis_a2_left_down_up = nearest_period(axis_a2_left_down_up, open_a2)
-        axis_a3_left_down_up = offset_a3 - angle_q3_up/DEGREE  # A3: its turn
+        axis_a3_left_down_up = offset_a3 - part_of_axis_a3_up  # A3: its turn
         if not -180.000000001 <= axis_a3_left_down_up - open_a3 < 179.999999999:
             axis_a3_left_down_up = nearest_period(axis_a3_left_down_up, open_a3)
         # q4: what the sum q234 leaves; A4: its turn
@@ -491,25 +462,26 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_up_up = 3
             refusal_left_down_down = 3
             refusal_left_down_up = 3
-        minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_right - r21*cos_q1_before_q1_for_q3_right
-        r22_from_q1 = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right
-        # q6: direction and distance of a point
-        radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
-        r33_times_radius_q6 = r33*radius_q6
         # q5: linear pair in the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right
+        r21_from_q1 = r21*cos_q1_before_q1_for_q3_right - r11*sin_q1_before_q1_for_q3_right
+        r22_from_q1 = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         # its reference where it is free
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
+            cos_q6_before_q6_of_q3_down = -(r21_from_q1/radius_q6)
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)
-            sin_q6_before_q6_of_q3_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
-            sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = sin(free_a6)
+            cos_q6_before_q6_of_q3_down = cos_of_free_a6
+            sin_q6_before_q6_of_q3_down = sin_of_free_a6
+            cos_q6_before_q6_of_q3_up = cos_of_free_a6
+            sin_q6_before_q6_of_q3_up = sin_of_free_a6
+        r33_times_radius_q6 = r33*radius_q6
         r21_from_q1_before_q56_before_q6_of_q3_down = (
             (r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down)*cos_q5 - r33_times_radius_q6
         )
@@ -531,50 +503,38 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            wrist_y_from_q1_along = d5*r32
-            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             wrist_y_from_q1_across = d5*r31
-            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            minus_wrist_x_from_q1_along = d5*r31*cos_q5
-            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_y_from_q1_along = d5*r32
+            part_of_along_q6_of_q3 = wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            part_of_across_q6_of_q3 = wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            r33_times_radius_q6_right_times_d5 = d5*r33_times_radius_q6
+            wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
+            wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + d5_times_r33_times_radius_q6
-                along_q6_of_q3 = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
-                )
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + r33_times_radius_q6_right_times_d5
+                along_q6_of_q3 = 2.0*part_of_along_q6_of_q3 + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0*part_of_across_q6_of_q3 + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_down - along_q6_of_q3*cos_q6_before_q6_of_q3_down
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -593,15 +553,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                part_of_cost_q6_of_q3_right_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
                 # what the motion changes of the pose
                 cost_q6_of_q3 = (
                     sqrt(
-                        (
-                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
-                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down)
-                        + (
-                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
-                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down)
+                        part_of_cost_q6_of_q3*part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_right_down_2*part_of_cost_q6_of_q3_right_down_2
                     )
                     *radius_q6
                 )
@@ -618,10 +576,8 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3_2)*(a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
@@ -640,7 +596,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_right_up_down - open_a2 < 179.999999999:
             axis_a2_right_up_down = nearest_period(axis_a2_right_up_down, open_a2)
         angle_q3_down = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
-        axis_a3_right_up_down = offset_a3 + angle_q3_down/DEGREE  # A3: its turn
+        part_of_axis_a3_down = angle_q3_down/DEGREE
+        axis_a3_right_up_down = offset_a3 + part_of_axis_a3_down  # A3: its turn
         if not -180.000000001 <= axis_a3_right_up_down - open_a3 < 179.999999999:
             axis_a3_right_up_down = nearest_period(axis_a3_right_up_down, open_a3)
         angle_with_q4_down = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
@@ -678,50 +635,38 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
-            wrist_y_from_q1_along = d5*r32
-            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             wrist_y_from_q1_across = d5*r31
-            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            minus_wrist_x_from_q1_along = d5*r31*cos_q5
-            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_y_from_q1_along = d5*r32
+            part_of_along_q6_of_q3 = wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            part_of_across_q6_of_q3 = wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            r33_times_radius_q6_right_times_d5 = d5*r33_times_radius_q6
+            wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
+            wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - d5_times_r33_times_radius_q6
-                along_q6_of_q3 = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
-                )
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - r33_times_radius_q6_right_times_d5
+                along_q6_of_q3 = 2.0*part_of_along_q6_of_q3 + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0*part_of_across_q6_of_q3 + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_up - along_q6_of_q3*cos_q6_before_q6_of_q3_up
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -740,15 +685,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                part_of_cost_q6_of_q3_right_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
                 # what the motion changes of the pose
                 cost_q6_of_q3 = (
                     sqrt(
-                        (
-                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
-                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up)
-                        + (
-                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
-                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up)
+                        part_of_cost_q6_of_q3*part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_right_up_2*part_of_cost_q6_of_q3_right_up_2
                     )
                     *radius_q6
                 )
@@ -765,10 +708,8 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3_2)*(a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
@@ -787,7 +728,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_right_up_up - open_a2 < 179.999999999:
             axis_a2_right_up_up = nearest_period(axis_a2_right_up_up, open_a2)
         angle_q3_up = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
-        axis_a3_right_up_up = offset_a3 + angle_q3_up/DEGREE  # A3: its turn
+        part_of_axis_a3_up = angle_q3_up/DEGREE
+        axis_a3_right_up_up = offset_a3 + part_of_axis_a3_up  # A3: its turn
         if not -180.000000001 <= axis_a3_right_up_up - open_a3 < 179.999999999:
             axis_a3_right_up_up = nearest_period(axis_a3_right_up_up, open_a3)
         angle_with_q4_up = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
@@ -795,7 +737,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)/DEGREE
         if not -180.000000001 <= axis_a4_right_up_up - open_a4 < 179.999999999:
             axis_a4_right_up_up = nearest_period(axis_a4_right_up_up, open_a4)
-        axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down  # A5: its turn
+        axis_a5_right_up = twice_offset_a5 - axis_a5_right_down  # A5: its turn
         if not -180.000000001 <= axis_a5_right_up - open_a5 < 179.999999999:
             axis_a5_right_up = nearest_period(axis_a5_right_up, open_a5)
         axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
@@ -804,7 +746,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right_down_down = offset_a2 + angle_q2_down_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_down_down - open_a2 < 179.999999999:
             axis_a2_right_down_down = nearest_period(axis_a2_right_down_down, open_a2)
-        axis_a3_right_down_down = offset_a3 - angle_q3_down/DEGREE  # A3: its turn
+        axis_a3_right_down_down = offset_a3 - part_of_axis_a3_down  # A3: its turn
         if not -180.000000001 <= axis_a3_right_down_down - open_a3 < 179.999999999:
             axis_a3_right_down_down = nearest_period(axis_a3_right_down_down, open_a3)
         # q4: what the sum q234 leaves; A4: its turn
@@ -814,7 +756,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right_down_up = offset_a2 + angle_q2_down_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_down_up - open_a2 < 179.999999999:
             axis_a2_right_down_up = nearest_period(axis_a2_right_down_up, open_a2)
-        axis_a3_right_down_up = offset_a3 - angle_q3_up/DEGREE  # A3: its turn
+        axis_a3_right_down_up = offset_a3 - part_of_axis_a3_up  # A3: its turn
         if not -180.000000001 <= axis_a3_right_down_up - open_a3 < 179.999999999:
             axis_a3_right_down_up = nearest_period(axis_a3_right_down_up, open_a3)
         # q4: what the sum q234 leaves; A4: its turn
@@ -953,40 +895,41 @@ def unrolled(k: Constants) -> Unrolled:
             ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle_2:
-            d4_times_wrist_y = d4*wrist_y
-            ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
             divisor_q1 = distance_q1*distance_q1
-            cos_q1_before_q1_for_q3_left = (-ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y)/divisor_q1
-            ahead_q1_before_q1_for_q3_times_wrist_y = ahead_q1_before_q1_for_q3*wrist_y
+            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3*wrist_x
+            d4_times_wrist_y = d4*wrist_y
+            cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - part_of_cos_q1_before_q1_for_q3)/divisor_q1
             d4_times_wrist_x = d4*wrist_x
-            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - ahead_q1_before_q1_for_q3_times_wrist_y)/divisor_q1
-            cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y)/divisor_q1
-            sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_y + d4_times_wrist_x)/divisor_q1
+            part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3*wrist_y
+            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - part_of_sin_q1_before_q1_for_q3)/divisor_q1
+            cos_q1_before_q1_for_q3_right = (part_of_cos_q1_before_q1_for_q3 - d4_times_wrist_y)/divisor_q1
+            sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + part_of_sin_q1_before_q1_for_q3)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3_left = cos(free_a1)
             sin_q1_before_q1_for_q3_left = sin(free_a1)
             cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left
             sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
-        minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_left - r21*cos_q1_before_q1_for_q3_left
-        r22_from_q1 = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
-        # q6: direction and distance of a point
-        radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
-        r33_times_radius_q6 = r33*radius_q6
         # q5: linear pair in the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left
+        r21_from_q1 = r21*cos_q1_before_q1_for_q3_left - r11*sin_q1_before_q1_for_q3_left
+        r22_from_q1 = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         # its reference where it is free
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
+            cos_q6_before_q6_of_q3_down = -(r21_from_q1/radius_q6)
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)
-            sin_q6_before_q6_of_q3_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
-            sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = sin(free_a6)
+            cos_q6_before_q6_of_q3_down = cos_of_free_a6
+            sin_q6_before_q6_of_q3_down = sin_of_free_a6
+            cos_q6_before_q6_of_q3_up = cos_of_free_a6
+            sin_q6_before_q6_of_q3_up = sin_of_free_a6
+        r33_times_radius_q6 = r33*radius_q6
         r21_from_q1_before_q56_before_q6_of_q3_down = (
             (r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down)*cos_q5 - r33_times_radius_q6
         )
@@ -1009,50 +952,38 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            wrist_y_from_q1_along = d5*r32
-            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            minus_wrist_x_from_q1_along = d5*r31*cos_q5
+            r33_times_radius_q6_left_times_d5 = d5*r33_times_radius_q6
             wrist_y_from_q1_across = d5*r31
-            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
+            wrist_y_from_q1_along = d5*r32
+            part_of_along_q6_of_q3 = wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
+            part_of_across_q6_of_q3 = wrist_y_from_q1_across*wrist_y_from_q1_fixed
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 - ahead_q1_before_q1_for_q3
-                along_q6_of_q3 = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
-                )
+                wrist_x_from_q1_fixed = r33_times_radius_q6_left_times_d5 - ahead_q1_before_q1_for_q3
+                along_q6_of_q3 = 2.0*part_of_along_q6_of_q3 + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0*part_of_across_q6_of_q3 + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_down - along_q6_of_q3*cos_q6_before_q6_of_q3_down
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -1071,15 +1002,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                part_of_cost_q6_of_q3_left_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
                 # what the motion changes of the pose
                 cost_q6_of_q3 = (
                     sqrt(
-                        (
-                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
-                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down)
-                        + (
-                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
-                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down)
+                        part_of_cost_q6_of_q3*part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_left_down_2*part_of_cost_q6_of_q3_left_down_2
                     )
                     *radius_q6
                 )
@@ -1096,10 +1025,8 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3_2)*(a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_left_down = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*RADIAN
@@ -1143,50 +1070,38 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
-            wrist_y_from_q1_along = d5*r32
-            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            minus_wrist_x_from_q1_along = d5*r31*cos_q5
+            r33_times_radius_q6_left_times_d5 = d5*r33_times_radius_q6
             wrist_y_from_q1_across = d5*r31
-            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
+            wrist_y_from_q1_along = d5*r32
+            part_of_along_q6_of_q3 = wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
+            part_of_across_q6_of_q3 = wrist_y_from_q1_across*wrist_y_from_q1_fixed
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - d5_times_r33_times_radius_q6
-                along_q6_of_q3 = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
-                )
+                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - r33_times_radius_q6_left_times_d5
+                along_q6_of_q3 = 2.0*part_of_along_q6_of_q3 + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0*part_of_across_q6_of_q3 + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_up - along_q6_of_q3*cos_q6_before_q6_of_q3_up
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -1205,15 +1120,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                part_of_cost_q6_of_q3_left_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
                 # what the motion changes of the pose
                 cost_q6_of_q3 = (
                     sqrt(
-                        (
-                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
-                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up)
-                        + (
-                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
-                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up)
+                        part_of_cost_q6_of_q3*part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_left_up_2*part_of_cost_q6_of_q3_left_up_2
                     )
                     *radius_q6
                 )
@@ -1230,10 +1143,8 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3_2)*(a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_left_up = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
@@ -1254,31 +1165,32 @@ def unrolled(k: Constants) -> Unrolled:
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4: what the sum q234 leaves
         axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_left_up_up - angle_q3_up)*RADIAN
-        axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down
+        axis_a5_left_up = twice_offset_a5 - axis_a5_left_down
         axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
         # q4: what the sum q234 leaves
         axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_left_down_down)*RADIAN
         # q4: what the sum q234 leaves
         axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_left_down_up)*RADIAN
-        minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_right - r21*cos_q1_before_q1_for_q3_right
-        r22_from_q1 = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right
-        # q6: direction and distance of a point
-        radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
-        r33_times_radius_q6 = r33*radius_q6
         # q5: linear pair in the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right
+        r21_from_q1 = r21*cos_q1_before_q1_for_q3_right - r11*sin_q1_before_q1_for_q3_right
+        r22_from_q1 = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         # its reference where it is free
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
+            cos_q6_before_q6_of_q3_down = -(r21_from_q1/radius_q6)
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)
-            sin_q6_before_q6_of_q3_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
-            sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = sin(free_a6)
+            cos_q6_before_q6_of_q3_down = cos_of_free_a6
+            sin_q6_before_q6_of_q3_down = sin_of_free_a6
+            cos_q6_before_q6_of_q3_up = cos_of_free_a6
+            sin_q6_before_q6_of_q3_up = sin_of_free_a6
+        r33_times_radius_q6 = r33*radius_q6
         r21_from_q1_before_q56_before_q6_of_q3_down = (
             (r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down)*cos_q5 - r33_times_radius_q6
         )
@@ -1300,50 +1212,38 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            wrist_y_from_q1_along = d5*r32
-            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             wrist_y_from_q1_across = d5*r31
-            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            minus_wrist_x_from_q1_along = d5*r31*cos_q5
-            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_y_from_q1_along = d5*r32
+            part_of_along_q6_of_q3 = wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            part_of_across_q6_of_q3 = wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            r33_times_radius_q6_right_times_d5 = d5*r33_times_radius_q6
+            wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
+            wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + d5_times_r33_times_radius_q6
-                along_q6_of_q3 = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
-                )
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + r33_times_radius_q6_right_times_d5
+                along_q6_of_q3 = 2.0*part_of_along_q6_of_q3 + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0*part_of_across_q6_of_q3 + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_down - along_q6_of_q3*cos_q6_before_q6_of_q3_down
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -1362,15 +1262,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                part_of_cost_q6_of_q3_right_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
                 # what the motion changes of the pose
                 cost_q6_of_q3 = (
                     sqrt(
-                        (
-                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
-                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down)
-                        + (
-                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
-                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down)
+                        part_of_cost_q6_of_q3*part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_right_down_2*part_of_cost_q6_of_q3_right_down_2
                     )
                     *radius_q6
                 )
@@ -1387,10 +1285,8 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3_2)*(a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_right_down = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*RADIAN
@@ -1434,50 +1330,38 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
-            wrist_y_from_q1_along = d5*r32
-            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             wrist_y_from_q1_across = d5*r31
-            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            minus_wrist_x_from_q1_along = d5*r31*cos_q5
-            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_y_from_q1_along = d5*r32
+            part_of_along_q6_of_q3 = wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            part_of_across_q6_of_q3 = wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            r33_times_radius_q6_right_times_d5 = d5*r33_times_radius_q6
+            wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
+            wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - d5_times_r33_times_radius_q6
-                along_q6_of_q3 = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
-                )
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - r33_times_radius_q6_right_times_d5
+                along_q6_of_q3 = 2.0*part_of_along_q6_of_q3 + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0*part_of_across_q6_of_q3 + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_up - along_q6_of_q3*cos_q6_before_q6_of_q3_up
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -1496,15 +1380,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                part_of_cost_q6_of_q3_right_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
                 # what the motion changes of the pose
                 cost_q6_of_q3 = (
                     sqrt(
-                        (
-                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
-                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up)
-                        + (
-                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
-                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up)
+                        part_of_cost_q6_of_q3*part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_right_up_2*part_of_cost_q6_of_q3_right_up_2
                     )
                     *radius_q6
                 )
@@ -1521,10 +1403,8 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3_2)*(a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_right_up = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
@@ -1545,7 +1425,7 @@ def unrolled(k: Constants) -> Unrolled:
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4: what the sum q234 leaves
         axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_right_up_up - angle_q3_up)*RADIAN
-        axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down
+        axis_a5_right_up = twice_offset_a5 - axis_a5_right_down
         axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
         # q4: what the sum q234 leaves
         axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_right_down_down)*RADIAN
@@ -1652,27 +1532,27 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q1_before_q1_for_q3 = sin(free_a1)
         # q5: linear pair in the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3
-        minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3 - r21*cos_q1_before_q1_for_q3
+        r21_from_q1 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
         r22_from_q1 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
-        # q6: direction and distance of a point
-        radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
-        q6_radius_of_q5 = sigma_wrist*radius_q6
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         # its reference where it is free
         if radius_q6 > 1e-11:
-            along_q6 = sigma_wrist*minus_r21_from_q1  # q6: polar angle in the r31 and r32 equations
+            along_q6 = -sigma_wrist*r21_from_q1  # q6: polar angle in the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6/radius_q6
             sin_q6_before_q6_of_q3 = (sigma_wrist*r22_from_q1)/radius_q6
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_q6_before_q6_of_q3 = cos(free_a6)
             sin_q6_before_q6_of_q3 = sin(free_a6)
+        q6_radius_of_q5 = sigma_wrist*radius_q6
+        q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33
         r21_from_q1_before_q56_before_q6_of_q3 = (
-            (r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3)*cos_q5 - q6_radius_of_q5*r33
+            (r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3)*cos_q5 - q6_radius_of_q5_times_r33
         )
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3
-        wrist_z = z - d6*r33
         r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
-        wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
+        wrist_y_from_q1_fixed = z - d6*r33 - d1
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
@@ -1689,37 +1569,38 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + d5*q6_radius_of_q5*r33
-                wrist_y_from_q1_fixed = wrist_z - d1
-                along_q6_of_q3 = 2.0*(d5*r32)*wrist_y_from_q1_fixed - 2.0*(d5*r31*cos_q5)*wrist_x_from_q1_fixed
-                across_q6_of_q3 = 2.0*(d5*r32*cos_q5)*wrist_x_from_q1_fixed + 2.0*(d5*r31)*wrist_y_from_q1_fixed
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + d5*q6_radius_of_q5_times_r33
+                wrist_y_from_q1_across = d5*r31
+                wrist_y_from_q1_along = d5*r32
+                along_q6_of_q3 = (
+                    2.0*(-wrist_y_from_q1_across*cos_q5)*wrist_x_from_q1_fixed
+                    + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+                )
+                across_q6_of_q3 = (
+                    2.0*(wrist_y_from_q1_along*cos_q5)*wrist_x_from_q1_fixed
+                    + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3*sin_q6_before_q6_of_q3 + along_q6_of_q3*cos_q6_before_q6_of_q3 - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -1734,16 +1615,15 @@ def unrolled(k: Constants) -> Unrolled:
                 moved_q6_of_q3 = nearest_on_arc(
                     arctan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3),
                     arctan2(across_q6_of_q3, along_q6_of_q3) + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
-                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
+                    0.5*(far_q6_of_q3 - near_q6_of_q3),
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
+                part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
                 # what the motion changes of the pose
                 cost_q6_of_q3 = (
-                    sqrt(
-                        (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
-                        + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
-                    )
+                    sqrt(part_of_cost_q6_of_q3*part_of_cost_q6_of_q3 + part_of_cost_q6_of_q3_2*part_of_cost_q6_of_q3_2)
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
@@ -1754,10 +1634,10 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q56 = (r31*cos_q6 - r32*sin_q6)*cos_q5 - q6_radius_of_q5*r33
+            r21_from_q1_before_q56 = (r31*cos_q6 - r32*sin_q6)*cos_q5 - q6_radius_of_q5_times_r33
             wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-            wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1
+            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_a3_2)*(a2_minus_a3_2 + reach)  # 1 + cosine, times the scale

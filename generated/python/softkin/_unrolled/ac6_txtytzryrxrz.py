@@ -87,7 +87,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4_upright - open_a4 < 179.999999999:
             axis_a4_upright = nearest_period(axis_a4_upright, open_a4)
         open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
-        axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4 + 0.0)/DEGREE  # A5: its turn
+        axis_a5_upright = offset_a5 - arctan2(r23, radius_a4 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_upright - open_a5 < 179.999999999:
             axis_a5_upright = nearest_period(axis_a5_upright, open_a5)
         scaled_r11_from_a4 = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
@@ -119,7 +119,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_flipped = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_flipped - open_a4 < 179.999999999:
             axis_a4_flipped = nearest_period(axis_a4_flipped, open_a4)
-        axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4 + 0.0)/DEGREE  # A5: its turn
+        axis_a5_flipped = offset_a5 - arctan2(r23, -radius_a4 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_flipped - open_a5 < 179.999999999:
             axis_a5_flipped = nearest_period(axis_a5_flipped, open_a5)
         axis_a6_flipped = direction_of_axis_a6  # A6: its turn
@@ -186,9 +186,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped, direction_x_a4_flipped)*RADIAN
             direction_of_axis_a6 = offset_a6 + arctan2(direction_y_a6_flipped, scaled_r11_from_a4_flipped)*RADIAN
         return (
-            (axis_a1, axis_a2, axis_a3, axis_a4, offset_a5 + arctan2(-r23, radius_a4)*RADIAN, axis_a6),
+            (axis_a1, axis_a2, axis_a3, axis_a4, offset_a5 - arctan2(r23, radius_a4)*RADIAN, axis_a6),
             (
-                axis_a1, axis_a2, axis_a3, direction_of_axis_a4, offset_a5 + arctan2(-r23, -radius_a4)*RADIAN,
+                axis_a1, axis_a2, axis_a3, direction_of_axis_a4, offset_a5 - arctan2(r23, -radius_a4)*RADIAN,
                 direction_of_axis_a6,
             ),
         )
@@ -220,13 +220,17 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
         if no_offsets:
             return (
-                wrist_x, wrist_y, wrist_z, arctan2(direction_y_a4, direction_x_a4)*RADIAN,
-                arctan2(-r23, sigma_wrist*radius_a4)*RADIAN, arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN,
+                wrist_x,
+                wrist_y,
+                wrist_z,
+                arctan2(direction_y_a4, direction_x_a4)*RADIAN,
+                (-arctan2(r23, sigma_wrist*radius_a4))*RADIAN,
+                arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN,
             )
         return (
             offset_a1 + wrist_x, offset_a2 + wrist_y, offset_a3 + wrist_z,
             offset_a4 + arctan2(direction_y_a4, direction_x_a4)*RADIAN,
-            offset_a5 + arctan2(-r23, sigma_wrist*radius_a4)*RADIAN,
+            offset_a5 - arctan2(r23, sigma_wrist*radius_a4)*RADIAN,
             offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN,
         )
 

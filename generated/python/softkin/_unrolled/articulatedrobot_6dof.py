@@ -58,12 +58,12 @@ def unrolled(k: Constants) -> Unrolled:
     swing_scale_q3 = k.swing_scale_q3
     machine_scale_squared_times_plane_2 = 1e-6*machine_scale*machine_scale
     machine_scale_times_free_angle_2 = 1e-11*machine_scale
-    angle_of_a3_by_effective_q3 = arctan2(d4/effective_q3 + 0.0, a3/effective_q3 + 0.0)
-    offset_a6_plus_180 = 180.0 + offset_a6
+    part_of_angle_q3_front_down = arctan2(d4/effective_q3 + 0.0, a3/effective_q3 + 0.0)
     swing_scale_q3_squared_times_rounding_2 = 1e-12*swing_scale_q3*swing_scale_q3
-    offset_a5_times_2 = 2.0*offset_a5
+    twice_offset_a5 = 2.0*offset_a5
     a2_plus_effective_q3_2 = a2 + effective_q3
     a2_minus_effective_q3_2 = a2 - effective_q3
+    offset_a6_plus_180 = 180.0 + offset_a6
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -95,15 +95,15 @@ def unrolled(k: Constants) -> Unrolled:
             ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle_2:
-            d3_times_wrist_y = d3*wrist_y
-            ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
             divisor_q1 = distance_q1*distance_q1
-            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_wrist_x - d3_times_wrist_y)/divisor_q1
+            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3*wrist_x
+            d3_times_wrist_y = d3*wrist_y
+            cos_q1_before_q1_for_q3_front = (part_of_cos_q1_before_q1_for_q3 - d3_times_wrist_y)/divisor_q1
+            part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3*wrist_y
             d3_times_wrist_x = d3*wrist_x
-            ahead_q1_before_q1_for_q3_times_wrist_y = ahead_q1_before_q1_for_q3*wrist_y
-            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_wrist_y + d3_times_wrist_x)/divisor_q1
-            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_wrist_x - d3_times_wrist_y)/divisor_q1
-            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - ahead_q1_before_q1_for_q3_times_wrist_y)/divisor_q1
+            sin_q1_before_q1_for_q3_front = (d3_times_wrist_x + part_of_sin_q1_before_q1_for_q3)/divisor_q1
+            cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - part_of_cos_q1_before_q1_for_q3)/divisor_q1
+            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - part_of_sin_q1_before_q1_for_q3)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3_front = cos(free_a1)
@@ -111,15 +111,13 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         r13_from_q1 = r13*cos_q1_before_q1_for_q3_front + r23*sin_q1_before_q1_for_q3_front
-        wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # 1 - cosine, times the scale
-        one_less_cos_q3 = (a2_minus_reach + effective_q3)*(a2_plus_reach + effective_q3)
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
@@ -134,25 +132,27 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        angle_of_swing_q3 = -arctan2(sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_swing_q3 + part_of_angle_q3_front_down
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         r23_from_q1 = r23*cos_q1_before_q1_for_q3_front - r13*sin_q1_before_q1_for_q3_front
         # q4: direction and distance of a point
-        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            direction_x_q4_down = minus_r13_from_q123
+            direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4_down = cos(free_a4)
-            direction_y_q4_down = sin(free_a4)
-            direction_x_q4_up = direction_x_q4_down
-            direction_y_q4_up = direction_y_q4_down
+            cos_of_free_a4 = cos(free_a4)
+            sin_of_free_a4 = sin(free_a4)
+            direction_x_q4_down = cos_of_free_a4
+            direction_y_q4_down = sin_of_free_a4
+            direction_x_q4_up = cos_of_free_a4
+            direction_y_q4_up = sin_of_free_a4
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
         # A4: its turn
         axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
@@ -206,29 +206,31 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_front_down_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_front_down_up - open_a4 < 179.999999999:
             axis_a4_front_down_up = nearest_period(axis_a4_front_down_up, open_a4)
-        axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down  # A5: its turn
+        axis_a5_front_down_up = twice_offset_a5 - axis_a5_front_down_down  # A5: its turn
         if not -180.000000001 <= axis_a5_front_down_up - open_a5 < 179.999999999:
             axis_a5_front_down_up = nearest_period(axis_a5_front_down_up, open_a5)
         axis_a6_front_down_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_front_down_up - open_a6 < 179.999999999:
             axis_a6_front_down_up = nearest_period(axis_a6_front_down_up, open_a6)
-        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q3 = part_of_angle_q3_front_down - angle_of_swing_q3
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         # q4: direction and distance of a point
-        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            direction_x_q4_down = minus_r13_from_q123
+            direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4_down = cos(free_a4)
-            direction_y_q4_down = sin(free_a4)
-            direction_x_q4_up = direction_x_q4_down
-            direction_y_q4_up = direction_y_q4_down
+            cos_of_free_a4 = cos(free_a4)
+            sin_of_free_a4 = sin(free_a4)
+            direction_x_q4_down = cos_of_free_a4
+            direction_y_q4_down = sin_of_free_a4
+            direction_x_q4_up = cos_of_free_a4
+            direction_y_q4_up = sin_of_free_a4
         # A4: its turn
         axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_front_up_down - open_a4 < 179.999999999:
@@ -268,7 +270,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_front_up_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_front_up_up - open_a4 < 179.999999999:
             axis_a4_front_up_up = nearest_period(axis_a4_front_up_up, open_a4)
-        axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down  # A5: its turn
+        axis_a5_front_up_up = twice_offset_a5 - axis_a5_front_up_down  # A5: its turn
         if not -180.000000001 <= axis_a5_front_up_up - open_a5 < 179.999999999:
             axis_a5_front_up_up = nearest_period(axis_a5_front_up_up, open_a5)
         axis_a6_front_up_up = direction_of_axis_a6  # A6: its turn
@@ -321,12 +323,10 @@ def unrolled(k: Constants) -> Unrolled:
         r13_from_q1 = r13*cos_q1_before_q1_for_q3_back + r23*sin_q1_before_q1_for_q3_back
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # 1 - cosine, times the scale
-        one_less_cos_q3 = (a2_minus_reach + effective_q3)*(a2_plus_reach + effective_q3)
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
@@ -341,25 +341,27 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        angle_of_swing_q3 = -arctan2(sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_swing_q3 + part_of_angle_q3_front_down
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         r23_from_q1 = r23*cos_q1_before_q1_for_q3_back - r13*sin_q1_before_q1_for_q3_back
         # q4: direction and distance of a point
-        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            direction_x_q4_down = minus_r13_from_q123
+            direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4_down = cos(free_a4)
-            direction_y_q4_down = sin(free_a4)
-            direction_x_q4_up = direction_x_q4_down
-            direction_y_q4_up = direction_y_q4_down
+            cos_of_free_a4 = cos(free_a4)
+            sin_of_free_a4 = sin(free_a4)
+            direction_x_q4_down = cos_of_free_a4
+            direction_y_q4_down = sin_of_free_a4
+            direction_x_q4_up = cos_of_free_a4
+            direction_y_q4_up = sin_of_free_a4
         # A4: its turn
         axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_back_down_down - open_a4 < 179.999999999:
@@ -407,29 +409,31 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_back_down_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_back_down_up - open_a4 < 179.999999999:
             axis_a4_back_down_up = nearest_period(axis_a4_back_down_up, open_a4)
-        axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down  # A5: its turn
+        axis_a5_back_down_up = twice_offset_a5 - axis_a5_back_down_down  # A5: its turn
         if not -180.000000001 <= axis_a5_back_down_up - open_a5 < 179.999999999:
             axis_a5_back_down_up = nearest_period(axis_a5_back_down_up, open_a5)
         axis_a6_back_down_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_back_down_up - open_a6 < 179.999999999:
             axis_a6_back_down_up = nearest_period(axis_a6_back_down_up, open_a6)
-        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q3 = part_of_angle_q3_front_down - angle_of_swing_q3
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         # q4: direction and distance of a point
-        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            direction_x_q4_down = minus_r13_from_q123
+            direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4_down = cos(free_a4)
-            direction_y_q4_down = sin(free_a4)
-            direction_x_q4_up = direction_x_q4_down
-            direction_y_q4_up = direction_y_q4_down
+            cos_of_free_a4 = cos(free_a4)
+            sin_of_free_a4 = sin(free_a4)
+            direction_x_q4_down = cos_of_free_a4
+            direction_y_q4_down = sin_of_free_a4
+            direction_x_q4_up = cos_of_free_a4
+            direction_y_q4_up = sin_of_free_a4
         # A4: its turn
         axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_back_up_down - open_a4 < 179.999999999:
@@ -469,7 +473,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_back_up_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_back_up_up - open_a4 < 179.999999999:
             axis_a4_back_up_up = nearest_period(axis_a4_back_up_up, open_a4)
-        axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down  # A5: its turn
+        axis_a5_back_up_up = twice_offset_a5 - axis_a5_back_up_down  # A5: its turn
         if not -180.000000001 <= axis_a5_back_up_up - open_a5 < 179.999999999:
             axis_a5_back_up_up = nearest_period(axis_a5_back_up_up, open_a5)
         axis_a6_back_up_up = direction_of_axis_a6  # A6: its turn
@@ -605,28 +609,26 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(None,)
             ahead_q1_before_q1_for_q3 = 0.0
-        wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # 1 - cosine, times the scale
-        one_less_cos_q3 = (a2_minus_reach + effective_q3)*(a2_plus_reach + effective_q3)
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_front = 0 if sine_square_q3 >= -swing_scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle_2:
-            d3_times_wrist_y = d3*wrist_y
-            ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
             divisor_q1 = distance_q1*distance_q1
-            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_wrist_x - d3_times_wrist_y)/divisor_q1
+            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3*wrist_x
+            d3_times_wrist_y = d3*wrist_y
+            cos_q1_before_q1_for_q3_front = (part_of_cos_q1_before_q1_for_q3 - d3_times_wrist_y)/divisor_q1
+            part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3*wrist_y
             d3_times_wrist_x = d3*wrist_x
-            ahead_q1_before_q1_for_q3_times_wrist_y = ahead_q1_before_q1_for_q3*wrist_y
-            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_wrist_y + d3_times_wrist_x)/divisor_q1
-            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_wrist_x - d3_times_wrist_y)/divisor_q1
-            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - ahead_q1_before_q1_for_q3_times_wrist_y)/divisor_q1
+            sin_q1_before_q1_for_q3_front = (d3_times_wrist_x + part_of_sin_q1_before_q1_for_q3)/divisor_q1
+            cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - part_of_cos_q1_before_q1_for_q3)/divisor_q1
+            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - part_of_sin_q1_before_q1_for_q3)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3_front = cos(free_a1)
@@ -648,40 +650,42 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_down = free_a2
             angle_q2_up = free_a2
         axis_a2_front_down = offset_a2 + angle_q2_down*RADIAN
-        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_swing_q3 + part_of_angle_q3_front_down
         axis_a3_front_down = offset_a3 + angle_q3*RADIAN
         r13_from_q1 = r13*cos_q1_before_q1_for_q3_front + r23*sin_q1_before_q1_for_q3_front
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         r23_from_q1 = r23*cos_q1_before_q1_for_q3_front - r13*sin_q1_before_q1_for_q3_front
         # q4: direction and distance of a point
-        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        r12_from_q1 = r12*cos_q1_before_q1_for_q3_front + r22*sin_q1_before_q1_for_q3_front
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         r11_from_q1 = r11*cos_q1_before_q1_for_q3_front + r21*sin_q1_before_q1_for_q3_front
+        r12_from_q1 = r12*cos_q1_before_q1_for_q3_front + r22*sin_q1_before_q1_for_q3_front
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
-            direction_x_q4_down = minus_r13_from_q123
+            direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
             minus_scaled_r21_from_q1234_down = r12_from_q1*cos_q23 + r32*sin_q23
-            minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23) - r31*sin_q23
+            minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23 + r31*sin_q23)
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
+            cos_of_free_a4 = cos(free_a4)
+            sin_of_free_a4 = sin(free_a4)
             r21_from_q1 = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
-                direction_x_q4_down = minus_r13_from_q123
+                direction_x_q4_down = -r13_from_q123
                 direction_y_q4_down = r23_from_q1
-                direction_x_q4_up = -minus_r13_from_q123
+                direction_x_q4_up = -direction_x_q4_down
                 direction_y_q4_up = -r23_from_q1
             else:
-                direction_x_q4_down = cos(free_a4)
-                direction_y_q4_down = sin(free_a4)
-                direction_x_q4_up = direction_x_q4_down
-                direction_y_q4_up = direction_y_q4_down
+                direction_x_q4_down = cos_of_free_a4
+                direction_y_q4_down = sin_of_free_a4
+                direction_x_q4_up = cos_of_free_a4
+                direction_y_q4_up = sin_of_free_a4
             r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
             minus_scaled_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
             r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
@@ -707,35 +711,37 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
         axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q3 = part_of_angle_q3_front_down - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3*RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         # q4: direction and distance of a point
-        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
-            direction_x_q4_down = minus_r13_from_q123
+            direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
             minus_scaled_r21_from_q1234_down = r12_from_q1*cos_q23 + r32*sin_q23
-            minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23) - r31*sin_q23
+            minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23 + r31*sin_q23)
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
+            cos_of_free_a4 = cos(free_a4)
+            sin_of_free_a4 = sin(free_a4)
             r21_from_q1 = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
-                direction_x_q4_down = minus_r13_from_q123
+                direction_x_q4_down = -r13_from_q123
                 direction_y_q4_down = r23_from_q1
-                direction_x_q4_up = -minus_r13_from_q123
+                direction_x_q4_up = -direction_x_q4_down
                 direction_y_q4_up = -r23_from_q1
             else:
-                direction_x_q4_down = cos(free_a4)
-                direction_y_q4_down = sin(free_a4)
-                direction_x_q4_up = direction_x_q4_down
-                direction_y_q4_up = direction_y_q4_down
+                direction_x_q4_down = cos_of_free_a4
+                direction_y_q4_down = sin_of_free_a4
+                direction_x_q4_up = cos_of_free_a4
+                direction_y_q4_up = sin_of_free_a4
             r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
             minus_scaled_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
             r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
@@ -762,12 +768,10 @@ def unrolled(k: Constants) -> Unrolled:
             )
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # 1 - cosine, times the scale
-        one_less_cos_q3 = (a2_minus_reach + effective_q3)*(a2_plus_reach + effective_q3)
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_back = 0 if sine_square_q3 >= -swing_scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
@@ -785,40 +789,42 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_down = free_a2
             angle_q2_up = free_a2
         axis_a2_back_down = offset_a2 + angle_q2_down*RADIAN
-        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_swing_q3 + part_of_angle_q3_front_down
         axis_a3_back_down = offset_a3 + angle_q3*RADIAN
         r13_from_q1 = r13*cos_q1_before_q1_for_q3_back + r23*sin_q1_before_q1_for_q3_back
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         r23_from_q1 = r23*cos_q1_before_q1_for_q3_back - r13*sin_q1_before_q1_for_q3_back
         # q4: direction and distance of a point
-        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        r12_from_q1 = r12*cos_q1_before_q1_for_q3_back + r22*sin_q1_before_q1_for_q3_back
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         r11_from_q1 = r11*cos_q1_before_q1_for_q3_back + r21*sin_q1_before_q1_for_q3_back
+        r12_from_q1 = r12*cos_q1_before_q1_for_q3_back + r22*sin_q1_before_q1_for_q3_back
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
-            direction_x_q4_down = minus_r13_from_q123
+            direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
             minus_scaled_r21_from_q1234_down = r12_from_q1*cos_q23 + r32*sin_q23
-            minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23) - r31*sin_q23
+            minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23 + r31*sin_q23)
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
+            cos_of_free_a4 = cos(free_a4)
+            sin_of_free_a4 = sin(free_a4)
             r21_from_q1 = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
-                direction_x_q4_down = minus_r13_from_q123
+                direction_x_q4_down = -r13_from_q123
                 direction_y_q4_down = r23_from_q1
-                direction_x_q4_up = -minus_r13_from_q123
+                direction_x_q4_up = -direction_x_q4_down
                 direction_y_q4_up = -r23_from_q1
             else:
-                direction_x_q4_down = cos(free_a4)
-                direction_y_q4_down = sin(free_a4)
-                direction_x_q4_up = direction_x_q4_down
-                direction_y_q4_up = direction_y_q4_down
+                direction_x_q4_down = cos_of_free_a4
+                direction_y_q4_down = sin_of_free_a4
+                direction_x_q4_up = cos_of_free_a4
+                direction_y_q4_up = sin_of_free_a4
             r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
             minus_scaled_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
             r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
@@ -844,35 +850,37 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
         axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q3 = part_of_angle_q3_front_down - angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3*RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         # q4: direction and distance of a point
-        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
-            direction_x_q4_down = minus_r13_from_q123
+            direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
             minus_scaled_r21_from_q1234_down = r12_from_q1*cos_q23 + r32*sin_q23
-            minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23) - r31*sin_q23
+            minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23 + r31*sin_q23)
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
+            cos_of_free_a4 = cos(free_a4)
+            sin_of_free_a4 = sin(free_a4)
             r21_from_q1 = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
-                direction_x_q4_down = minus_r13_from_q123
+                direction_x_q4_down = -r13_from_q123
                 direction_y_q4_down = r23_from_q1
-                direction_x_q4_up = -minus_r13_from_q123
+                direction_x_q4_up = -direction_x_q4_down
                 direction_y_q4_up = -r23_from_q1
             else:
-                direction_x_q4_down = cos(free_a4)
-                direction_y_q4_down = sin(free_a4)
-                direction_x_q4_up = direction_x_q4_down
-                direction_y_q4_up = direction_y_q4_down
+                direction_x_q4_down = cos_of_free_a4
+                direction_y_q4_down = sin_of_free_a4
+                direction_x_q4_up = cos_of_free_a4
+                direction_y_q4_up = sin_of_free_a4
             r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
             minus_scaled_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
             r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
@@ -933,7 +941,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_front, axis_a2_front_down, axis_a3_front_down, direction_of_axis_a4_front_down_up,
-                    offset_a5_times_2 - axis_a5_front_down_down, direction_of_axis_a6_front_down_up,
+                    twice_offset_a5 - axis_a5_front_down_down, direction_of_axis_a6_front_down_up,
                 )
                 if refusal_front == 0
                 else None
@@ -941,7 +949,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_back, axis_a2_back_down, axis_a3_back_down, direction_of_axis_a4_back_down_up,
-                    offset_a5_times_2 - axis_a5_back_down_down, direction_of_axis_a6_back_down_up,
+                    twice_offset_a5 - axis_a5_back_down_down, direction_of_axis_a6_back_down_up,
                 )
                 if refusal_back == 0
                 else None
@@ -949,7 +957,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_front, axis_a2_front_up, axis_a3_front_up, direction_of_axis_a4_front_up_up,
-                    offset_a5_times_2 - axis_a5_front_up_down, direction_of_axis_a6_front_up_up,
+                    twice_offset_a5 - axis_a5_front_up_down, direction_of_axis_a6_front_up_up,
                 )
                 if refusal_front == 0
                 else None
@@ -957,7 +965,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_back, axis_a2_back_up, axis_a3_back_up, direction_of_axis_a4_back_up_up,
-                    offset_a5_times_2 - axis_a5_back_up_down, direction_of_axis_a6_back_up_up,
+                    twice_offset_a5 - axis_a5_back_up_down, direction_of_axis_a6_back_up_up,
                 )
                 if refusal_back == 0
                 else None
@@ -1015,18 +1023,18 @@ def unrolled(k: Constants) -> Unrolled:
             )
         else:
             angle_q2 = (ref_a2 - offset_a2)*DEGREE
-        angle_q3 = angle_of_a3_by_effective_q3 + arctan2(sin_swing_q3, cos_swing_q3)
+        angle_q3 = part_of_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)
         r13_from_q1 = r13*cos_q1_before_q1_for_q3 + r23*sin_q1_before_q1_for_q3
         angle_q23 = angle_q2 + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         r23_from_q1 = r23*cos_q1_before_q1_for_q3 - r13*sin_q1_before_q1_for_q3
         # q4: direction and distance of a point
-        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
-            direction_x_q4 = sigma_hand*minus_r13_from_q123
+            direction_x_q4 = -sigma_hand*r13_from_q123
             direction_y_q4 = sigma_hand*r23_from_q1
             minus_scaled_r21_from_q1234 = (
                 sigma_hand*((r12*cos_q1_before_q1_for_q3 + r22*sin_q1_before_q1_for_q3)*cos_q23 + r32*sin_q23)
@@ -1037,7 +1045,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
-                direction_x_q4 = sigma_hand*minus_r13_from_q123
+                direction_x_q4 = -sigma_hand*r13_from_q123
                 direction_y_q4 = sigma_hand*r23_from_q1
             else:
                 free_a4 = (ref_a4 - offset_a4)*DEGREE

@@ -66,9 +66,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
-            free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+            part_of_direction_y_phi = nearest_on_arc((ref_phi - offset_phi)*DEGREE, 90.0*DEGREE, 90.0*DEGREE)
+            direction_x_phi = cos(part_of_direction_y_phi)
+            direction_y_phi = sin(part_of_direction_y_phi)
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         # limits of Phi
         if not (axis_phi >= lowest_phi and axis_phi <= highest_phi):
@@ -96,9 +96,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
-            free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+            part_of_direction_y_phi = nearest_on_arc((ref_phi - offset_phi)*DEGREE, 90.0*DEGREE, 90.0*DEGREE)
+            direction_x_phi = cos(part_of_direction_y_phi)
+            direction_y_phi = sin(part_of_direction_y_phi)
         return (
             (
                 offset_r + radius_phi, offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN,
@@ -125,9 +125,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
-            free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+            part_of_direction_y_phi = nearest_on_arc((ref_phi - offset_phi)*DEGREE, 90.0*DEGREE, 90.0*DEGREE)
+            direction_x_phi = cos(part_of_direction_y_phi)
+            direction_y_phi = sin(part_of_direction_y_phi)
         if no_offsets:
             return (
                 radius_phi, arctan2(direction_y_theta, direction_x_theta)*RADIAN,

@@ -50,25 +50,25 @@ def unrolled(k: Constants) -> Unrolled:
     tcp_radius_1 = k.tcp_radius_1
     tcp_radius_2 = k.tcp_radius_2
     tcp_radius_3 = k.tcp_radius_3
-    constant_part = base_radius_1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
-    constant_part_2 = base_radius_1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
     inner_arm_1_times_shortest_link_2 = 1e-9*inner_arm_1
-    inner_arm_1_times_2 = 2.0*inner_arm_1
-    constant_part_3 = base_radius_2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
-    constant_part_4 = base_radius_2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
     inner_arm_2_times_shortest_link_2 = 1e-9*inner_arm_2
-    inner_arm_2_times_2 = 2.0*inner_arm_2
-    constant_part_5 = base_radius_3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
-    constant_part_6 = base_radius_3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
     inner_arm_3_times_shortest_link_2 = 1e-9*inner_arm_3
-    inner_arm_3_times_2 = 2.0*inner_arm_3
+    part_of_span_1_x = tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1
+    part_of_span_1_y = tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1
+    twice_inner_arm_1_2 = 2.0*inner_arm_1
+    part_of_span_2_x = tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2
+    part_of_span_2_y = tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2
+    twice_inner_arm_2_2 = 2.0*inner_arm_2
+    part_of_span_3_x = tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3
+    part_of_span_3_y = tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3
+    twice_inner_arm_3_2 = 2.0*inner_arm_3
     cos_azimuth_1_times_inner_arm_1_2 = inner_arm_1*cos_azimuth_1
     inner_arm_1_times_sin_azimuth_1_2 = inner_arm_1*sin_azimuth_1
     cos_azimuth_2_times_inner_arm_2_2 = inner_arm_2*cos_azimuth_2
     inner_arm_2_times_sin_azimuth_2_2 = inner_arm_2*sin_azimuth_2
     cos_azimuth_3_times_inner_arm_3_2 = inner_arm_3*cos_azimuth_3
     inner_arm_3_times_sin_azimuth_3_2 = inner_arm_3*sin_azimuth_3
-    constant_part_7 = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
+    part_of_type2_rods_coplanar_outward_outward_outward = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -81,292 +81,325 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return 8*(2,)
-        span_1_x = x - constant_part  # rod 1
-        span_1_y = y - constant_part_2  # rod 1
+        span_1_x = part_of_span_1_x + x  # rod 1
+        span_1_y = part_of_span_1_y + y  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link_2):
             return 8*(3,)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1*twice_inner_arm_1_2  # a1: law of cosines in the rod 1 equation
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
-        third_square_a1 = (
-            (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
-            *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
-        )
+        third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
+        effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
         # 1 - cosine, times the scale
-        one_less_cos_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
+        effective_a1_plus_inner_arm_1 = divisor_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+        one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return 8*(3,)
-        span_2_x = x - constant_part_3  # rod 2
-        span_2_y = y - constant_part_4  # rod 2
+        span_2_x = part_of_span_2_x + x  # rod 2
+        span_2_y = part_of_span_2_y + y  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link_2):
             return 8*(3,)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = divisor_a2*twice_inner_arm_2_2  # a2: law of cosines in the rod 2 equation
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
-        third_square_a2 = (
-            (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
-            *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
-        )
+        third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
+        effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
         # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
+        effective_a2_plus_inner_arm_2 = divisor_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+        one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return 8*(3,)
-        span_3_x = x - constant_part_5  # rod 3
-        span_3_y = y - constant_part_6  # rod 3
+        span_3_x = part_of_span_3_x + x  # rod 3
+        span_3_y = part_of_span_3_y + y  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link_2):
             return 8*(3,)
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
-        swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
+        swing_scale_a3 = divisor_a3*twice_inner_arm_3_2  # a3: law of cosines in the rod 3 equation
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
-        third_square_a3 = (
-            (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
-            *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
-        )
+        third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
+        effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
         # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
+        effective_a3_plus_inner_arm_3 = divisor_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+        one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return 8*(3,)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
-        sin_swing_a1_times_z_by_divisor_a1 = z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
-        cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
-        cos_swing_a1_times_z_by_divisor_a1 = z*cos_swing_a1/divisor_a1
-        along_a1_times_sin_swing_a1_by_divisor_a1 = along_a1*sin_swing_a1/divisor_a1
-        sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
-        sin_swing_a2_times_z_by_divisor_a2 = z*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
-        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
-        rod_2_x_outward = x - pivot_2_x
-        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2_2*cos_a2  # rod 2
-        rod_2_y_outward = y - pivot_2_y
-        cos_swing_a2_times_z_by_divisor_a2 = z*cos_swing_a2/divisor_a2
-        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
-        sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
-        minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
-        rod_2_z_outward = minus_pivot_2_z + z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
-        sin_swing_a3_times_z_by_divisor_a3 = z*sin_swing_a3/divisor_a3
+        sin_swing_a3_inward_times_z = z*sin_swing_a3
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
-        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
-        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3
-        rod_3_x_outward = x - pivot_3_x
-        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3_2*cos_a3  # rod 3
-        rod_3_y_outward = y - pivot_3_y
-        cos_swing_a3_times_z_by_divisor_a3 = z*cos_swing_a3/divisor_a3
-        along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
-        sin_a3 = -along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
-        minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
-        rod_3_z_outward = minus_pivot_3_z + z
+        along_a3_times_cos_swing_a3 = along_a3*cos_swing_a3
+        cos_a3 = (along_a3_times_cos_swing_a3 - sin_swing_a3_inward_times_z)/divisor_a3
+        cos_swing_a3_times_z = z*cos_swing_a3
+        along_a3_times_sin_swing_a3 = along_a3*sin_swing_a3
+        sin_a3 = (-along_a3_times_sin_swing_a3 - cos_swing_a3_times_z)/divisor_a3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_outward - open_a3 < 179.999999999:
             axis_a3_outward = nearest_period(axis_a3_outward, open_a3)
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sin_swing_a2_inward_times_z = z*sin_swing_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        along_a2_times_cos_swing_a2 = along_a2*cos_swing_a2
+        cos_a2 = (along_a2_times_cos_swing_a2 - sin_swing_a2_inward_times_z)/divisor_a2
+        cos_swing_a2_times_z = z*cos_swing_a2
+        along_a2_times_sin_swing_a2 = along_a2*sin_swing_a2
+        sin_a2 = (-along_a2_times_sin_swing_a2 - cos_swing_a2_times_z)/divisor_a2
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_outward - open_a2 < 179.999999999:
             axis_a2_outward = nearest_period(axis_a2_outward, open_a2)
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sin_swing_a1_inward_times_z = z*sin_swing_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        along_a1_times_cos_swing_a1 = along_a1*cos_swing_a1
+        cos_a1 = (along_a1_times_cos_swing_a1 - sin_swing_a1_inward_times_z)/divisor_a1
+        cos_swing_a1_times_z = z*cos_swing_a1
+        along_a1_times_sin_swing_a1 = along_a1*sin_swing_a1
+        sin_a1 = (-along_a1_times_sin_swing_a1 - cos_swing_a1_times_z)/divisor_a1
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
-        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 + sin_swing_a3_times_z_by_divisor_a3
-        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3
-        rod_3_x_inward = x - pivot_3_x
-        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3_2*cos_a3  # rod 3
-        rod_3_y_inward = y - pivot_3_y
-        sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
-        minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
-        rod_3_z_inward = minus_pivot_3_z + z
+        pivot_2_x = cos_a2*cos_azimuth_2_times_inner_arm_2_2 - part_of_span_2_x  # rod 2
+        rod_2_x_outward = x - pivot_2_x
+        pivot_2_y = inner_arm_2_times_sin_azimuth_2_2*cos_a2 - part_of_span_2_y  # rod 2
+        rod_2_y_outward = y - pivot_2_y
+        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        rod_2_z_outward = z - pivot_2_z
+        pivot_3_x = cos_a3*cos_azimuth_3_times_inner_arm_3_2 - part_of_span_3_x  # rod 3
+        rod_3_x_outward = x - pivot_3_x
+        pivot_3_y = inner_arm_3_times_sin_azimuth_3_2*cos_a3 - part_of_span_3_y  # rod 3
+        rod_3_y_outward = y - pivot_3_y
+        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        rod_3_z_outward = z - pivot_3_z
+        part_of_refusal_outward_outward = (
+            0
+            if (axis_a2_outward >= lowest_a2) and (axis_a2_outward <= highest_a2)
+            else 3
+        )
+        part_of_refusal_outward_outward_outward = (
+            0
+            if (axis_a3_outward >= lowest_a3) and (axis_a3_outward <= highest_a3)
+            else 3
+        )
+        cos_a3 = (along_a3_times_cos_swing_a3 + sin_swing_a3_inward_times_z)/divisor_a3
+        sin_a3 = (along_a3_times_sin_swing_a3 - cos_swing_a3_times_z)/divisor_a3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_inward - open_a3 < 179.999999999:
             axis_a3_inward = nearest_period(axis_a3_inward, open_a3)
-        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 + sin_swing_a2_times_z_by_divisor_a2
-        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
-        rod_2_x_inward = x - pivot_2_x
-        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2_2*cos_a2  # rod 2
-        rod_2_y_inward = y - pivot_2_y
-        sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
-        minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
-        rod_2_z_inward = minus_pivot_2_z + z
+        pivot_3_x = cos_a3*cos_azimuth_3_times_inner_arm_3_2 - part_of_span_3_x  # rod 3
+        rod_3_x_inward = x - pivot_3_x
+        pivot_3_y = inner_arm_3_times_sin_azimuth_3_2*cos_a3 - part_of_span_3_y  # rod 3
+        rod_3_y_inward = y - pivot_3_y
+        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        rod_3_z_inward = z - pivot_3_z
+        part_of_refusal_outward_outward_inward = (
+            0
+            if (axis_a3_inward >= lowest_a3) and (axis_a3_inward <= highest_a3)
+            else 3
+        )
+        cos_a2 = (along_a2_times_cos_swing_a2 + sin_swing_a2_inward_times_z)/divisor_a2
+        sin_a2 = (along_a2_times_sin_swing_a2 - cos_swing_a2_times_z)/divisor_a2
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
+        pivot_2_x = cos_a2*cos_azimuth_2_times_inner_arm_2_2 - part_of_span_2_x  # rod 2
+        rod_2_x_inward = x - pivot_2_x
+        pivot_2_y = inner_arm_2_times_sin_azimuth_2_2*cos_a2 - part_of_span_2_y  # rod 2
+        rod_2_y_inward = y - pivot_2_y
+        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        rod_2_z_inward = z - pivot_2_z
+        part_of_refusal_outward_inward = 0 if (axis_a2_inward >= lowest_a2) and (axis_a2_inward <= highest_a2) else 3
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1_2  # rod 1
+            pivot_1_x = cos_a1*cos_azimuth_1_times_inner_arm_1_2 - part_of_span_1_x  # rod 1
             rod_1_x = x - pivot_1_x
-            pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1_2*cos_a1  # rod 1
+            pivot_1_y = inner_arm_1_times_sin_azimuth_1_2*cos_a1 - part_of_span_1_y  # rod 1
             rod_1_y = y - pivot_1_y
-            minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
-            rod_1_z = minus_pivot_1_z + z
-            if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_outward_outward = (
-                        constant_part_7
-                        *(
-                            rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_y*rod_2_z_outward*rod_3_x_outward
-                            + rod_1_z*rod_2_x_outward*rod_3_y_outward - rod_1_x*rod_2_z_outward*rod_3_y_outward
-                            - rod_1_y*rod_2_x_outward*rod_3_z_outward - rod_1_z*rod_2_y_outward*rod_3_x_outward
-                        )
-                    )
-                    refusal_outward_outward_outward_2 = 0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3
-                else:
-                    refusal_outward_outward_outward_2 = 3
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_outward_inward = (
-                        constant_part_7
-                        *(
-                            rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_y*rod_2_z_outward*rod_3_x_inward
-                            + rod_1_z*rod_2_x_outward*rod_3_y_inward - rod_1_x*rod_2_z_outward*rod_3_y_inward
-                            - rod_1_y*rod_2_x_outward*rod_3_z_inward - rod_1_z*rod_2_y_outward*rod_3_x_inward
-                        )
-                    )
-                    refusal_outward_outward_inward_2 = 0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3
-                else:
-                    refusal_outward_outward_inward_2 = 3
+            pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+            rod_1_z = z - pivot_1_z
+            type2_rods_coplanar_outward_outward = (
+                -part_of_type2_rods_coplanar_outward_outward_outward
+                *(
+                    (rod_2_z_outward*rod_3_y_outward - rod_2_y_outward*rod_3_z_outward)*rod_1_x
+                    + rod_1_y*(rod_2_x_outward*rod_3_z_outward - rod_2_z_outward*rod_3_x_outward)
+                    + (rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_y_outward)*rod_1_z
+                )
+            )
+            # limits of A3
+            if part_of_refusal_outward_outward > 0:
+                refusal_outward_outward = part_of_refusal_outward_outward
+                refusal_outward_inward = part_of_refusal_outward_outward
             else:
-                refusal_outward_outward_outward_2 = 3
-                refusal_outward_outward_inward_2 = 3
-            if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_inward_outward = (
-                        constant_part_7
-                        *(
-                            rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_y*rod_2_z_inward*rod_3_x_outward
-                            + rod_1_z*rod_2_x_inward*rod_3_y_outward - rod_1_x*rod_2_z_inward*rod_3_y_outward
-                            - rod_1_y*rod_2_x_inward*rod_3_z_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
-                        )
-                    )
-                    refusal_outward_inward_outward_2 = 0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3
-                else:
-                    refusal_outward_inward_outward_2 = 3
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_inward_inward = (
-                        constant_part_7
-                        *(
-                            rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_y*rod_2_z_inward*rod_3_x_inward
-                            + rod_1_z*rod_2_x_inward*rod_3_y_inward - rod_1_x*rod_2_z_inward*rod_3_y_inward
-                            - rod_1_y*rod_2_x_inward*rod_3_z_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
-                        )
-                    )
-                    refusal_outward_inward_inward_2 = 0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3
-                else:
-                    refusal_outward_inward_inward_2 = 3
+                refusal_outward_outward = part_of_refusal_outward_outward_outward
+                refusal_outward_inward = part_of_refusal_outward_outward_inward
+            refusal_outward_outward_outward_2 = (
+                refusal_outward_outward
+                if refusal_outward_outward > 0
+                else (0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_outward_inward = (
+                -part_of_type2_rods_coplanar_outward_outward_outward
+                *(
+                    (rod_2_z_outward*rod_3_y_inward - rod_2_y_outward*rod_3_z_inward)*rod_1_x
+                    + rod_1_y*(rod_2_x_outward*rod_3_z_inward - rod_2_z_outward*rod_3_x_inward)
+                    + (rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_y_inward)*rod_1_z
+                )
+            )
+            refusal_outward_outward_inward_2 = (
+                refusal_outward_inward
+                if refusal_outward_inward > 0
+                else (0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_inward_outward = (
+                -part_of_type2_rods_coplanar_outward_outward_outward
+                *(
+                    (rod_2_z_inward*rod_3_y_outward - rod_2_y_inward*rod_3_z_outward)*rod_1_x
+                    + rod_1_y*(rod_2_x_inward*rod_3_z_outward - rod_2_z_inward*rod_3_x_outward)
+                    + (rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_y_outward)*rod_1_z
+                )
+            )
+            # limits of A3
+            if part_of_refusal_outward_inward > 0:
+                refusal_inward_outward = part_of_refusal_outward_inward
+                refusal_inward_inward = part_of_refusal_outward_inward
             else:
-                refusal_outward_inward_outward_2 = 3
-                refusal_outward_inward_inward_2 = 3
+                refusal_inward_outward = part_of_refusal_outward_outward_outward
+                refusal_inward_inward = part_of_refusal_outward_outward_inward
+            refusal_outward_inward_outward_2 = (
+                refusal_inward_outward
+                if refusal_inward_outward > 0
+                else (0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_inward_inward = (
+                -part_of_type2_rods_coplanar_outward_outward_outward
+                *(
+                    (rod_2_z_inward*rod_3_y_inward - rod_2_y_inward*rod_3_z_inward)*rod_1_x
+                    + rod_1_y*(rod_2_x_inward*rod_3_z_inward - rod_2_z_inward*rod_3_x_inward)
+                    + (rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_y_inward)*rod_1_z
+                )
+            )
+            refusal_outward_inward_inward_2 = (
+                refusal_inward_inward
+                if refusal_inward_inward > 0
+                else (0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3)
+            )
         else:
             refusal_outward_outward_outward_2 = 3
             refusal_outward_outward_inward_2 = 3
             refusal_outward_inward_outward_2 = 3
             refusal_outward_inward_inward_2 = 3
-        cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 + sin_swing_a1_times_z_by_divisor_a1
-        sin_a1 = along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
+        cos_a1 = (along_a1_times_cos_swing_a1 + sin_swing_a1_inward_times_z)/divisor_a1
+        sin_a1 = (along_a1_times_sin_swing_a1 - cos_swing_a1_times_z)/divisor_a1
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1_2  # rod 1
+            pivot_1_x = cos_a1*cos_azimuth_1_times_inner_arm_1_2 - part_of_span_1_x  # rod 1
             rod_1_x = x - pivot_1_x
-            pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1_2*cos_a1  # rod 1
+            pivot_1_y = inner_arm_1_times_sin_azimuth_1_2*cos_a1 - part_of_span_1_y  # rod 1
             rod_1_y = y - pivot_1_y
-            minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
-            rod_1_z = minus_pivot_1_z + z
-            if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_outward_outward = (
-                        constant_part_7
-                        *(
-                            rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_y*rod_2_z_outward*rod_3_x_outward
-                            + rod_1_z*rod_2_x_outward*rod_3_y_outward - rod_1_x*rod_2_z_outward*rod_3_y_outward
-                            - rod_1_y*rod_2_x_outward*rod_3_z_outward - rod_1_z*rod_2_y_outward*rod_3_x_outward
-                        )
-                    )
-                    refusal_inward_outward_outward_2 = 0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3
-                else:
-                    refusal_inward_outward_outward_2 = 3
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_outward_inward = (
-                        constant_part_7
-                        *(
-                            rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_y*rod_2_z_outward*rod_3_x_inward
-                            + rod_1_z*rod_2_x_outward*rod_3_y_inward - rod_1_x*rod_2_z_outward*rod_3_y_inward
-                            - rod_1_y*rod_2_x_outward*rod_3_z_inward - rod_1_z*rod_2_y_outward*rod_3_x_inward
-                        )
-                    )
-                    refusal_inward_outward_inward_2 = 0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3
-                else:
-                    refusal_inward_outward_inward_2 = 3
+            pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+            rod_1_z = z - pivot_1_z
+            type2_rods_coplanar_outward_outward = (
+                -part_of_type2_rods_coplanar_outward_outward_outward
+                *(
+                    (rod_1_y*rod_3_z_outward - rod_1_z*rod_3_y_outward)*rod_2_x_outward
+                    + (rod_1_z*rod_3_x_outward - rod_1_x*rod_3_z_outward)*rod_2_y_outward
+                    + (rod_1_x*rod_3_y_outward - rod_1_y*rod_3_x_outward)*rod_2_z_outward
+                )
+            )
+            # limits of A3
+            if part_of_refusal_outward_outward > 0:
+                refusal_outward_outward = part_of_refusal_outward_outward
+                refusal_outward_inward = part_of_refusal_outward_outward
             else:
-                refusal_inward_outward_outward_2 = 3
-                refusal_inward_outward_inward_2 = 3
-            if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_inward_outward = (
-                        constant_part_7
-                        *(
-                            rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_y*rod_2_z_inward*rod_3_x_outward
-                            + rod_1_z*rod_2_x_inward*rod_3_y_outward - rod_1_x*rod_2_z_inward*rod_3_y_outward
-                            - rod_1_y*rod_2_x_inward*rod_3_z_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
-                        )
-                    )
-                    refusal_inward_inward_outward_2 = 0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3
-                else:
-                    refusal_inward_inward_outward_2 = 3
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_inward_inward = (
-                        constant_part_7
-                        *(
-                            rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_y*rod_2_z_inward*rod_3_x_inward
-                            + rod_1_z*rod_2_x_inward*rod_3_y_inward - rod_1_x*rod_2_z_inward*rod_3_y_inward
-                            - rod_1_y*rod_2_x_inward*rod_3_z_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
-                        )
-                    )
-                    refusal_inward_inward_inward_2 = 0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3
-                else:
-                    refusal_inward_inward_inward_2 = 3
+                refusal_outward_outward = part_of_refusal_outward_outward_outward
+                refusal_outward_inward = part_of_refusal_outward_outward_inward
+            refusal_inward_outward_outward_2 = (
+                refusal_outward_outward
+                if refusal_outward_outward > 0
+                else (0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_outward_inward = (
+                -part_of_type2_rods_coplanar_outward_outward_outward
+                *(
+                    (rod_1_y*rod_3_z_inward - rod_1_z*rod_3_y_inward)*rod_2_x_outward
+                    + (rod_1_z*rod_3_x_inward - rod_1_x*rod_3_z_inward)*rod_2_y_outward
+                    + (rod_1_x*rod_3_y_inward - rod_1_y*rod_3_x_inward)*rod_2_z_outward
+                )
+            )
+            refusal_inward_outward_inward_2 = (
+                refusal_outward_inward
+                if refusal_outward_inward > 0
+                else (0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3)
+            )
+            part_of_type2_rods_coplanar = rod_1_y*rod_2_z_inward - rod_1_z*rod_2_y_inward
+            part_of_type2_rods_coplanar_inward_inward_outward_2 = rod_1_z*rod_2_x_inward - rod_1_x*rod_2_z_inward
+            part_of_type2_rods_coplanar_inward_inward_outward_3 = rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward
+            type2_rods_coplanar_inward_outward = (
+                -(
+                    -part_of_type2_rods_coplanar*rod_3_x_outward
+                    - part_of_type2_rods_coplanar_inward_inward_outward_2*rod_3_y_outward
+                    - part_of_type2_rods_coplanar_inward_inward_outward_3*rod_3_z_outward
+                )
+                *part_of_type2_rods_coplanar_outward_outward_outward
+            )
+            # limits of A3
+            if part_of_refusal_outward_inward > 0:
+                refusal_inward_outward = part_of_refusal_outward_inward
+                refusal_inward_inward = part_of_refusal_outward_inward
             else:
-                refusal_inward_inward_outward_2 = 3
-                refusal_inward_inward_inward_2 = 3
+                refusal_inward_outward = part_of_refusal_outward_outward_outward
+                refusal_inward_inward = part_of_refusal_outward_outward_inward
+            refusal_inward_inward_outward_2 = (
+                refusal_inward_outward
+                if refusal_inward_outward > 0
+                else (0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_inward_inward = (
+                -(
+                    -part_of_type2_rods_coplanar*rod_3_x_inward
+                    - part_of_type2_rods_coplanar_inward_inward_outward_2*rod_3_y_inward
+                    - part_of_type2_rods_coplanar_inward_inward_outward_3*rod_3_z_inward
+                )
+                *part_of_type2_rods_coplanar_outward_outward_outward
+            )
+            refusal_inward_inward_inward_2 = (
+                refusal_inward_inward
+                if refusal_inward_inward > 0
+                else (0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3)
+            )
         else:
             refusal_inward_outward_outward_2 = 3
             refusal_inward_outward_inward_2 = 3
@@ -418,68 +451,68 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = x - constant_part  # rod 1
-        span_1_y = y - constant_part_2  # rod 1
+        span_1_x = part_of_span_1_x + x  # rod 1
+        span_1_y = part_of_span_1_y + y  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link_2):
             return 8*(None,)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1*twice_inner_arm_1_2  # a1: law of cosines in the rod 1 equation
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
-        third_square_a1 = (
-            (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
-            *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
-        )
+        third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
+        effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
         # 1 - cosine, times the scale
-        one_less_cos_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
+        effective_a1_plus_inner_arm_1 = divisor_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+        one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return 8*(None,)
-        span_2_x = x - constant_part_3  # rod 2
-        span_2_y = y - constant_part_4  # rod 2
+        span_2_x = part_of_span_2_x + x  # rod 2
+        span_2_y = part_of_span_2_y + y  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link_2):
             return 8*(None,)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = divisor_a2*twice_inner_arm_2_2  # a2: law of cosines in the rod 2 equation
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
-        third_square_a2 = (
-            (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
-            *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
-        )
+        third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
+        effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
         # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
+        effective_a2_plus_inner_arm_2 = divisor_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+        one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return 8*(None,)
-        span_3_x = x - constant_part_5  # rod 3
-        span_3_y = y - constant_part_6  # rod 3
+        span_3_x = part_of_span_3_x + x  # rod 3
+        span_3_y = part_of_span_3_y + y  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link_2):
             return 8*(None,)
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
-        swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
+        swing_scale_a3 = divisor_a3*twice_inner_arm_3_2  # a3: law of cosines in the rod 3 equation
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
-        third_square_a3 = (
-            (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
-            *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
-        )
+        third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
+        effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
         # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
+        effective_a3_plus_inner_arm_3 = divisor_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+        one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
@@ -487,57 +520,57 @@ def unrolled(k: Constants) -> Unrolled:
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
-        sin_swing_a1_times_z_by_divisor_a1 = z*sin_swing_a1/divisor_a1
+        sin_swing_a1_inward_times_z = z*sin_swing_a1
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
-        cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
-        pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1_2  # rod 1
+        along_a1_times_cos_swing_a1 = along_a1*cos_swing_a1
+        cos_a1 = (along_a1_times_cos_swing_a1 - sin_swing_a1_inward_times_z)/divisor_a1
+        pivot_1_x = cos_a1*cos_azimuth_1_times_inner_arm_1_2 - part_of_span_1_x  # rod 1
         rod_1_x = x - pivot_1_x
-        pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1_2*cos_a1  # rod 1
+        pivot_1_y = inner_arm_1_times_sin_azimuth_1_2*cos_a1 - part_of_span_1_y  # rod 1
         rod_1_y = y - pivot_1_y
-        cos_swing_a1_times_z_by_divisor_a1 = z*cos_swing_a1/divisor_a1
-        along_a1_times_sin_swing_a1_by_divisor_a1 = along_a1*sin_swing_a1/divisor_a1
-        sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
-        minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
-        rod_1_z = minus_pivot_1_z + z
+        cos_swing_a1_times_z = z*cos_swing_a1
+        along_a1_times_sin_swing_a1 = along_a1*sin_swing_a1
+        sin_a1 = (-along_a1_times_sin_swing_a1 - cos_swing_a1_times_z)/divisor_a1
+        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        rod_1_z = z - pivot_1_z
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
-        sin_swing_a2_times_z_by_divisor_a2 = z*sin_swing_a2/divisor_a2
+        sin_swing_a2_inward_times_z = z*sin_swing_a2
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
-        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
+        along_a2_times_cos_swing_a2 = along_a2*cos_swing_a2
+        cos_a2 = (along_a2_times_cos_swing_a2 - sin_swing_a2_inward_times_z)/divisor_a2
+        pivot_2_x = cos_a2*cos_azimuth_2_times_inner_arm_2_2 - part_of_span_2_x  # rod 2
         rod_2_x_outward = x - pivot_2_x
-        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2_2*cos_a2  # rod 2
+        pivot_2_y = inner_arm_2_times_sin_azimuth_2_2*cos_a2 - part_of_span_2_y  # rod 2
         rod_2_y_outward = y - pivot_2_y
-        cos_swing_a2_times_z_by_divisor_a2 = z*cos_swing_a2/divisor_a2
-        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
-        sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
-        minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
-        rod_2_z_outward = minus_pivot_2_z + z
+        cos_swing_a2_times_z = z*cos_swing_a2
+        along_a2_times_sin_swing_a2 = along_a2*sin_swing_a2
+        sin_a2 = (-along_a2_times_sin_swing_a2 - cos_swing_a2_times_z)/divisor_a2
+        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        rod_2_z_outward = z - pivot_2_z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
-        sin_swing_a3_times_z_by_divisor_a3 = z*sin_swing_a3/divisor_a3
+        sin_swing_a3_inward_times_z = z*sin_swing_a3
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
-        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
-        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3
+        along_a3_times_cos_swing_a3 = along_a3*cos_swing_a3
+        cos_a3 = (along_a3_times_cos_swing_a3 - sin_swing_a3_inward_times_z)/divisor_a3
+        pivot_3_x = cos_a3*cos_azimuth_3_times_inner_arm_3_2 - part_of_span_3_x  # rod 3
         rod_3_x_outward = x - pivot_3_x
-        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3_2*cos_a3  # rod 3
+        pivot_3_y = inner_arm_3_times_sin_azimuth_3_2*cos_a3 - part_of_span_3_y  # rod 3
         rod_3_y_outward = y - pivot_3_y
-        cos_swing_a3_times_z_by_divisor_a3 = z*cos_swing_a3/divisor_a3
-        along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
-        sin_a3 = -along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
-        minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
-        rod_3_z_outward = minus_pivot_3_z + z
+        cos_swing_a3_times_z = z*cos_swing_a3
+        along_a3_times_sin_swing_a3 = along_a3*sin_swing_a3
+        sin_a3 = (-along_a3_times_sin_swing_a3 - cos_swing_a3_times_z)/divisor_a3
+        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        rod_3_z_outward = z - pivot_3_z
         type2_rods_coplanar = (
-            constant_part_7
+            -part_of_type2_rods_coplanar_outward_outward_outward
             *(
-                rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_y*rod_2_z_outward*rod_3_x_outward
-                + rod_1_z*rod_2_x_outward*rod_3_y_outward - rod_1_x*rod_2_z_outward*rod_3_y_outward
-                - rod_1_y*rod_2_x_outward*rod_3_z_outward - rod_1_z*rod_2_y_outward*rod_3_x_outward
+                (rod_2_z_outward*rod_3_y_outward - rod_2_y_outward*rod_3_z_outward)*rod_1_x
+                + rod_1_y*(rod_2_x_outward*rod_3_z_outward - rod_2_z_outward*rod_3_x_outward)
+                + (rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_y_outward)*rod_1_z
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
@@ -545,100 +578,103 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
-        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 + sin_swing_a3_times_z_by_divisor_a3
-        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3
+        cos_a3 = (along_a3_times_cos_swing_a3 + sin_swing_a3_inward_times_z)/divisor_a3
+        pivot_3_x = cos_a3*cos_azimuth_3_times_inner_arm_3_2 - part_of_span_3_x  # rod 3
         rod_3_x_inward = x - pivot_3_x
-        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3_2*cos_a3  # rod 3
+        pivot_3_y = inner_arm_3_times_sin_azimuth_3_2*cos_a3 - part_of_span_3_y  # rod 3
         rod_3_y_inward = y - pivot_3_y
-        sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
-        minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
-        rod_3_z_inward = minus_pivot_3_z + z
+        sin_a3 = (along_a3_times_sin_swing_a3 - cos_swing_a3_times_z)/divisor_a3
+        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        rod_3_z_inward = z - pivot_3_z
         type2_rods_coplanar = (
-            constant_part_7
+            -part_of_type2_rods_coplanar_outward_outward_outward
             *(
-                rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_y*rod_2_z_outward*rod_3_x_inward
-                + rod_1_z*rod_2_x_outward*rod_3_y_inward - rod_1_x*rod_2_z_outward*rod_3_y_inward
-                - rod_1_y*rod_2_x_outward*rod_3_z_inward - rod_1_z*rod_2_y_outward*rod_3_x_inward
+                (rod_2_z_outward*rod_3_y_inward - rod_2_y_outward*rod_3_z_inward)*rod_1_x
+                + rod_1_y*(rod_2_x_outward*rod_3_z_inward - rod_2_z_outward*rod_3_x_inward)
+                + (rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_y_inward)*rod_1_z
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
-        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 + sin_swing_a2_times_z_by_divisor_a2
-        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
+        cos_a2 = (along_a2_times_cos_swing_a2 + sin_swing_a2_inward_times_z)/divisor_a2
+        pivot_2_x = cos_a2*cos_azimuth_2_times_inner_arm_2_2 - part_of_span_2_x  # rod 2
         rod_2_x_inward = x - pivot_2_x
-        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2_2*cos_a2  # rod 2
+        pivot_2_y = inner_arm_2_times_sin_azimuth_2_2*cos_a2 - part_of_span_2_y  # rod 2
         rod_2_y_inward = y - pivot_2_y
-        sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
-        minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
-        rod_2_z_inward = minus_pivot_2_z + z
+        sin_a2 = (along_a2_times_sin_swing_a2 - cos_swing_a2_times_z)/divisor_a2
+        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        rod_2_z_inward = z - pivot_2_z
         type2_rods_coplanar = (
-            constant_part_7
+            -part_of_type2_rods_coplanar_outward_outward_outward
             *(
-                rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_y*rod_2_z_inward*rod_3_x_outward
-                + rod_1_z*rod_2_x_inward*rod_3_y_outward - rod_1_x*rod_2_z_inward*rod_3_y_outward
-                - rod_1_y*rod_2_x_inward*rod_3_z_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
+                (rod_2_z_inward*rod_3_y_outward - rod_2_y_inward*rod_3_z_outward)*rod_1_x
+                + rod_1_y*(rod_2_x_inward*rod_3_z_outward - rod_2_z_inward*rod_3_x_outward)
+                + (rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_y_outward)*rod_1_z
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         type2_rods_coplanar = (
-            constant_part_7
+            -part_of_type2_rods_coplanar_outward_outward_outward
             *(
-                rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_y*rod_2_z_inward*rod_3_x_inward
-                + rod_1_z*rod_2_x_inward*rod_3_y_inward - rod_1_x*rod_2_z_inward*rod_3_y_inward
-                - rod_1_y*rod_2_x_inward*rod_3_z_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
+                (rod_2_z_inward*rod_3_y_inward - rod_2_y_inward*rod_3_z_inward)*rod_1_x
+                + rod_1_y*(rod_2_x_inward*rod_3_z_inward - rod_2_z_inward*rod_3_x_inward)
+                + (rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_y_inward)*rod_1_z
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 + sin_swing_a1_times_z_by_divisor_a1
-        pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1_2  # rod 1
+        cos_a1 = (along_a1_times_cos_swing_a1 + sin_swing_a1_inward_times_z)/divisor_a1
+        pivot_1_x = cos_a1*cos_azimuth_1_times_inner_arm_1_2 - part_of_span_1_x  # rod 1
         rod_1_x = x - pivot_1_x
-        pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1_2*cos_a1  # rod 1
+        pivot_1_y = inner_arm_1_times_sin_azimuth_1_2*cos_a1 - part_of_span_1_y  # rod 1
         rod_1_y = y - pivot_1_y
-        sin_a1 = along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
-        minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
-        rod_1_z = minus_pivot_1_z + z
+        sin_a1 = (along_a1_times_sin_swing_a1 - cos_swing_a1_times_z)/divisor_a1
+        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        rod_1_z = z - pivot_1_z
         type2_rods_coplanar = (
-            constant_part_7
+            -part_of_type2_rods_coplanar_outward_outward_outward
             *(
-                rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_y*rod_2_z_outward*rod_3_x_outward
-                + rod_1_z*rod_2_x_outward*rod_3_y_outward - rod_1_x*rod_2_z_outward*rod_3_y_outward
-                - rod_1_y*rod_2_x_outward*rod_3_z_outward - rod_1_z*rod_2_y_outward*rod_3_x_outward
+                (rod_1_y*rod_3_z_outward - rod_1_z*rod_3_y_outward)*rod_2_x_outward
+                + (rod_1_z*rod_3_x_outward - rod_1_x*rod_3_z_outward)*rod_2_y_outward
+                + (rod_1_x*rod_3_y_outward - rod_1_y*rod_3_x_outward)*rod_2_z_outward
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         type2_rods_coplanar = (
-            constant_part_7
+            -part_of_type2_rods_coplanar_outward_outward_outward
             *(
-                rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_y*rod_2_z_outward*rod_3_x_inward
-                + rod_1_z*rod_2_x_outward*rod_3_y_inward - rod_1_x*rod_2_z_outward*rod_3_y_inward
-                - rod_1_y*rod_2_x_outward*rod_3_z_inward - rod_1_z*rod_2_y_outward*rod_3_x_inward
+                (rod_1_y*rod_3_z_inward - rod_1_z*rod_3_y_inward)*rod_2_x_outward
+                + (rod_1_z*rod_3_x_inward - rod_1_x*rod_3_z_inward)*rod_2_y_outward
+                + (rod_1_x*rod_3_y_inward - rod_1_y*rod_3_x_inward)*rod_2_z_outward
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
+        part_of_type2_rods_coplanar = rod_1_y*rod_2_z_inward - rod_1_z*rod_2_y_inward
+        part_of_type2_rods_coplanar_inward_inward_outward_2 = rod_1_z*rod_2_x_inward - rod_1_x*rod_2_z_inward
+        part_of_type2_rods_coplanar_inward_inward_outward_3 = rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward
         type2_rods_coplanar = (
-            constant_part_7
-            *(
-                rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_y*rod_2_z_inward*rod_3_x_outward
-                + rod_1_z*rod_2_x_inward*rod_3_y_outward - rod_1_x*rod_2_z_inward*rod_3_y_outward
-                - rod_1_y*rod_2_x_inward*rod_3_z_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
+            -(
+                -part_of_type2_rods_coplanar*rod_3_x_outward
+                - part_of_type2_rods_coplanar_inward_inward_outward_2*rod_3_y_outward
+                - part_of_type2_rods_coplanar_inward_inward_outward_3*rod_3_z_outward
             )
+            *part_of_type2_rods_coplanar_outward_outward_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            constant_part_7
-            *(
-                rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_y*rod_2_z_inward*rod_3_x_inward
-                + rod_1_z*rod_2_x_inward*rod_3_y_inward - rod_1_x*rod_2_z_inward*rod_3_y_inward
-                - rod_1_y*rod_2_x_inward*rod_3_z_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
+            -(
+                -part_of_type2_rods_coplanar*rod_3_x_inward
+                - part_of_type2_rods_coplanar_inward_inward_outward_2*rod_3_y_inward
+                - part_of_type2_rods_coplanar_inward_inward_outward_3*rod_3_z_inward
             )
+            *part_of_type2_rods_coplanar_outward_outward_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -657,68 +693,68 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
-        span_1_x = x - constant_part  # rod 1
-        span_1_y = y - constant_part_2  # rod 1
+        span_1_x = part_of_span_1_x + x  # rod 1
+        span_1_y = part_of_span_1_y + y  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link_2):
             return None
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1*twice_inner_arm_1_2  # a1: law of cosines in the rod 1 equation
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
-        third_square_a1 = (
-            (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
-            *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
-        )
+        third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
+        effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
         # 1 - cosine, times the scale
-        one_less_cos_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
+        effective_a1_plus_inner_arm_1 = divisor_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+        one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return None
-        span_2_x = x - constant_part_3  # rod 2
-        span_2_y = y - constant_part_4  # rod 2
+        span_2_x = part_of_span_2_x + x  # rod 2
+        span_2_y = part_of_span_2_y + y  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link_2):
             return None
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = divisor_a2*twice_inner_arm_2_2  # a2: law of cosines in the rod 2 equation
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
-        third_square_a2 = (
-            (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
-            *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
-        )
+        third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
+        effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
         # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
+        effective_a2_plus_inner_arm_2 = divisor_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+        one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return None
-        span_3_x = x - constant_part_5  # rod 3
-        span_3_y = y - constant_part_6  # rod 3
+        span_3_x = part_of_span_3_x + x  # rod 3
+        span_3_y = part_of_span_3_y + y  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link_2):
             return None
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
-        swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
+        swing_scale_a3 = divisor_a3*twice_inner_arm_3_2  # a3: law of cosines in the rod 3 equation
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
-        third_square_a3 = (
-            (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
-            *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
-        )
+        third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
+        effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
         # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
+        effective_a3_plus_inner_arm_3 = divisor_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+        one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
@@ -727,44 +763,42 @@ def unrolled(k: Constants) -> Unrolled:
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
-        cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
-        pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1_2  # rod 1
-        rod_1_x = x - pivot_1_x
-        pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1_2*cos_a1  # rod 1
-        rod_1_y = y - pivot_1_y
-        sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
-        minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
-        rod_1_z = minus_pivot_1_z + z
+        cos_a1 = (along_a1*cos_swing_a1 + z*sin_swing_a1)/divisor_a1
+        pivot_1_x = cos_a1*cos_azimuth_1_times_inner_arm_1_2 - part_of_span_1_x  # rod 1
+        pivot_1_y = inner_arm_1_times_sin_azimuth_1_2*cos_a1 - part_of_span_1_y  # rod 1
+        sin_a1 = (along_a1*sin_swing_a1 - z*cos_swing_a1)/divisor_a1
+        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
-        cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
-        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
+        cos_a2 = (along_a2*cos_swing_a2 + z*sin_swing_a2)/divisor_a2
+        pivot_2_x = cos_a2*cos_azimuth_2_times_inner_arm_2_2 - part_of_span_2_x  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2_2*cos_a2  # rod 2
+        pivot_2_y = inner_arm_2_times_sin_azimuth_2_2*cos_a2 - part_of_span_2_y  # rod 2
         rod_2_y = y - pivot_2_y
-        sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
-        minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
-        rod_2_z = minus_pivot_2_z + z
+        sin_a2 = (along_a2*sin_swing_a2 - z*cos_swing_a2)/divisor_a2
+        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        rod_2_z = z - pivot_2_z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
-        cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
-        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3
+        cos_a3 = (along_a3*cos_swing_a3 + z*sin_swing_a3)/divisor_a3
+        pivot_3_x = cos_a3*cos_azimuth_3_times_inner_arm_3_2 - part_of_span_3_x  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3_2*cos_a3  # rod 3
+        pivot_3_y = inner_arm_3_times_sin_azimuth_3_2*cos_a3 - part_of_span_3_y  # rod 3
         rod_3_y = y - pivot_3_y
-        sin_a3 = along_a3*sin_swing_a3/divisor_a3 - z*cos_swing_a3/divisor_a3
-        minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
-        rod_3_z = minus_pivot_3_z + z
+        sin_a3 = (along_a3*sin_swing_a3 - z*cos_swing_a3)/divisor_a3
+        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
-            constant_part_7
-            *(
-                rod_1_x*rod_2_y*rod_3_z + rod_1_y*rod_2_z*rod_3_x + rod_1_z*rod_2_x*rod_3_y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_y*rod_2_x*rod_3_z - rod_1_z*rod_2_y*rod_3_x
+            -(
+                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*(z - pivot_1_z)
+                + (y - pivot_1_y)*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
+                + (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*(x - pivot_1_x)
             )
+            *part_of_type2_rods_coplanar_outward_outward_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):

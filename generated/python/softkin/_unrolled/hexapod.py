@@ -121,90 +121,72 @@ def unrolled(k: Constants) -> Unrolled:
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return (2,)
-        platform_1_z_times_r13 = platform_1_z*r13
-        platform_1_x_times_r11_plus_platform_1_y_times_r12 = platform_1_x*r11 + platform_1_y*r12
-        span_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13 + x - base_1_x  # rod 1
-        platform_1_z_times_r23 = platform_1_z*r23
-        platform_1_x_times_r21_plus_platform_1_y_times_r22 = platform_1_x*r21 + platform_1_y*r22
-        span_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23 + y - base_1_y  # rod 1
-        platform_1_z_times_r33 = platform_1_z*r33
-        platform_1_x_times_r31_plus_platform_1_y_times_r32 = platform_1_x*r31 + platform_1_y*r32
-        span_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33 + z - base_1_z  # rod 1
+        arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
+        span_1_x = arm_1_x + x - base_1_x  # rod 1
+        arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
+        span_1_y = arm_1_y + y - base_1_y  # rod 1
+        arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
+        span_1_z = arm_1_z + z - base_1_z  # rod 1
         # l1: quadratic in the rod 1 equation
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link_2):
             return (3,)
-        platform_2_z_times_r13 = platform_2_z*r13
-        platform_2_x_times_r11_plus_platform_2_y_times_r12 = platform_2_x*r11 + platform_2_y*r12
-        span_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13 + x - base_2_x  # rod 2
-        platform_2_z_times_r23 = platform_2_z*r23
-        platform_2_x_times_r21_plus_platform_2_y_times_r22 = platform_2_x*r21 + platform_2_y*r22
-        span_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23 + y - base_2_y  # rod 2
-        platform_2_z_times_r33 = platform_2_z*r33
-        platform_2_x_times_r31_plus_platform_2_y_times_r32 = platform_2_x*r31 + platform_2_y*r32
-        span_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33 + z - base_2_z  # rod 2
+        arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
+        span_2_x = arm_2_x + x - base_2_x  # rod 2
+        arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
+        span_2_y = arm_2_y + y - base_2_y  # rod 2
+        arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
+        span_2_z = arm_2_z + z - base_2_z  # rod 2
         # l2: quadratic in the rod 2 equation
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link_2):
             return (3,)
-        platform_3_z_times_r13 = platform_3_z*r13
-        platform_3_x_times_r11_plus_platform_3_y_times_r12 = platform_3_x*r11 + platform_3_y*r12
-        span_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13 + x - base_3_x  # rod 3
-        platform_3_z_times_r23 = platform_3_z*r23
-        platform_3_x_times_r21_plus_platform_3_y_times_r22 = platform_3_x*r21 + platform_3_y*r22
-        span_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23 + y - base_3_y  # rod 3
-        platform_3_z_times_r33 = platform_3_z*r33
-        platform_3_x_times_r31_plus_platform_3_y_times_r32 = platform_3_x*r31 + platform_3_y*r32
-        span_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33 + z - base_3_z  # rod 3
+        arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
+        span_3_x = arm_3_x + x - base_3_x  # rod 3
+        arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
+        span_3_y = arm_3_y + y - base_3_y  # rod 3
+        arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
+        span_3_z = arm_3_z + z - base_3_z  # rod 3
         # l3: quadratic in the rod 3 equation
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link_2):
             return (3,)
-        platform_4_z_times_r13 = platform_4_z*r13
-        platform_4_x_times_r11_plus_platform_4_y_times_r12 = platform_4_x*r11 + platform_4_y*r12
-        span_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13 + x - base_4_x  # rod 4
-        platform_4_z_times_r23 = platform_4_z*r23
-        platform_4_x_times_r21_plus_platform_4_y_times_r22 = platform_4_x*r21 + platform_4_y*r22
-        span_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23 + y - base_4_y  # rod 4
-        platform_4_z_times_r33 = platform_4_z*r33
-        platform_4_x_times_r31_plus_platform_4_y_times_r32 = platform_4_x*r31 + platform_4_y*r32
-        span_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33 + z - base_4_z  # rod 4
+        arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
+        span_4_x = arm_4_x + x - base_4_x  # rod 4
+        arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
+        span_4_y = arm_4_y + y - base_4_y  # rod 4
+        arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
+        span_4_z = arm_4_z + z - base_4_z  # rod 4
         # l4: quadratic in the rod 4 equation
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link_2):
             return (3,)
-        platform_5_z_times_r13 = platform_5_z*r13
-        platform_5_x_times_r11_plus_platform_5_y_times_r12 = platform_5_x*r11 + platform_5_y*r12
-        span_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13 + x - base_5_x  # rod 5
-        platform_5_z_times_r23 = platform_5_z*r23
-        platform_5_x_times_r21_plus_platform_5_y_times_r22 = platform_5_x*r21 + platform_5_y*r22
-        span_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23 + y - base_5_y  # rod 5
-        platform_5_z_times_r33 = platform_5_z*r33
-        platform_5_x_times_r31_plus_platform_5_y_times_r32 = platform_5_x*r31 + platform_5_y*r32
-        span_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33 + z - base_5_z  # rod 5
+        arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
+        span_5_x = arm_5_x + x - base_5_x  # rod 5
+        arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
+        span_5_y = arm_5_y + y - base_5_y  # rod 5
+        arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
+        span_5_z = arm_5_z + z - base_5_z  # rod 5
         # l5: quadratic in the rod 5 equation
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link_2):
             return (3,)
-        platform_6_z_times_r13 = platform_6_z*r13
-        platform_6_x_times_r11_plus_platform_6_y_times_r12 = platform_6_x*r11 + platform_6_y*r12
-        span_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13 + x - base_6_x  # rod 6
-        platform_6_z_times_r23 = platform_6_z*r23
-        platform_6_x_times_r21_plus_platform_6_y_times_r22 = platform_6_x*r21 + platform_6_y*r22
-        span_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23 + y - base_6_y  # rod 6
-        platform_6_z_times_r33 = platform_6_z*r33
-        platform_6_x_times_r31_plus_platform_6_y_times_r32 = platform_6_x*r31 + platform_6_y*r32
-        span_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33 + z - base_6_z  # rod 6
+        arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
+        span_6_x = arm_6_x + x - base_6_x  # rod 6
+        arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
+        span_6_y = arm_6_y + y - base_6_y  # rod 6
+        arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
+        span_6_z = arm_6_z + z - base_6_z  # rod 6
         # l6: quadratic in the rod 6 equation
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
@@ -307,24 +289,6 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 6: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_6 >= least_cos_plate):
             return (3,)
-        arm_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23
-        arm_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33
-        arm_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13
-        arm_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23
-        arm_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33
-        arm_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13
-        arm_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23
-        arm_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33
-        arm_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13
-        arm_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23
-        arm_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33
-        arm_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13
-        arm_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23
-        arm_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33
-        arm_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13
-        arm_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23
-        arm_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33
-        arm_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13
         # margin of the platform
         (determinant,) = solve(
             (
@@ -395,90 +359,72 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
-        platform_1_z_times_r13 = platform_1_z*r13
-        platform_1_x_times_r11_plus_platform_1_y_times_r12 = platform_1_x*r11 + platform_1_y*r12
-        span_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13 + x - base_1_x  # rod 1
-        platform_1_z_times_r23 = platform_1_z*r23
-        platform_1_x_times_r21_plus_platform_1_y_times_r22 = platform_1_x*r21 + platform_1_y*r22
-        span_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23 + y - base_1_y  # rod 1
-        platform_1_z_times_r33 = platform_1_z*r33
-        platform_1_x_times_r31_plus_platform_1_y_times_r32 = platform_1_x*r31 + platform_1_y*r32
-        span_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33 + z - base_1_z  # rod 1
+        arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
+        span_1_x = arm_1_x + x - base_1_x  # rod 1
+        arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
+        span_1_y = arm_1_y + y - base_1_y  # rod 1
+        arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
+        span_1_z = arm_1_z + z - base_1_z  # rod 1
         # l1: quadratic in the rod 1 equation
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link_2):
             return (None,)
-        platform_2_z_times_r13 = platform_2_z*r13
-        platform_2_x_times_r11_plus_platform_2_y_times_r12 = platform_2_x*r11 + platform_2_y*r12
-        span_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13 + x - base_2_x  # rod 2
-        platform_2_z_times_r23 = platform_2_z*r23
-        platform_2_x_times_r21_plus_platform_2_y_times_r22 = platform_2_x*r21 + platform_2_y*r22
-        span_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23 + y - base_2_y  # rod 2
-        platform_2_z_times_r33 = platform_2_z*r33
-        platform_2_x_times_r31_plus_platform_2_y_times_r32 = platform_2_x*r31 + platform_2_y*r32
-        span_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33 + z - base_2_z  # rod 2
+        arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
+        span_2_x = arm_2_x + x - base_2_x  # rod 2
+        arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
+        span_2_y = arm_2_y + y - base_2_y  # rod 2
+        arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
+        span_2_z = arm_2_z + z - base_2_z  # rod 2
         # l2: quadratic in the rod 2 equation
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link_2):
             return (None,)
-        platform_3_z_times_r13 = platform_3_z*r13
-        platform_3_x_times_r11_plus_platform_3_y_times_r12 = platform_3_x*r11 + platform_3_y*r12
-        span_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13 + x - base_3_x  # rod 3
-        platform_3_z_times_r23 = platform_3_z*r23
-        platform_3_x_times_r21_plus_platform_3_y_times_r22 = platform_3_x*r21 + platform_3_y*r22
-        span_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23 + y - base_3_y  # rod 3
-        platform_3_z_times_r33 = platform_3_z*r33
-        platform_3_x_times_r31_plus_platform_3_y_times_r32 = platform_3_x*r31 + platform_3_y*r32
-        span_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33 + z - base_3_z  # rod 3
+        arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
+        span_3_x = arm_3_x + x - base_3_x  # rod 3
+        arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
+        span_3_y = arm_3_y + y - base_3_y  # rod 3
+        arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
+        span_3_z = arm_3_z + z - base_3_z  # rod 3
         # l3: quadratic in the rod 3 equation
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link_2):
             return (None,)
-        platform_4_z_times_r13 = platform_4_z*r13
-        platform_4_x_times_r11_plus_platform_4_y_times_r12 = platform_4_x*r11 + platform_4_y*r12
-        span_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13 + x - base_4_x  # rod 4
-        platform_4_z_times_r23 = platform_4_z*r23
-        platform_4_x_times_r21_plus_platform_4_y_times_r22 = platform_4_x*r21 + platform_4_y*r22
-        span_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23 + y - base_4_y  # rod 4
-        platform_4_z_times_r33 = platform_4_z*r33
-        platform_4_x_times_r31_plus_platform_4_y_times_r32 = platform_4_x*r31 + platform_4_y*r32
-        span_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33 + z - base_4_z  # rod 4
+        arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
+        span_4_x = arm_4_x + x - base_4_x  # rod 4
+        arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
+        span_4_y = arm_4_y + y - base_4_y  # rod 4
+        arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
+        span_4_z = arm_4_z + z - base_4_z  # rod 4
         # l4: quadratic in the rod 4 equation
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link_2):
             return (None,)
-        platform_5_z_times_r13 = platform_5_z*r13
-        platform_5_x_times_r11_plus_platform_5_y_times_r12 = platform_5_x*r11 + platform_5_y*r12
-        span_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13 + x - base_5_x  # rod 5
-        platform_5_z_times_r23 = platform_5_z*r23
-        platform_5_x_times_r21_plus_platform_5_y_times_r22 = platform_5_x*r21 + platform_5_y*r22
-        span_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23 + y - base_5_y  # rod 5
-        platform_5_z_times_r33 = platform_5_z*r33
-        platform_5_x_times_r31_plus_platform_5_y_times_r32 = platform_5_x*r31 + platform_5_y*r32
-        span_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33 + z - base_5_z  # rod 5
+        arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
+        span_5_x = arm_5_x + x - base_5_x  # rod 5
+        arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
+        span_5_y = arm_5_y + y - base_5_y  # rod 5
+        arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
+        span_5_z = arm_5_z + z - base_5_z  # rod 5
         # l5: quadratic in the rod 5 equation
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link_2):
             return (None,)
-        platform_6_z_times_r13 = platform_6_z*r13
-        platform_6_x_times_r11_plus_platform_6_y_times_r12 = platform_6_x*r11 + platform_6_y*r12
-        span_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13 + x - base_6_x  # rod 6
-        platform_6_z_times_r23 = platform_6_z*r23
-        platform_6_x_times_r21_plus_platform_6_y_times_r22 = platform_6_x*r21 + platform_6_y*r22
-        span_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23 + y - base_6_y  # rod 6
-        platform_6_z_times_r33 = platform_6_z*r33
-        platform_6_x_times_r31_plus_platform_6_y_times_r32 = platform_6_x*r31 + platform_6_y*r32
-        span_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33 + z - base_6_z  # rod 6
+        arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
+        span_6_x = arm_6_x + x - base_6_x  # rod 6
+        arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
+        span_6_y = arm_6_y + y - base_6_y  # rod 6
+        arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
+        span_6_z = arm_6_z + z - base_6_z  # rod 6
         # l6: quadratic in the rod 6 equation
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
@@ -581,24 +527,6 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 6: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_6 >= least_cos_plate):
             return (None,)
-        arm_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23
-        arm_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33
-        arm_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13
-        arm_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23
-        arm_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33
-        arm_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13
-        arm_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23
-        arm_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33
-        arm_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13
-        arm_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23
-        arm_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33
-        arm_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13
-        arm_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23
-        arm_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33
-        arm_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13
-        arm_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23
-        arm_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33
-        arm_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13
         # margin of the platform
         (determinant,) = solve(
             (
@@ -645,54 +573,72 @@ def unrolled(k: Constants) -> Unrolled:
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
-        span_1_x = x + platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13 - base_1_x  # rod 1
-        span_1_y = y + platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23 - base_1_y  # rod 1
-        span_1_z = z + platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33 - base_1_z  # rod 1
+        arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
+        span_1_x = arm_1_x + x - base_1_x  # rod 1
+        arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
+        span_1_y = arm_1_y + y - base_1_y  # rod 1
+        arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
+        span_1_z = arm_1_z + z - base_1_z  # rod 1
         # l1: quadratic in the rod 1 equation
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link_2):
             return None
-        span_2_x = x + platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13 - base_2_x  # rod 2
-        span_2_y = y + platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23 - base_2_y  # rod 2
-        span_2_z = z + platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33 - base_2_z  # rod 2
+        arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
+        span_2_x = arm_2_x + x - base_2_x  # rod 2
+        arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
+        span_2_y = arm_2_y + y - base_2_y  # rod 2
+        arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
+        span_2_z = arm_2_z + z - base_2_z  # rod 2
         # l2: quadratic in the rod 2 equation
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link_2):
             return None
-        span_3_x = x + platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13 - base_3_x  # rod 3
-        span_3_y = y + platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23 - base_3_y  # rod 3
-        span_3_z = z + platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33 - base_3_z  # rod 3
+        arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
+        span_3_x = arm_3_x + x - base_3_x  # rod 3
+        arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
+        span_3_y = arm_3_y + y - base_3_y  # rod 3
+        arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
+        span_3_z = arm_3_z + z - base_3_z  # rod 3
         # l3: quadratic in the rod 3 equation
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link_2):
             return None
-        span_4_x = x + platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13 - base_4_x  # rod 4
-        span_4_y = y + platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23 - base_4_y  # rod 4
-        span_4_z = z + platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33 - base_4_z  # rod 4
+        arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
+        span_4_x = arm_4_x + x - base_4_x  # rod 4
+        arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
+        span_4_y = arm_4_y + y - base_4_y  # rod 4
+        arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
+        span_4_z = arm_4_z + z - base_4_z  # rod 4
         # l4: quadratic in the rod 4 equation
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link_2):
             return None
-        span_5_x = x + platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13 - base_5_x  # rod 5
-        span_5_y = y + platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23 - base_5_y  # rod 5
-        span_5_z = z + platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33 - base_5_z  # rod 5
+        arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
+        span_5_x = arm_5_x + x - base_5_x  # rod 5
+        arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
+        span_5_y = arm_5_y + y - base_5_y  # rod 5
+        arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
+        span_5_z = arm_5_z + z - base_5_z  # rod 5
         # l5: quadratic in the rod 5 equation
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link_2):
             return None
-        span_6_x = x + platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13 - base_6_x  # rod 6
-        span_6_y = y + platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23 - base_6_y  # rod 6
-        span_6_z = z + platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33 - base_6_z  # rod 6
+        arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
+        span_6_x = arm_6_x + x - base_6_x  # rod 6
+        arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
+        span_6_y = arm_6_y + y - base_6_y  # rod 6
+        arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
+        span_6_z = arm_6_z + z - base_6_z  # rod 6
         # l6: quadratic in the rod 6 equation
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
@@ -795,24 +741,6 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 6: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_6 >= least_cos_plate):
             return None
-        arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
-        arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
-        arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
-        arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
-        arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
-        arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
-        arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
-        arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
-        arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
-        arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
-        arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
-        arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
-        arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
-        arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
-        arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
-        arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
-        arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
-        arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
         # margin of the platform
         (determinant,) = solve(
             (

@@ -40,7 +40,7 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of A
         if not (axis_a >= lowest_a and axis_a <= highest_a):
             return (3,)
-        axis_b = offset_b - (x + y)
+        axis_b = offset_b + (-x - y)
         # limits of B
         if not (axis_b >= lowest_b and axis_b <= highest_b):
             return (3,)
@@ -49,12 +49,12 @@ def unrolled(k: Constants) -> Unrolled:
         if not (axis_z >= lowest_z and axis_z <= highest_z):
             return (3,)
         limit_a = axis_a - offset_a
-        minus_limit_b = offset_b - axis_b
-        limit_value_x = 0.5*limit_a + 0.5*minus_limit_b  # X of the carriage
+        limit_b = axis_b - offset_b
+        limit_value_x = 0.5*limit_a - 0.5*limit_b  # X of the carriage
         # limits of X of the carriage
         if not (limit_value_x >= lowest_x and limit_value_x <= highest_x):
             return (3,)
-        limit_value_y = 0.5*minus_limit_b - 0.5*limit_a  # Y of the carriage
+        limit_value_y = -0.5*limit_a - 0.5*limit_b  # Y of the carriage
         # limits of Y of the carriage
         if not (limit_value_y >= lowest_y and limit_value_y <= highest_y):
             return (3,)
@@ -67,7 +67,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         a = x - y  # a, b: affine in the x and y equations
         return (
-            (a + offset_a, offset_b - (x + y), offset_z + z),
+            (a + offset_a, offset_b + (-x - y), offset_z + z),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
@@ -75,7 +75,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         a = x - y  # a, b: affine in the x and y equations
         if no_offsets:
-            return (a, -(x + y), z)
-        return (a + offset_a, offset_b - (x + y), offset_z + z)
+            return (a, -x - y, z)
+        return (a + offset_a, offset_b + (-x - y), offset_z + z)
 
     return Unrolled(every_branch, branches, branch)

@@ -36,8 +36,8 @@ def unrolled(k: Constants) -> Unrolled:
     single_b = k.single_b
     tool_length = k.tool_length
     tool_side = k.tool_side
+    twice_offset_b = 2.0*offset_b
     tool_length_times_tool_side_2 = tool_length*tool_side
-    offset_b_times_2 = 2.0*offset_b
     no_offsets = not any((offset_a, offset_b, offset_x, offset_y, offset_z,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -104,7 +104,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a_negative = direction_of_axis_a  # A: its turn
         if not -180.000000001 <= axis_a_negative - open_a < 179.999999999:
             axis_a_negative = nearest_period(axis_a_negative, open_a)
-        axis_b_negative = offset_b_times_2 - axis_b_positive  # B: its turn
+        axis_b_negative = twice_offset_b - axis_b_positive  # B: its turn
         if not -180.000000001 <= axis_b_negative - open_b < 179.999999999:
             axis_b_negative = nearest_period(axis_b_negative, open_b)
         # limits of A, limits of B
@@ -160,7 +160,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         return (
             (axis_x, axis_y, axis_z, axis_a, axis_b),
-            (axis_x, axis_y, axis_z, direction_of_axis_a, offset_b_times_2 - axis_b),
+            (axis_x, axis_y, axis_z, direction_of_axis_a, twice_offset_b - axis_b),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

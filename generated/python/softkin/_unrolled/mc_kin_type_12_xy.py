@@ -36,19 +36,18 @@ def unrolled(k: Constants) -> Unrolled:
     swap_xy = k.swap_xy
     machine_scale_times_plane_2 = 1e-6*machine_scale
     link_length_1_times_shortest_link_2 = 1e-9*link_length_1
-    link_length_1_times_2 = 2.0*link_length_1
-    link_length_1_times_link_length_3_by_link_length_2 = link_length_1*link_length_3/link_length_2
-    link_length_3_by_link_length_2_2 = link_length_3/link_length_2
-    link_length_1_times_link_length_2 = link_length_1*link_length_2
-    link_length_1_times_link_length_3 = link_length_1*link_length_3
     link_length_5_times_shortest_link_2 = 1e-9*link_length_5
-    link_length_2_by_link_length_3_2 = link_length_2/link_length_3
-    constant_part = assembly_sign*link_length_3/(link_length_4*link_length_2*link_length_2)
-    link_length_5_times_2 = 2.0*link_length_5
-    link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
+    twice_link_length_1_2 = 2.0*link_length_1
     link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
+    link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
+    link_length_3_by_link_length_2_2 = link_length_3/link_length_2
+    link_length_5_minus_link_length_4_2 = link_length_5 - link_length_4
     link_length_4_plus_link_length_5_2 = link_length_4 + link_length_5
-    link_length_4_minus_link_length_5 = link_length_4 - link_length_5
+    part_of_pivot_rear_x_left_left = link_length_1*link_length_3/link_length_2
+    link_length_2_by_link_length_3_2 = link_length_2/link_length_3
+    part_of_type2_arms_aligned_left_left = assembly_sign*link_length_3/(link_length_4*link_length_2*link_length_2)
+    twice_link_length_5_2 = 2.0*link_length_5
+    part_of_along_a2_left = link_length_1*(link_length_2 + link_length_3)
     no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -77,16 +76,14 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > link_length_1_times_shortest_link_2):
             return 4*(3,)
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
-        divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
-        divisor_a1_plus_link_length_2 = divisor_a1 + link_length_2
+        swing_scale_a1 = divisor_a1*twice_link_length_1_2  # a1: law of cosines in the rod upper equation
         # 1 - cosine, times the scale
         one_less_cos_a1 = (
-            (divisor_a1_minus_link_length_2 + link_length_1)*(divisor_a1_plus_link_length_2 + link_length_1)
+            (divisor_a1 + link_length_1_minus_link_length_2_2)*(divisor_a1 + link_length_1_plus_link_length_2_2)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (
-            (link_length_1 - divisor_a1_minus_link_length_2)*(divisor_a1_plus_link_length_2 - link_length_1)
+            (link_length_1_plus_link_length_2_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2_2)
         )
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
@@ -94,19 +91,54 @@ def unrolled(k: Constants) -> Unrolled:
             return 4*(3,)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
-        sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
-        sin_a1_left = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
+        cos_swing_a1_times_span_upper_x = -span_upper_x*cos_swing_a1
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sin_swing_a1_right_times_span_upper_y = span_upper_y*sin_swing_a1
+        sin_a1_left = (-cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y)/divisor_a1
+        span_rear_x = -link_length_3_by_link_length_2_2*span_upper_x  # rod rear
+        link_length_2_times_span_rear_x = -link_length_2*span_rear_x
+        along_a2 = (-link_length_2_times_span_rear_x - part_of_along_a2_left*sin_a1_left)/link_length_2
+        cos_swing_a1_times_span_upper_y = -span_upper_y*cos_swing_a1
+        sin_swing_a1_right_times_span_upper_x = span_upper_x*sin_swing_a1
+        cos_a1_left = (sin_swing_a1_right_times_span_upper_x - cos_swing_a1_times_span_upper_y)/divisor_a1
+        span_rear_y = -link_length_3_by_link_length_2_2*span_upper_y  # rod rear
+        link_length_2_times_span_rear_y = -link_length_2*span_rear_y
+        across_a2 = (link_length_2_times_span_rear_y + part_of_along_a2_left*cos_a1_left)/link_length_2
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (
+            (divisor_a2 + link_length_4_plus_link_length_5_2)*(divisor_a2 + link_length_5_minus_link_length_4_2)
+        )
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (
+            (link_length_4_plus_link_length_5_2 - divisor_a2)*(divisor_a2 - link_length_5_minus_link_length_4_2)
+        )
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        along_a2_left_times_cos_swing_a2 = along_a2*cos_swing_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        part_of_cos_a2 = across_a2*sin_swing_a2
+        cos_a2_left = (along_a2_left_times_cos_swing_a2 + part_of_cos_a2)/divisor_a2
+        part_of_sin_a2 = -along_a2*sin_swing_a2
+        across_a2_left_times_cos_swing_a2 = -across_a2*cos_swing_a2
+        sin_a2_left = (part_of_sin_a2 - across_a2_left_times_cos_swing_a2)/divisor_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_left_left - open_a2 < 179.999999999:
+            axis_a2_left_left = nearest_period(axis_a2_left_left, open_a2)
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
+            axis_a1_left = nearest_period(axis_a1_left, open_a1)
         pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
-        sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
-        cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
-        cos_a1_left = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
         pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
-        sin_a1_right = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
+        sin_a1_right = (sin_swing_a1_right_times_span_upper_y - cos_swing_a1_times_span_upper_x)/divisor_a1
+        cos_a1_right = (-cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x)/divisor_a1
         pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
-        cos_a1_right = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
         pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
         if swap_xy:
             centre_1_x_left = pivot_upper_y_left
@@ -118,66 +150,9 @@ def unrolled(k: Constants) -> Unrolled:
             centre_1_y_left = pivot_upper_y_left
             centre_1_x_right = pivot_upper_x_right
             centre_1_y_right = pivot_upper_y_right
-        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear
-        link_length_2_times_span_rear_x = link_length_2*span_rear_x
-        along_a2 = (
-            (
-                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1_left
-                - link_length_1_times_link_length_3*sin_a1_left
-            )
-            /link_length_2
-        )
-        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2_2  # rod rear
-        link_length_2_times_minus_span_rear_y = link_length_2*minus_span_rear_y
-        across_a2 = (
-            (
-                link_length_2_times_minus_span_rear_y + link_length_1_times_link_length_2*cos_a1_left
-                + link_length_1_times_link_length_3*cos_a1_left
-            )
-            /link_length_2
-        )
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
-        divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
-        divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # 1 - cosine, times the scale
-        one_less_cos_a2 = (
-            (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
-        )
-        # 1 + cosine, times the scale
-        one_plus_cos_a2 = (
-            (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
-        )
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
-        across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2*sin_swing_a2/divisor_a2
-        cos_a2_left = (
-            across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
-        )
-        along_a2_times_sin_swing_a2_by_divisor_a2_left_right = along_a2*sin_swing_a2/divisor_a2
-        across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2_left = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
-        )
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
-        if not -180.000000001 <= axis_a2_left_left - open_a2 < 179.999999999:
-            axis_a2_left_left = nearest_period(axis_a2_left_left, open_a2)
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
-        if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
-            axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        cos_a2_right = (
-            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2_left_right
-        )
-        sin_a2_right = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
-        )
+        swing_scale_a2 = divisor_a2*twice_link_length_5_2  # a2: law of cosines in the rod rear equation
+        cos_a2_right = (along_a2_left_times_cos_swing_a2 - part_of_cos_a2)/divisor_a2
+        sin_a2_right = (-across_a2_left_times_cos_swing_a2 - part_of_sin_a2)/divisor_a2
         axis_a2_left_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_right - open_a2 < 179.999999999:
             axis_a2_left_right = nearest_period(axis_a2_left_right, open_a2)
@@ -185,18 +160,14 @@ def unrolled(k: Constants) -> Unrolled:
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link_2 and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             rod_1_x = x - centre_1_x_left
             rod_1_y = y - centre_1_y_left
-            part_of_pivot_rear_x = (
-                link_length_1*sin_a1_left + link_length_1_times_link_length_3_by_link_length_2*sin_a1_left
-            )
-            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left  # rod rear
-            part_of_pivot_rear_y = (
-                link_length_1*cos_a1_left + link_length_1_times_link_length_3_by_link_length_2*cos_a1_left
-            )
-            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left  # rod rear
-            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3_2
-            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3_2
+            part_of_pivot_rear_x_left_left_2 = pivot_upper_x_left - part_of_pivot_rear_x_left_left*sin_a1_left
+            pivot_rear_x_left = -part_of_pivot_rear_x_left_left_2 - link_length_5*cos_a2_left  # rod rear
+            part_of_pivot_rear_y = pivot_upper_y_left - part_of_pivot_rear_x_left_left*cos_a1_left
+            pivot_rear_y_left = link_length_5*sin_a2_left - part_of_pivot_rear_y  # rod rear
+            centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left)*link_length_2_by_link_length_3_2
+            centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left)*link_length_2_by_link_length_3_2
             type2_arms_aligned_left = (
-                constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
+                part_of_type2_arms_aligned_left_left*((y - centre_2_y_left)*rod_1_x - (x - centre_2_x_left)*rod_1_y)
             )
             refusal_left_left = (
                 0
@@ -205,16 +176,12 @@ def unrolled(k: Constants) -> Unrolled:
                 ) and (axis_a2_left_left <= highest_a2)
                 else 3
             )
-            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_right  # rod rear
-            minus_centre_2_x_right = (
-                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3_2
-            )
-            minus_centre_2_y_right = (
-                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3_2
-            )
+            pivot_rear_x_right = -part_of_pivot_rear_x_left_left_2 - link_length_5*cos_a2_right  # rod rear
+            pivot_rear_y_right = link_length_5*sin_a2_right - part_of_pivot_rear_y  # rod rear
+            centre_2_x_right = (-pivot_rear_y_right if swap_xy else -pivot_rear_x_right)*link_length_2_by_link_length_3_2
+            centre_2_y_right = (-pivot_rear_x_right if swap_xy else -pivot_rear_y_right)*link_length_2_by_link_length_3_2
             type2_arms_aligned_right = (
-                constant_part*((minus_centre_2_y_right + y)*rod_1_x - (minus_centre_2_x_right + x)*rod_1_y)
+                part_of_type2_arms_aligned_left_left*((y - centre_2_y_right)*rod_1_x - (x - centre_2_x_right)*rod_1_y)
             )
             refusal_left_right = (
                 0
@@ -226,52 +193,38 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_left_left = 3
             refusal_left_right = 3
-        along_a2 = (
-            (
-                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1_right
-                - link_length_1_times_link_length_3*sin_a1_right
-            )
-            /link_length_2
-        )
-        across_a2 = (
-            (
-                link_length_2_times_minus_span_rear_y + link_length_1_times_link_length_2*cos_a1_right
-                + link_length_1_times_link_length_3*cos_a1_right
-            )
-            /link_length_2
-        )
+        along_a2 = (-link_length_2_times_span_rear_x - part_of_along_a2_left*sin_a1_right)/link_length_2
+        across_a2 = (link_length_2_times_span_rear_y + part_of_along_a2_left*cos_a1_right)/link_length_2
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
-        divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
-        divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
         # 1 - cosine, times the scale
         one_less_cos_a2 = (
-            (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
+            (divisor_a2 + link_length_4_plus_link_length_5_2)*(divisor_a2 + link_length_5_minus_link_length_4_2)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (
-            (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
+            (link_length_4_plus_link_length_5_2 - divisor_a2)*(divisor_a2 - link_length_5_minus_link_length_4_2)
         )
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
+        along_a2_right_times_cos_swing_a2 = along_a2*cos_swing_a2
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
-        across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
-        cos_a2_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
-        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
-        across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
+        part_of_cos_a2 = across_a2*sin_swing_a2
+        cos_a2_left = (along_a2_right_times_cos_swing_a2 + part_of_cos_a2)/divisor_a2
+        part_of_sin_a2 = -along_a2*sin_swing_a2
+        across_a2_right_times_cos_swing_a2 = -across_a2*cos_swing_a2
+        sin_a2_left = (part_of_sin_a2 - across_a2_right_times_cos_swing_a2)/divisor_a2
         axis_a2_right_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_left - open_a2 < 179.999999999:
             axis_a2_right_left = nearest_period(axis_a2_right_left, open_a2)
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        cos_a2_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
-        sin_a2_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
+        swing_scale_a2 = divisor_a2*twice_link_length_5_2  # a2: law of cosines in the rod rear equation
+        cos_a2_right = (along_a2_right_times_cos_swing_a2 - part_of_cos_a2)/divisor_a2
+        sin_a2_right = (-across_a2_right_times_cos_swing_a2 - part_of_sin_a2)/divisor_a2
         axis_a2_right_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_right - open_a2 < 179.999999999:
             axis_a2_right_right = nearest_period(axis_a2_right_right, open_a2)
@@ -279,18 +232,14 @@ def unrolled(k: Constants) -> Unrolled:
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link_2 and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             rod_1_x = x - centre_1_x_right
             rod_1_y = y - centre_1_y_right
-            part_of_pivot_rear_x_left_right = (
-                link_length_1*sin_a1_right + link_length_1_times_link_length_3_by_link_length_2*sin_a1_right
-            )
-            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_left  # rod rear
-            part_of_pivot_rear_y_left_right = (
-                link_length_1*cos_a1_right + link_length_1_times_link_length_3_by_link_length_2*cos_a1_right
-            )
-            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_left  # rod rear
-            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3_2
-            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3_2
+            part_of_pivot_rear_x = pivot_upper_x_right - part_of_pivot_rear_x_left_left*sin_a1_right
+            pivot_rear_x_left = -part_of_pivot_rear_x - link_length_5*cos_a2_left  # rod rear
+            part_of_pivot_rear_y = pivot_upper_y_right - part_of_pivot_rear_x_left_left*cos_a1_right
+            pivot_rear_y_left = link_length_5*sin_a2_left - part_of_pivot_rear_y  # rod rear
+            centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left)*link_length_2_by_link_length_3_2
+            centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left)*link_length_2_by_link_length_3_2
             type2_arms_aligned_left = (
-                constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
+                part_of_type2_arms_aligned_left_left*((y - centre_2_y_left)*rod_1_x - (x - centre_2_x_left)*rod_1_y)
             )
             refusal_right_left = (
                 0
@@ -299,16 +248,12 @@ def unrolled(k: Constants) -> Unrolled:
                 ) and (axis_a2_right_left <= highest_a2)
                 else 3
             )
-            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right  # rod rear
-            minus_centre_2_x_right = (
-                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3_2
-            )
-            minus_centre_2_y_right = (
-                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3_2
-            )
+            pivot_rear_x_right = -part_of_pivot_rear_x - link_length_5*cos_a2_right  # rod rear
+            pivot_rear_y_right = link_length_5*sin_a2_right - part_of_pivot_rear_y  # rod rear
+            centre_2_x_right = (-pivot_rear_y_right if swap_xy else -pivot_rear_x_right)*link_length_2_by_link_length_3_2
+            centre_2_y_right = (-pivot_rear_x_right if swap_xy else -pivot_rear_y_right)*link_length_2_by_link_length_3_2
             type2_arms_aligned_right = (
-                constant_part*((minus_centre_2_y_right + y)*rod_1_x - (minus_centre_2_x_right + x)*rod_1_y)
+                part_of_type2_arms_aligned_left_left*((y - centre_2_y_right)*rod_1_x - (x - centre_2_x_right)*rod_1_y)
             )
             refusal_right_right = (
                 0
@@ -346,16 +291,14 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > link_length_1_times_shortest_link_2):
             return 4*(None,)
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
-        divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
-        divisor_a1_plus_link_length_2 = divisor_a1 + link_length_2
+        swing_scale_a1 = divisor_a1*twice_link_length_1_2  # a1: law of cosines in the rod upper equation
         # 1 - cosine, times the scale
         one_less_cos_a1 = (
-            (divisor_a1_minus_link_length_2 + link_length_1)*(divisor_a1_plus_link_length_2 + link_length_1)
+            (divisor_a1 + link_length_1_minus_link_length_2_2)*(divisor_a1 + link_length_1_plus_link_length_2_2)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (
-            (link_length_1 - divisor_a1_minus_link_length_2)*(divisor_a1_plus_link_length_2 - link_length_1)
+            (link_length_1_plus_link_length_2_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2_2)
         )
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
@@ -363,19 +306,19 @@ def unrolled(k: Constants) -> Unrolled:
             return 4*(None,)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
-        sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
-        sin_a1_left = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
+        cos_swing_a1_times_span_upper_x = -span_upper_x*cos_swing_a1
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sin_swing_a1_right_times_span_upper_y = span_upper_y*sin_swing_a1
+        sin_a1_left = (-cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y)/divisor_a1
         pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
-        sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
-        cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
-        cos_a1_left = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
+        cos_swing_a1_times_span_upper_y = -span_upper_y*cos_swing_a1
+        sin_swing_a1_right_times_span_upper_x = span_upper_x*sin_swing_a1
+        cos_a1_left = (sin_swing_a1_right_times_span_upper_x - cos_swing_a1_times_span_upper_y)/divisor_a1
         pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
-        sin_a1_right = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
+        sin_a1_right = (sin_swing_a1_right_times_span_upper_y - cos_swing_a1_times_span_upper_x)/divisor_a1
         pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
-        cos_a1_right = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
+        cos_a1_right = (-cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x)/divisor_a1
         pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
         if swap_xy:
             centre_1_x_left = pivot_upper_y_left
@@ -387,160 +330,108 @@ def unrolled(k: Constants) -> Unrolled:
             centre_1_y_left = pivot_upper_y_left
             centre_1_x_right = pivot_upper_x_right
             centre_1_y_right = pivot_upper_y_right
-        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear
-        link_length_2_times_span_rear_x = link_length_2*span_rear_x
-        along_a2 = (
-            (
-                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1_left
-                - link_length_1_times_link_length_3*sin_a1_left
-            )
-            /link_length_2
-        )
-        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2_2  # rod rear
-        link_length_2_times_minus_span_rear_y = link_length_2*minus_span_rear_y
-        across_a2 = (
-            (
-                link_length_2_times_minus_span_rear_y + link_length_1_times_link_length_2*cos_a1_left
-                + link_length_1_times_link_length_3*cos_a1_left
-            )
-            /link_length_2
-        )
+        span_rear_x = -link_length_3_by_link_length_2_2*span_upper_x  # rod rear
+        link_length_2_times_span_rear_x = -link_length_2*span_rear_x
+        along_a2 = (-link_length_2_times_span_rear_x - part_of_along_a2_left*sin_a1_left)/link_length_2
+        span_rear_y = -link_length_3_by_link_length_2_2*span_upper_y  # rod rear
+        link_length_2_times_span_rear_y = -link_length_2*span_rear_y
+        across_a2 = (link_length_2_times_span_rear_y + part_of_along_a2_left*cos_a1_left)/link_length_2
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
-        divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
-        divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
         # 1 - cosine, times the scale
         one_less_cos_a2 = (
-            (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
+            (divisor_a2 + link_length_4_plus_link_length_5_2)*(divisor_a2 + link_length_5_minus_link_length_4_2)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (
-            (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
+            (link_length_4_plus_link_length_5_2 - divisor_a2)*(divisor_a2 - link_length_5_minus_link_length_4_2)
         )
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
+        along_a2_left_times_cos_swing_a2 = along_a2*cos_swing_a2
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
-        across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2*sin_swing_a2/divisor_a2
-        cos_a2_left_left = (
-            across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
-        )
-        along_a2_times_sin_swing_a2_by_divisor_a2_left_right = along_a2*sin_swing_a2/divisor_a2
-        across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2_left_left = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
-        )
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        cos_a2_left_right = (
-            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2_left_right
-        )
-        sin_a2_left_right = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
-        )
+        part_of_cos_a2 = across_a2*sin_swing_a2
+        cos_a2_left_left = (along_a2_left_times_cos_swing_a2 + part_of_cos_a2)/divisor_a2
+        part_of_sin_a2 = -along_a2*sin_swing_a2
+        across_a2_left_times_cos_swing_a2 = -across_a2*cos_swing_a2
+        sin_a2_left_left = (part_of_sin_a2 - across_a2_left_times_cos_swing_a2)/divisor_a2
+        swing_scale_a2 = divisor_a2*twice_link_length_5_2  # a2: law of cosines in the rod rear equation
+        cos_a2_left_right = (along_a2_left_times_cos_swing_a2 - part_of_cos_a2)/divisor_a2
+        sin_a2_left_right = (-across_a2_left_times_cos_swing_a2 - part_of_sin_a2)/divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if effective_a2 > link_length_5_times_shortest_link_2 and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             rod_1_x = x - centre_1_x_left
             rod_1_y = y - centre_1_y_left
-            part_of_pivot_rear_x = (
-                link_length_1*sin_a1_left + link_length_1_times_link_length_3_by_link_length_2*sin_a1_left
-            )
-            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left_left  # rod rear
-            part_of_pivot_rear_y = (
-                link_length_1*cos_a1_left + link_length_1_times_link_length_3_by_link_length_2*cos_a1_left
-            )
-            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left_left  # rod rear
-            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3_2
-            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3_2
+            part_of_pivot_rear_x_left_left_2 = pivot_upper_x_left - part_of_pivot_rear_x_left_left*sin_a1_left
+            pivot_rear_x_left = -part_of_pivot_rear_x_left_left_2 - link_length_5*cos_a2_left_left  # rod rear
+            part_of_pivot_rear_y = pivot_upper_y_left - part_of_pivot_rear_x_left_left*cos_a1_left
+            pivot_rear_y_left = link_length_5*sin_a2_left_left - part_of_pivot_rear_y  # rod rear
+            centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left)*link_length_2_by_link_length_3_2
+            centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left)*link_length_2_by_link_length_3_2
             type2_arms_aligned_left = (
-                constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
+                part_of_type2_arms_aligned_left_left*((y - centre_2_y_left)*rod_1_x - (x - centre_2_x_left)*rod_1_y)
             )
             refusal_left_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
-            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_left_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_left_right  # rod rear
-            minus_centre_2_x_right = (
-                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3_2
-            )
-            minus_centre_2_y_right = (
-                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3_2
-            )
+            pivot_rear_x_right = -part_of_pivot_rear_x_left_left_2 - link_length_5*cos_a2_left_right  # rod rear
+            pivot_rear_y_right = link_length_5*sin_a2_left_right - part_of_pivot_rear_y  # rod rear
+            centre_2_x_right = (-pivot_rear_y_right if swap_xy else -pivot_rear_x_right)*link_length_2_by_link_length_3_2
+            centre_2_y_right = (-pivot_rear_x_right if swap_xy else -pivot_rear_y_right)*link_length_2_by_link_length_3_2
             type2_arms_aligned_right = (
-                constant_part*((minus_centre_2_y_right + y)*rod_1_x - (minus_centre_2_x_right + x)*rod_1_y)
+                part_of_type2_arms_aligned_left_left*((y - centre_2_y_right)*rod_1_x - (x - centre_2_x_right)*rod_1_y)
             )
             refusal_left_right = 0 if type2_arms_aligned_right >= min_type2_margin else 3
         else:
             refusal_left_left = 3
             refusal_left_right = 3
         axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)*RADIAN
-        along_a2 = (
-            (
-                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1_right
-                - link_length_1_times_link_length_3*sin_a1_right
-            )
-            /link_length_2
-        )
-        across_a2 = (
-            (
-                link_length_2_times_minus_span_rear_y + link_length_1_times_link_length_2*cos_a1_right
-                + link_length_1_times_link_length_3*cos_a1_right
-            )
-            /link_length_2
-        )
+        along_a2 = (-link_length_2_times_span_rear_x - part_of_along_a2_left*sin_a1_right)/link_length_2
+        across_a2 = (link_length_2_times_span_rear_y + part_of_along_a2_left*cos_a1_right)/link_length_2
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
-        divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
-        divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
         # 1 - cosine, times the scale
         one_less_cos_a2 = (
-            (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
+            (divisor_a2 + link_length_4_plus_link_length_5_2)*(divisor_a2 + link_length_5_minus_link_length_4_2)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (
-            (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
+            (link_length_4_plus_link_length_5_2 - divisor_a2)*(divisor_a2 - link_length_5_minus_link_length_4_2)
         )
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
+        along_a2_right_times_cos_swing_a2 = along_a2*cos_swing_a2
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
-        across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
-        cos_a2_right_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
-        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
-        across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2_right_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        cos_a2_right_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
-        sin_a2_right_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
+        part_of_cos_a2 = across_a2*sin_swing_a2
+        cos_a2_right_left = (along_a2_right_times_cos_swing_a2 + part_of_cos_a2)/divisor_a2
+        part_of_sin_a2 = -along_a2*sin_swing_a2
+        across_a2_right_times_cos_swing_a2 = -across_a2*cos_swing_a2
+        sin_a2_right_left = (part_of_sin_a2 - across_a2_right_times_cos_swing_a2)/divisor_a2
+        swing_scale_a2 = divisor_a2*twice_link_length_5_2  # a2: law of cosines in the rod rear equation
+        cos_a2_right_right = (along_a2_right_times_cos_swing_a2 - part_of_cos_a2)/divisor_a2
+        sin_a2_right_right = (-across_a2_right_times_cos_swing_a2 - part_of_sin_a2)/divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if effective_a2 > link_length_5_times_shortest_link_2 and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             rod_1_x = x - centre_1_x_right
             rod_1_y = y - centre_1_y_right
-            part_of_pivot_rear_x_left_right = (
-                link_length_1*sin_a1_right + link_length_1_times_link_length_3_by_link_length_2*sin_a1_right
-            )
-            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_left  # rod rear
-            part_of_pivot_rear_y_left_right = (
-                link_length_1*cos_a1_right + link_length_1_times_link_length_3_by_link_length_2*cos_a1_right
-            )
-            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_left  # rod rear
-            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3_2
-            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3_2
+            part_of_pivot_rear_x = pivot_upper_x_right - part_of_pivot_rear_x_left_left*sin_a1_right
+            pivot_rear_x_left = -part_of_pivot_rear_x - link_length_5*cos_a2_right_left  # rod rear
+            part_of_pivot_rear_y = pivot_upper_y_right - part_of_pivot_rear_x_left_left*cos_a1_right
+            pivot_rear_y_left = link_length_5*sin_a2_right_left - part_of_pivot_rear_y  # rod rear
+            centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left)*link_length_2_by_link_length_3_2
+            centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left)*link_length_2_by_link_length_3_2
             type2_arms_aligned_left = (
-                constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
+                part_of_type2_arms_aligned_left_left*((y - centre_2_y_left)*rod_1_x - (x - centre_2_x_left)*rod_1_y)
             )
             refusal_right_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
-            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_right  # rod rear
-            minus_centre_2_x_right = (
-                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3_2
-            )
-            minus_centre_2_y_right = (
-                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3_2
-            )
+            pivot_rear_x_right = -part_of_pivot_rear_x - link_length_5*cos_a2_right_right  # rod rear
+            pivot_rear_y_right = link_length_5*sin_a2_right_right - part_of_pivot_rear_y  # rod rear
+            centre_2_x_right = (-pivot_rear_y_right if swap_xy else -pivot_rear_x_right)*link_length_2_by_link_length_3_2
+            centre_2_y_right = (-pivot_rear_x_right if swap_xy else -pivot_rear_y_right)*link_length_2_by_link_length_3_2
             type2_arms_aligned_right = (
-                constant_part*((minus_centre_2_y_right + y)*rod_1_x - (minus_centre_2_x_right + x)*rod_1_y)
+                part_of_type2_arms_aligned_left_left*((y - centre_2_y_right)*rod_1_x - (x - centre_2_x_right)*rod_1_y)
             )
             refusal_right_right = 0 if type2_arms_aligned_right >= min_type2_margin else 3
         else:
@@ -590,7 +481,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > link_length_1_times_shortest_link_2):
             return None
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
+        swing_scale_a1 = divisor_a1*twice_link_length_1_2  # a1: law of cosines in the rod upper equation
         # 1 - cosine, times the scale
         one_less_cos_a1 = (
             (divisor_a1 + link_length_1_minus_link_length_2_2)*(divisor_a1 + link_length_1_plus_link_length_2_2)
@@ -607,37 +498,25 @@ def unrolled(k: Constants) -> Unrolled:
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
-        sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
-        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear
-        along_a2 = (
-            (
-                link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1
-                - link_length_1_times_link_length_3*sin_a1
-            )
-            /link_length_2
-        )
-        cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
-        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2_2  # rod rear
-        across_a2 = (
-            (
-                link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
-                + link_length_2*minus_span_rear_y
-            )
-            /link_length_2
-        )
+        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
+        span_rear_x = -link_length_3_by_link_length_2_2*span_upper_x  # rod rear
+        along_a2 = (link_length_2*span_rear_x - part_of_along_a2_left*sin_a1)/link_length_2
+        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
+        span_rear_y = -link_length_3_by_link_length_2_2*span_upper_y  # rod rear
+        across_a2 = (part_of_along_a2_left*cos_a1 - link_length_2*span_rear_y)/link_length_2
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > link_length_5_times_shortest_link_2):
             return None
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
+        swing_scale_a2 = divisor_a2*twice_link_length_5_2  # a2: law of cosines in the rod rear equation
         # 1 - cosine, times the scale
         one_less_cos_a2 = (
-            (divisor_a2 + link_length_4_plus_link_length_5_2)*(divisor_a2 - link_length_4_minus_link_length_5)
+            (divisor_a2 + link_length_4_plus_link_length_5_2)*(divisor_a2 + link_length_5_minus_link_length_4_2)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (
-            (link_length_4_plus_link_length_5_2 - divisor_a2)*(divisor_a2 + link_length_4_minus_link_length_5)
+            (link_length_4_plus_link_length_5_2 - divisor_a2)*(divisor_a2 - link_length_5_minus_link_length_4_2)
         )
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
@@ -655,21 +534,15 @@ def unrolled(k: Constants) -> Unrolled:
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
-        cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
-        # rod rear
-        pivot_rear_x = (
-            link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1 - link_length_5*cos_a2
-        )
-        sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
-        # rod rear
-        pivot_rear_y = (
-            link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1 + link_length_5*sin_a2
-        )
-        minus_centre_2_x = (pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3_2
-        minus_centre_2_y = (pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3_2
+        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
+        pivot_rear_x = part_of_pivot_rear_x_left_left*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
+        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/divisor_a2
+        pivot_rear_y = part_of_pivot_rear_x_left_left*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
+        centre_2_x = (-pivot_rear_y if swap_xy else -pivot_rear_x)*link_length_2_by_link_length_3_2
+        centre_2_y = (-pivot_rear_x if swap_xy else -pivot_rear_y)*link_length_2_by_link_length_3_2
         type2_arms_aligned = (
-            ((x - centre_1_x)*(minus_centre_2_y + y) - (y - centre_1_y)*(minus_centre_2_x + x))
-            *constant_part
+            ((x - centre_1_x)*(y - centre_2_y) - (y - centre_1_y)*(x - centre_2_x))
+            *part_of_type2_arms_aligned_left_left
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):

@@ -33,12 +33,12 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     tcp_link_distance = k.tcp_link_distance
     machine_scale_times_plane_2 = 1e-6*machine_scale
-    displacement_minus_tcp_link_distance_by_2 = displacement - 0.5*tcp_link_distance
     inner_arm_times_shortest_link_2 = 1e-9*inner_arm
-    inner_arm_times_2 = 2.0*inner_arm
-    assembly_sign_by_outer_arm_squared_2 = assembly_sign/(outer_arm*outer_arm)
-    inner_arm_minus_outer_arm_2 = inner_arm - outer_arm
+    part_of_span_1_x = displacement - 0.5*tcp_link_distance
+    twice_inner_arm_2 = 2.0*inner_arm
     inner_arm_plus_outer_arm_2 = inner_arm + outer_arm
+    inner_arm_minus_outer_arm_2 = inner_arm - outer_arm
+    assembly_sign_by_outer_arm_squared_2 = assembly_sign/(outer_arm*outer_arm)
     no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -54,131 +54,131 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(3,)
-        span_1_x = displacement_minus_tcp_link_distance_by_2 + x  # rod 1
+        span_1_x = part_of_span_1_x + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link_2):
             return 4*(3,)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
-        divisor_a1_minus_outer_arm = divisor_a1 - outer_arm
-        divisor_a1_plus_outer_arm = divisor_a1 + outer_arm
+        swing_scale_a1 = divisor_a1*twice_inner_arm_2  # a1: law of cosines in the rod 1 equation
         # 1 - cosine, times the scale
-        one_less_cos_a1 = (inner_arm - divisor_a1_minus_outer_arm)*(divisor_a1_plus_outer_arm - inner_arm)
+        one_less_cos_a1 = (inner_arm_plus_outer_arm_2 - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (divisor_a1_minus_outer_arm + inner_arm)*(divisor_a1_plus_outer_arm + inner_arm)
+        one_plus_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm_2)*(divisor_a1 + inner_arm_plus_outer_arm_2)
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return 4*(3,)
-        span_2_x = x - displacement_minus_tcp_link_distance_by_2  # rod 2
+        span_2_x = x - part_of_span_1_x  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link_2):
             return 4*(3,)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
-        divisor_a2_minus_outer_arm = divisor_a2 - outer_arm
-        divisor_a2_plus_outer_arm = divisor_a2 + outer_arm
+        swing_scale_a2 = divisor_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (inner_arm - divisor_a2_minus_outer_arm)*(divisor_a2_plus_outer_arm - inner_arm)
+        one_less_cos_a2 = (inner_arm_plus_outer_arm_2 - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2_minus_outer_arm + inner_arm)*(divisor_a2_plus_outer_arm + inner_arm)
+        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm_2)*(divisor_a2 + inner_arm_plus_outer_arm_2)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return 4*(3,)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
-        sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
-        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
-        sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
-        cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
-        sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
-        sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
-        cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2
-        rod_2_x_outward = x - pivot_2_x
-        sin_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*sin_swing_a2/divisor_a2
-        cos_swing_a2_times_y_by_divisor_a2 = y*cos_swing_a2/divisor_a2
-        sin_a2 = cos_swing_a2_times_y_by_divisor_a2 + sin_swing_a2_times_span_2_x_by_divisor_a2
-        pivot_2_y = inner_arm*sin_a2  # rod 2
-        rod_2_y_outward = y - pivot_2_y
+        cos_swing_a2_times_span_2_x = span_2_x*cos_swing_a2
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sin_swing_a2_outward_times_y = y*sin_swing_a2
+        cos_a2 = (cos_swing_a2_times_span_2_x - sin_swing_a2_outward_times_y)/divisor_a2
+        cos_swing_a2_times_y = y*cos_swing_a2
+        sin_swing_a2_outward_times_span_2_x = span_2_x*sin_swing_a2
+        sin_a2 = (cos_swing_a2_times_y + sin_swing_a2_outward_times_span_2_x)/divisor_a2
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_outward - open_a2 < 179.999999999:
             axis_a2_outward = nearest_period(axis_a2_outward, open_a2)
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        cos_swing_a1_times_span_1_x = span_1_x*cos_swing_a1
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sin_swing_a1_inward_times_y = y*sin_swing_a1
+        cos_a1 = (cos_swing_a1_times_span_1_x + sin_swing_a1_inward_times_y)/divisor_a1
+        cos_swing_a1_times_y = y*cos_swing_a1
+        sin_swing_a1_inward_times_span_1_x = span_1_x*sin_swing_a1
+        sin_a1 = (cos_swing_a1_times_y - sin_swing_a1_inward_times_span_1_x)/divisor_a1
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
-        cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2
-        rod_2_x_inward = x - pivot_2_x
-        sin_a2 = cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
+        pivot_2_x = part_of_span_1_x + inner_arm*cos_a2  # rod 2
+        rod_2_x_outward = x - pivot_2_x
         pivot_2_y = inner_arm*sin_a2  # rod 2
-        rod_2_y_inward = y - pivot_2_y
+        rod_2_y_outward = y - pivot_2_y
+        part_of_refusal_outward = 0 if (axis_a2_outward >= lowest_a2) and (axis_a2_outward <= highest_a2) else 3
+        cos_a2 = (cos_swing_a2_times_span_2_x + sin_swing_a2_outward_times_y)/divisor_a2
+        sin_a2 = (cos_swing_a2_times_y - sin_swing_a2_outward_times_span_2_x)/divisor_a2
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
+        pivot_2_x = part_of_span_1_x + inner_arm*cos_a2  # rod 2
+        rod_2_x_inward = x - pivot_2_x
+        pivot_2_y = inner_arm*sin_a2  # rod 2
+        rod_2_y_inward = y - pivot_2_y
+        part_of_refusal_inward = 0 if (axis_a2_inward >= lowest_a2) and (axis_a2_inward <= highest_a2) else 3
+        # arms_aligned: the other assembly mode, or too near to losing the plate
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            pivot_1_x = inner_arm*cos_a1 - displacement_minus_tcp_link_distance_by_2  # rod 1
+            pivot_1_x = inner_arm*cos_a1 - part_of_span_1_x  # rod 1
             rod_1_x = x - pivot_1_x
             pivot_1_y = inner_arm*sin_a1  # rod 1
             rod_1_y = y - pivot_1_y
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
-                type2_arms_aligned_outward = (
-                    assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
-                )
-                refusal_outward_outward_2 = 0 if type2_arms_aligned_outward >= min_type2_margin else 3
-            else:
-                refusal_outward_outward_2 = 3
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
-                type2_arms_aligned_inward = (
-                    assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
-                )
-                refusal_outward_inward_2 = 0 if type2_arms_aligned_inward >= min_type2_margin else 3
-            else:
-                refusal_outward_inward_2 = 3
+            type2_arms_aligned_outward = (
+                assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
+            )
+            refusal_outward_outward_2 = (
+                part_of_refusal_outward
+                if part_of_refusal_outward > 0
+                else (0 if type2_arms_aligned_outward >= min_type2_margin else 3)
+            )
+            type2_arms_aligned_inward = (
+                assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
+            )
+            refusal_outward_inward_2 = (
+                part_of_refusal_inward
+                if part_of_refusal_inward > 0
+                else (0 if type2_arms_aligned_inward >= min_type2_margin else 3)
+            )
         else:
             refusal_outward_outward_2 = 3
             refusal_outward_inward_2 = 3
-        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
-        sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
+        cos_a1 = (cos_swing_a1_times_span_1_x - sin_swing_a1_inward_times_y)/divisor_a1
+        sin_a1 = (cos_swing_a1_times_y + sin_swing_a1_inward_times_span_1_x)/divisor_a1
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
+        # arms_aligned: the other assembly mode, or too near to losing the plate
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            pivot_1_x = inner_arm*cos_a1 - displacement_minus_tcp_link_distance_by_2  # rod 1
+            pivot_1_x = inner_arm*cos_a1 - part_of_span_1_x  # rod 1
             rod_1_x = x - pivot_1_x
             pivot_1_y = inner_arm*sin_a1  # rod 1
             rod_1_y = y - pivot_1_y
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
-                type2_arms_aligned_outward = (
-                    assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
-                )
-                refusal_inward_outward_2 = 0 if type2_arms_aligned_outward >= min_type2_margin else 3
-            else:
-                refusal_inward_outward_2 = 3
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
-                type2_arms_aligned_inward = (
-                    assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
-                )
-                refusal_inward_inward_2 = 0 if type2_arms_aligned_inward >= min_type2_margin else 3
-            else:
-                refusal_inward_inward_2 = 3
+            type2_arms_aligned_outward = (
+                assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
+            )
+            refusal_inward_outward_2 = (
+                part_of_refusal_outward
+                if part_of_refusal_outward > 0
+                else (0 if type2_arms_aligned_outward >= min_type2_margin else 3)
+            )
+            type2_arms_aligned_inward = (
+                assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
+            )
+            refusal_inward_inward_2 = (
+                part_of_refusal_inward
+                if part_of_refusal_inward > 0
+                else (0 if type2_arms_aligned_inward >= min_type2_margin else 3)
+            )
         else:
             refusal_inward_outward_2 = 3
             refusal_inward_inward_2 = 3
@@ -195,66 +195,62 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(None,)
-        span_1_x = displacement_minus_tcp_link_distance_by_2 + x  # rod 1
+        span_1_x = part_of_span_1_x + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link_2):
             return 4*(None,)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
-        divisor_a1_minus_outer_arm = divisor_a1 - outer_arm
-        divisor_a1_plus_outer_arm = divisor_a1 + outer_arm
+        swing_scale_a1 = divisor_a1*twice_inner_arm_2  # a1: law of cosines in the rod 1 equation
         # 1 - cosine, times the scale
-        one_less_cos_a1 = (inner_arm - divisor_a1_minus_outer_arm)*(divisor_a1_plus_outer_arm - inner_arm)
+        one_less_cos_a1 = (inner_arm_plus_outer_arm_2 - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (divisor_a1_minus_outer_arm + inner_arm)*(divisor_a1_plus_outer_arm + inner_arm)
+        one_plus_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm_2)*(divisor_a1 + inner_arm_plus_outer_arm_2)
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return 4*(None,)
-        span_2_x = x - displacement_minus_tcp_link_distance_by_2  # rod 2
+        span_2_x = x - part_of_span_1_x  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link_2):
             return 4*(None,)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
-        divisor_a2_minus_outer_arm = divisor_a2 - outer_arm
-        divisor_a2_plus_outer_arm = divisor_a2 + outer_arm
+        swing_scale_a2 = divisor_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (inner_arm - divisor_a2_minus_outer_arm)*(divisor_a2_plus_outer_arm - inner_arm)
+        one_less_cos_a2 = (inner_arm_plus_outer_arm_2 - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2_minus_outer_arm + inner_arm)*(divisor_a2_plus_outer_arm + inner_arm)
+        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm_2)*(divisor_a2 + inner_arm_plus_outer_arm_2)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return 4*(None,)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
-        sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
-        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
-        pivot_1_x = inner_arm*cos_a1 - displacement_minus_tcp_link_distance_by_2  # rod 1
+        cos_swing_a1_times_span_1_x = span_1_x*cos_swing_a1
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sin_swing_a1_inward_times_y = y*sin_swing_a1
+        cos_a1 = (cos_swing_a1_times_span_1_x + sin_swing_a1_inward_times_y)/divisor_a1
+        pivot_1_x = inner_arm*cos_a1 - part_of_span_1_x  # rod 1
         rod_1_x = x - pivot_1_x
-        sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
-        cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
-        sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
+        cos_swing_a1_times_y = y*cos_swing_a1
+        sin_swing_a1_inward_times_span_1_x = span_1_x*sin_swing_a1
+        sin_a1 = (cos_swing_a1_times_y - sin_swing_a1_inward_times_span_1_x)/divisor_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
-        sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
-        cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2
+        cos_swing_a2_times_span_2_x = span_2_x*cos_swing_a2
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sin_swing_a2_outward_times_y = y*sin_swing_a2
+        cos_a2 = (cos_swing_a2_times_span_2_x - sin_swing_a2_outward_times_y)/divisor_a2
+        pivot_2_x = part_of_span_1_x + inner_arm*cos_a2  # rod 2
         rod_2_x_outward = x - pivot_2_x
-        sin_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*sin_swing_a2/divisor_a2
-        cos_swing_a2_times_y_by_divisor_a2 = y*cos_swing_a2/divisor_a2
-        sin_a2 = cos_swing_a2_times_y_by_divisor_a2 + sin_swing_a2_times_span_2_x_by_divisor_a2
+        cos_swing_a2_times_y = y*cos_swing_a2
+        sin_swing_a2_outward_times_span_2_x = span_2_x*sin_swing_a2
+        sin_a2 = (cos_swing_a2_times_y + sin_swing_a2_outward_times_span_2_x)/divisor_a2
         pivot_2_y = inner_arm*sin_a2  # rod 2
         rod_2_y_outward = y - pivot_2_y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
@@ -262,20 +258,20 @@ def unrolled(k: Constants) -> Unrolled:
         refusal_outward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
-        cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2
+        cos_a2 = (cos_swing_a2_times_span_2_x + sin_swing_a2_outward_times_y)/divisor_a2
+        pivot_2_x = part_of_span_1_x + inner_arm*cos_a2  # rod 2
         rod_2_x_inward = x - pivot_2_x
-        sin_a2 = cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
+        sin_a2 = (cos_swing_a2_times_y - sin_swing_a2_outward_times_span_2_x)/divisor_a2
         pivot_2_y = inner_arm*sin_a2  # rod 2
         rod_2_y_inward = y - pivot_2_y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
-        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
-        pivot_1_x = inner_arm*cos_a1 - displacement_minus_tcp_link_distance_by_2  # rod 1
+        cos_a1 = (cos_swing_a1_times_span_1_x - sin_swing_a1_inward_times_y)/divisor_a1
+        pivot_1_x = inner_arm*cos_a1 - part_of_span_1_x  # rod 1
         rod_1_x = x - pivot_1_x
-        sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
+        sin_a1 = (cos_swing_a1_times_y + sin_swing_a1_inward_times_span_1_x)/divisor_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
@@ -299,13 +295,13 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
-        span_1_x = displacement_minus_tcp_link_distance_by_2 + x  # rod 1
+        span_1_x = part_of_span_1_x + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link_2):
             return None
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1*twice_inner_arm_2  # a1: law of cosines in the rod 1 equation
         # 1 - cosine, times the scale
         one_less_cos_a1 = (inner_arm_plus_outer_arm_2 - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
@@ -314,13 +310,13 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return None
-        span_2_x = x - displacement_minus_tcp_link_distance_by_2  # rod 2
+        span_2_x = x - part_of_span_1_x  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link_2):
             return None
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = divisor_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
         # 1 - cosine, times the scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm_2 - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
@@ -333,17 +329,17 @@ def unrolled(k: Constants) -> Unrolled:
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
-        cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
-        pivot_1_x = inner_arm*cos_a1 - displacement_minus_tcp_link_distance_by_2  # rod 1
-        sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
+        cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/divisor_a1
+        pivot_1_x = inner_arm*cos_a1 - part_of_span_1_x  # rod 1
+        sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
-        cos_a2 = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2/divisor_a2
-        pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2
-        sin_a2 = y*cos_swing_a2/divisor_a2 + span_2_x*sin_swing_a2/divisor_a2
+        cos_a2 = (span_2_x*cos_swing_a2 - y*sin_swing_a2)/divisor_a2
+        pivot_2_x = part_of_span_1_x + inner_arm*cos_a2  # rod 2
+        sin_a2 = (y*cos_swing_a2 + span_2_x*sin_swing_a2)/divisor_a2
         pivot_2_y = inner_arm*sin_a2  # rod 2
         type2_arms_aligned = (
             ((x - pivot_1_x)*(y - pivot_2_y) - (y - pivot_1_y)*(x - pivot_2_x))

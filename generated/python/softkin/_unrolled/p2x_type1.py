@@ -33,7 +33,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_plane_2 = 1e-6*machine_scale
     arm_length_1_squared_times_rounding_2 = 1e-12*arm_length_1*arm_length_1
     arm_length_2_squared_times_rounding_2 = 1e-12*arm_length_2*arm_length_2
-    assembly_sign_by_arm_length_1_by_arm_length_2 = assembly_sign/(arm_length_1*arm_length_2)
+    part_of_type2_arms_aligned_left_right = assembly_sign/(arm_length_1*arm_length_2)
     no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -47,69 +47,81 @@ def unrolled(k: Constants) -> Unrolled:
             return 4*(3,)
         span_1_y = y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
-        # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_1_squared_times_rounding_2):
-            return 4*(3,)
+        if root_square_a1 > 0.0:
+            root_of_root_square_a1 = sqrt(root_square_a1)
+        else:
+            # rod 1 cannot reach
+            if not (root_square_a1 >= -arm_length_1_squared_times_rounding_2):
+                return 4*(3,)
+            root_of_root_square_a1 = 0.0
         span_2_y = y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
-        # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_2_squared_times_rounding_2):
-            return 4*(3,)
+        if root_square_a2 > 0.0:
+            root_of_root_square_a2 = sqrt(root_square_a2)
+        else:
+            # rod 2 cannot reach
+            if not (root_square_a2 >= -arm_length_2_squared_times_rounding_2):
+                return 4*(3,)
+            root_of_root_square_a2 = 0.0
         span_2_x = tcp_offset_2 + x  # rod 2
-        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
-        rod_2_x_times_span_1_y_right = (x - pivot_2_x)*span_1_y
-        span_1_x = x - tcp_offset_1  # rod 1
-        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        a2 = root_of_root_square_a2 + span_2_x
         axis_a2_right = a2 + offset_a2
+        span_1_x = x - tcp_offset_1  # rod 1
+        a1 = span_1_x - root_of_root_square_a1
         axis_a1_left = a1 + offset_a1
-        a2 = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x = a2 - tcp_offset_2  # rod 2
-        rod_2_x_times_span_1_y_left = (x - pivot_2_x)*span_1_y
+        rod_2_x_right_times_span_1_y = (x - pivot_2_x)*span_1_y
+        part_of_refusal_right = 0 if (axis_a2_right >= lowest_a2) and (axis_a2_right <= highest_a2) else 3
+        a2 = span_2_x - root_of_root_square_a2
         axis_a2_left = a2 + offset_a2
+        pivot_2_x = a2 - tcp_offset_2  # rod 2
+        rod_2_x_left_times_span_1_y = (x - pivot_2_x)*span_1_y
+        part_of_refusal_left = 0 if (axis_a2_left >= lowest_a2) and (axis_a2_left <= highest_a2) else 3
+        # arms_aligned: the other assembly mode, or too near to losing the plate
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1:
             pivot_1_x = a1 + tcp_offset_1  # rod 1
-            rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
-                type2_arms_aligned_right = (
-                    assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
-                )
-                refusal_left_right_2 = 0 if type2_arms_aligned_right >= min_type2_margin else 3
-            else:
-                refusal_left_right_2 = 3
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            if axis_a2_left >= lowest_a2 and axis_a2_left <= highest_a2:
-                type2_arms_aligned_left = (
-                    assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
-                )
-                refusal_left_left_2 = 0 if type2_arms_aligned_left >= min_type2_margin else 3
-            else:
-                refusal_left_left_2 = 3
+            rod_1_x_left_times_span_2_y = (x - pivot_1_x)*span_2_y
+            type2_arms_aligned_right = (
+                part_of_type2_arms_aligned_left_right*(rod_1_x_left_times_span_2_y - rod_2_x_right_times_span_1_y)
+            )
+            refusal_left_right_2 = (
+                part_of_refusal_right
+                if part_of_refusal_right > 0
+                else (0 if type2_arms_aligned_right >= min_type2_margin else 3)
+            )
+            type2_arms_aligned_left = (
+                part_of_type2_arms_aligned_left_right*(rod_1_x_left_times_span_2_y - rod_2_x_left_times_span_1_y)
+            )
+            refusal_left_left_2 = (
+                part_of_refusal_left
+                if part_of_refusal_left > 0
+                else (0 if type2_arms_aligned_left >= min_type2_margin else 3)
+            )
         else:
             refusal_left_right_2 = 3
             refusal_left_left_2 = 3
-        a1 = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        a1 = root_of_root_square_a1 + span_1_x
         axis_a1_right = a1 + offset_a1
+        # arms_aligned: the other assembly mode, or too near to losing the plate
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1:
             pivot_1_x = a1 + tcp_offset_1  # rod 1
-            rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
-                type2_arms_aligned_right = (
-                    assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
-                )
-                refusal_right_right_2 = 0 if type2_arms_aligned_right >= min_type2_margin else 3
-            else:
-                refusal_right_right_2 = 3
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            if axis_a2_left >= lowest_a2 and axis_a2_left <= highest_a2:
-                type2_arms_aligned_left = (
-                    assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
-                )
-                refusal_right_left_2 = 0 if type2_arms_aligned_left >= min_type2_margin else 3
-            else:
-                refusal_right_left_2 = 3
+            rod_1_x_right_times_span_2_y = (x - pivot_1_x)*span_2_y
+            type2_arms_aligned_right = (
+                part_of_type2_arms_aligned_left_right*(rod_1_x_right_times_span_2_y - rod_2_x_right_times_span_1_y)
+            )
+            refusal_right_right_2 = (
+                part_of_refusal_right
+                if part_of_refusal_right > 0
+                else (0 if type2_arms_aligned_right >= min_type2_margin else 3)
+            )
+            type2_arms_aligned_left = (
+                part_of_type2_arms_aligned_left_right*(rod_1_x_right_times_span_2_y - rod_2_x_left_times_span_1_y)
+            )
+            refusal_right_left_2 = (
+                part_of_refusal_left
+                if part_of_refusal_left > 0
+                else (0 if type2_arms_aligned_left >= min_type2_margin else 3)
+            )
         else:
             refusal_right_right_2 = 3
             refusal_right_left_2 = 3
@@ -128,49 +140,57 @@ def unrolled(k: Constants) -> Unrolled:
             return 4*(None,)
         span_1_y = y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
-        # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_1_squared_times_rounding_2):
-            return 4*(None,)
+        if root_square_a1 > 0.0:
+            root_of_root_square_a1 = sqrt(root_square_a1)
+        else:
+            # rod 1 cannot reach
+            if not (root_square_a1 >= -arm_length_1_squared_times_rounding_2):
+                return 4*(None,)
+            root_of_root_square_a1 = 0.0
         span_2_y = y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
-        # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_2_squared_times_rounding_2):
-            return 4*(None,)
-        span_2_x = tcp_offset_2 + x  # rod 2
-        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
-        rod_2_x_times_span_1_y_right = (x - pivot_2_x)*span_1_y
+        if root_square_a2 > 0.0:
+            root_of_root_square_a2 = sqrt(root_square_a2)
+        else:
+            # rod 2 cannot reach
+            if not (root_square_a2 >= -arm_length_2_squared_times_rounding_2):
+                return 4*(None,)
+            root_of_root_square_a2 = 0.0
         span_1_x = x - tcp_offset_1  # rod 1
-        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        a1 = span_1_x - root_of_root_square_a1
         pivot_1_x = a1 + tcp_offset_1  # rod 1
-        rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
+        rod_1_x_left_times_span_2_y = (x - pivot_1_x)*span_2_y
+        span_2_x = tcp_offset_2 + x  # rod 2
+        a2 = root_of_root_square_a2 + span_2_x
+        pivot_2_x = a2 - tcp_offset_2  # rod 2
+        rod_2_x_right_times_span_1_y = (x - pivot_2_x)*span_1_y
         type2_arms_aligned = (
-            assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
+            part_of_type2_arms_aligned_left_right*(rod_1_x_left_times_span_2_y - rod_2_x_right_times_span_1_y)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_left = a1 + offset_a1
         axis_a2_right = a2 + offset_a2
-        a2 = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        a2 = span_2_x - root_of_root_square_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
-        rod_2_x_times_span_1_y_left = (x - pivot_2_x)*span_1_y
+        rod_2_x_left_times_span_1_y = (x - pivot_2_x)*span_1_y
         type2_arms_aligned = (
-            assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
+            part_of_type2_arms_aligned_left_right*(rod_1_x_left_times_span_2_y - rod_2_x_left_times_span_1_y)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_left = a2 + offset_a2
-        a1 = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        a1 = root_of_root_square_a1 + span_1_x
         pivot_1_x = a1 + tcp_offset_1  # rod 1
-        rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
+        rod_1_x_right_times_span_2_y = (x - pivot_1_x)*span_2_y
         type2_arms_aligned = (
-            assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
+            part_of_type2_arms_aligned_left_right*(rod_1_x_right_times_span_2_y - rod_2_x_right_times_span_1_y)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_right = a1 + offset_a1
         type2_arms_aligned = (
-            assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
+            part_of_type2_arms_aligned_left_right*(rod_1_x_right_times_span_2_y - rod_2_x_left_times_span_1_y)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_left = 0 if type2_arms_aligned >= min_type2_margin else 3
@@ -205,8 +225,8 @@ def unrolled(k: Constants) -> Unrolled:
         a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         type2_arms_aligned = (
-            ((x - pivot_1_x)*(y - rail_y_2) - (x - pivot_2_x)*(y - rail_y_1))
-            *assembly_sign_by_arm_length_1_by_arm_length_2
+            ((x - pivot_1_x)*span_2_y - (x - pivot_2_x)*span_1_y)
+            *part_of_type2_arms_aligned_left_right
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):

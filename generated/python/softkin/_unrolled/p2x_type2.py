@@ -27,7 +27,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a2 = k.offset_a2
     span_1_x = k.span_1_x
     machine_scale_times_plane_2 = 1e-6*machine_scale
-    share_of_arm_length_squared = 2.5e-13*arm_length*arm_length
+    part_of_constant_2 = 2.5e-13*arm_length*arm_length
     assembly_sign_by_arm_length_2 = assembly_sign/arm_length
     no_offsets = not any((offset_a1, offset_a2,))
 
@@ -40,9 +40,9 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return (3,)
-        root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
+        root_square_a2 = (arm_length + y)*(arm_length - y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -share_of_arm_length_squared):
+        if not (root_square_a2 >= -part_of_constant_2):
             return (3,)
         type2_flat = assembly_sign_by_arm_length_2*y
         # flat: the other assembly mode, or too near to losing the plate
@@ -68,9 +68,9 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return (None,)
-        root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
+        root_square_a2 = (arm_length + y)*(arm_length - y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -share_of_arm_length_squared):
+        if not (root_square_a2 >= -part_of_constant_2):
             return (None,)
         type2_flat = assembly_sign_by_arm_length_2*y
         # flat: the other assembly mode, or too near to losing the plate
@@ -88,9 +88,9 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
-        root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
+        root_square_a2 = (arm_length + y)*(arm_length - y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -share_of_arm_length_squared):
+        if not (root_square_a2 >= -part_of_constant_2):
             return None
         type2_flat = assembly_sign_by_arm_length_2*y
         # flat: the other assembly mode, or too near to losing the plate

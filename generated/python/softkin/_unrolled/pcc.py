@@ -52,15 +52,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane_2):
             return 2*(3,)
         reach = sqrt(x*x + y*y)
-        link_length_1_minus_reach = link_length_1 - reach
-        link_length_1_plus_reach = link_length_1 + reach
         # 1 - cosine, times the scale
         one_less_cos_a2_from_a1 = (
-            (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+            (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2_from_a1 = (
-            (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+            (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         )
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
@@ -79,9 +77,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            angle_a1_right = (ref_a1 - offset_a1)*DEGREE
+            angle_a1_left = angle_a1_right
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
@@ -132,15 +129,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane_2):
             return 2*(None,)
         reach = sqrt(x*x + y*y)
-        link_length_1_minus_reach = link_length_1 - reach
-        link_length_1_plus_reach = link_length_1 + reach
         # 1 - cosine, times the scale
         one_less_cos_a2_from_a1 = (
-            (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+            (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2_from_a1 = (
-            (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+            (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         )
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
@@ -157,9 +152,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            angle_a1_right = (ref_a1 - offset_a1)*DEGREE
+            angle_a1_left = angle_a1_right
         angle_a2_from_a1 = arctan2(sin_a2_from_a1, cos_a2_from_a1)
         axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)*RADIAN  # a2: what the sum a2_from_a1 leaves
         axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1)*RADIAN  # a2: what the sum a2_from_a1 leaves

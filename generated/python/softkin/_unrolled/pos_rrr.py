@@ -42,7 +42,7 @@ def unrolled(k: Constants) -> Unrolled:
     swing_scale_q3_2 = k.swing_scale_q3_2
     machine_scale_squared_times_plane_2 = 1e-6*machine_scale*machine_scale
     machine_scale_times_free_angle_2 = 1e-11*machine_scale
-    angle_of_a3_by_effective_q3_2 = arctan2(d4/effective_q3_2 + 0.0, a3/effective_q3_2 + 0.0)
+    part_of_angle_q3_front_down = arctan2(d4/effective_q3_2 + 0.0, a3/effective_q3_2 + 0.0)
     swing_scale_q3_2_squared_times_rounding_2 = 1e-12*swing_scale_q3_2*swing_scale_q3_2
     a2_plus_effective_q3_2_2 = a2 + effective_q3_2
     a2_minus_effective_q3_2_2 = a2 - effective_q3_2
@@ -71,15 +71,13 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 4*(3,)
             ahead_q1_before_q1_for_q3 = 0.0
-        wrist_y_from_q1 = z - d1  # what the unknown links must span
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # 1 - cosine, times the scale
-        one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
+        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach)*(a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2)*(a2_minus_effective_q3_2_2 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
@@ -98,23 +96,23 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_front_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
             axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
-        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
-        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
+        angle_of_swing_q3 = -arctan2(sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_swing_q3 + part_of_angle_q3_front_down
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
             axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle_2:
-            d3_times_y = d3*y
-            ahead_q1_before_q1_for_q3_times_x = ahead_q1_before_q1_for_q3*x
             divisor_q1 = distance_q1*distance_q1
-            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_x - d3_times_y)/divisor_q1
+            ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3*x
+            d3_times_y = d3*y
+            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)/divisor_q1
+            ahead_q1_before_q1_for_q3_front_times_y = ahead_q1_before_q1_for_q3*y
             d3_times_x = d3*x
-            ahead_q1_before_q1_for_q3_times_y = ahead_q1_before_q1_for_q3*y
-            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_y + d3_times_x)/divisor_q1
-            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_x - d3_times_y)/divisor_q1
-            sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_times_y)/divisor_q1
+            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_y + d3_times_x)/divisor_q1
+            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)/divisor_q1
+            sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_front_times_y)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3_front = cos(free_a1)
@@ -129,7 +127,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_front_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_front_up - open_a2 < 179.999999999:
             axis_a2_front_up = nearest_period(axis_a2_front_up, open_a2)
-        angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
+        angle_q3 = part_of_angle_q3_front_down - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
             axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
@@ -154,12 +152,10 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_front_up = 3
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # 1 - cosine, times the scale
-        one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
+        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach)*(a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2)*(a2_minus_effective_q3_2_2 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
@@ -177,8 +173,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_back_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_back_down - open_a2 < 179.999999999:
             axis_a2_back_down = nearest_period(axis_a2_back_down, open_a2)
-        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
-        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
+        angle_of_swing_q3 = -arctan2(sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_swing_q3 + part_of_angle_q3_front_down
         axis_a3_back_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_down - open_a3 < 179.999999999:
             axis_a3_back_down = nearest_period(axis_a3_back_down, open_a3)
@@ -189,7 +185,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_back_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_back_up - open_a2 < 179.999999999:
             axis_a2_back_up = nearest_period(axis_a2_back_up, open_a2)
-        angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
+        angle_q3 = part_of_angle_q3_front_down - angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
             axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
@@ -240,28 +236,26 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 4*(None,)
             ahead_q1_before_q1_for_q3 = 0.0
-        wrist_y_from_q1 = z - d1  # what the unknown links must span
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # 1 - cosine, times the scale
-        one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
+        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach)*(a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2)*(a2_minus_effective_q3_2_2 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_front = 0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2 else 3  # q3: out of reach
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle_2:
-            d3_times_y = d3*y
-            ahead_q1_before_q1_for_q3_times_x = ahead_q1_before_q1_for_q3*x
             divisor_q1 = distance_q1*distance_q1
-            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_x - d3_times_y)/divisor_q1
+            ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3*x
+            d3_times_y = d3*y
+            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)/divisor_q1
+            ahead_q1_before_q1_for_q3_front_times_y = ahead_q1_before_q1_for_q3*y
             d3_times_x = d3*x
-            ahead_q1_before_q1_for_q3_times_y = ahead_q1_before_q1_for_q3*y
-            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_y + d3_times_x)/divisor_q1
-            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_x - d3_times_y)/divisor_q1
-            sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_times_y)/divisor_q1
+            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_y + d3_times_x)/divisor_q1
+            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)/divisor_q1
+            sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_front_times_y)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3_front = cos(free_a1)
@@ -282,15 +276,13 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_front_down = free_a2
             angle_q2_front_up = free_a2
-        angle_of_swing_q3_front_down = arctan2(-sin_swing_q3, cos_swing_q3)
+        angle_of_swing_q3_front_down = -arctan2(sin_swing_q3, cos_swing_q3)
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # 1 - cosine, times the scale
-        one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
+        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach)*(a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2)*(a2_minus_effective_q3_2_2 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_back = 0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2 else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
@@ -307,12 +299,12 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_back_down = free_a2
             angle_q2_back_up = free_a2
-        angle_of_swing_q3_back_down = arctan2(-sin_swing_q3, cos_swing_q3)
+        angle_of_swing_q3_back_down = -arctan2(sin_swing_q3, cos_swing_q3)
         return (
             (
                 (
                     axis_a1_front, offset_a2 + angle_q2_front_down*RADIAN,
-                    offset_a3 + (angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_front_down)*RADIAN,
+                    offset_a3 + (angle_of_swing_q3_front_down + part_of_angle_q3_front_down)*RADIAN,
                 )
                 if refusal_front == 0
                 else None
@@ -320,7 +312,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_back, offset_a2 + angle_q2_back_down*RADIAN,
-                    offset_a3 + (angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_back_down)*RADIAN,
+                    offset_a3 + (angle_of_swing_q3_back_down + part_of_angle_q3_front_down)*RADIAN,
                 )
                 if refusal_back == 0
                 else None
@@ -328,7 +320,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_front, offset_a2 + angle_q2_front_up*RADIAN,
-                    offset_a3 + (angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_front_down)*RADIAN,
+                    offset_a3 + (part_of_angle_q3_front_down - angle_of_swing_q3_front_down)*RADIAN,
                 )
                 if refusal_front == 0
                 else None
@@ -336,7 +328,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_back, offset_a2 + angle_q2_back_up*RADIAN,
-                    offset_a3 + (angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_back_down)*RADIAN,
+                    offset_a3 + (part_of_angle_q3_front_down - angle_of_swing_q3_back_down)*RADIAN,
                 )
                 if refusal_back == 0
                 else None
@@ -395,11 +387,11 @@ def unrolled(k: Constants) -> Unrolled:
         if no_offsets:
             return (
                 arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*RADIAN, angle_q2*RADIAN,
-                (angle_of_a3_by_effective_q3_2 + arctan2(sin_swing_q3, cos_swing_q3))*RADIAN,
+                (part_of_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3))*RADIAN,
             )
         return (
             offset_a1 + arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*RADIAN, offset_a2 + angle_q2*RADIAN,
-            offset_a3 + (angle_of_a3_by_effective_q3_2 + arctan2(sin_swing_q3, cos_swing_q3))*RADIAN,
+            offset_a3 + (part_of_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3))*RADIAN,
         )
 
     return Unrolled(every_branch, branches, branch)

@@ -34,7 +34,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     scale_a2_squared_times_rounding_2 = 1e-12*scale_a2*scale_a2
     machine_scale_times_free_angle_2 = 1e-11*machine_scale
-    offset_a2_times_2 = 2.0*offset_a2
+    twice_offset_a2 = 2.0*offset_a2
     arm_length_1_plus_arm_length_2_2 = arm_length_1 + arm_length_2
     arm_length_1_minus_arm_length_2_2 = arm_length_1 - arm_length_2
     no_offsets = not any((offset_a1, offset_a2, offset_z,))
@@ -50,12 +50,10 @@ def unrolled(k: Constants) -> Unrolled:
         ):
             return 2*(2,)
         reach = sqrt(x*x + y*y)
-        arm_length_1_minus_reach = arm_length_1 - reach
-        arm_length_1_plus_reach = arm_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (arm_length_1_minus_reach + arm_length_2)*(arm_length_1_plus_reach + arm_length_2)
+        one_less_cos_a2 = (arm_length_1_plus_arm_length_2_2 + reach)*(arm_length_1_plus_arm_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_2 - arm_length_1_minus_reach)*(arm_length_1_plus_reach - arm_length_2)
+        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2_2)*(arm_length_1_minus_arm_length_2_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
@@ -74,9 +72,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            angle_a1_right = (ref_a1 - offset_a1)*DEGREE
+            angle_a1_left = angle_a1_right
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
@@ -96,7 +93,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        axis_a2_left = offset_a2_times_2 - axis_a2_right  # A2: its turn
+        axis_a2_left = twice_offset_a2 - axis_a2_right  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
         # limits of A1, limits of A2
@@ -117,12 +114,10 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_a1, _, _ = 3*(0.0,) if reference is None else reference
         reach = sqrt(x*x + y*y)
-        arm_length_1_minus_reach = arm_length_1 - reach
-        arm_length_1_plus_reach = arm_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (arm_length_1_minus_reach + arm_length_2)*(arm_length_1_plus_reach + arm_length_2)
+        one_less_cos_a2 = (arm_length_1_plus_arm_length_2_2 + reach)*(arm_length_1_plus_arm_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_2 - arm_length_1_minus_reach)*(arm_length_1_plus_reach - arm_length_2)
+        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2_2)*(arm_length_1_minus_arm_length_2_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
@@ -137,14 +132,13 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            angle_a1_right = (ref_a1 - offset_a1)*DEGREE
+            angle_a1_left = angle_a1_right
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         axis_z = offset_z + z
         return (
             (offset_a1 + angle_a1_right*RADIAN, axis_a2, axis_z),
-            (offset_a1 + angle_a1_left*RADIAN, offset_a2_times_2 - axis_a2, axis_z),
+            (offset_a1 + angle_a1_left*RADIAN, twice_offset_a2 - axis_a2, axis_z),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

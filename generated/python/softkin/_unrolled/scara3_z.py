@@ -67,12 +67,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        arm_length_1_minus_reach = arm_length_1 - reach
-        arm_length_1_plus_reach = arm_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (arm_length_1_minus_reach + arm_length_2)*(arm_length_1_plus_reach + arm_length_2)
+        one_less_cos_a2 = (arm_length_1_plus_arm_length_2_2 + reach)*(arm_length_1_plus_arm_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_2 - arm_length_1_minus_reach)*(arm_length_1_plus_reach - arm_length_2)
+        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2_2)*(arm_length_1_minus_arm_length_2_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
@@ -91,16 +89,16 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            angle_a1_right = (ref_a1 - offset_a1)*DEGREE
+            angle_a1_left = angle_a1_right
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        axis_a2_right = offset_a2 + angle_a2/DEGREE  # A2: its turn
+        angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
+        part_of_axis_a2 = angle_a2/DEGREE
+        axis_a2_right = offset_a2 + part_of_axis_a2  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
@@ -120,7 +118,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        axis_a2_left = offset_a2 - angle_a2/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2 - part_of_axis_a2  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
         # a3: what the sum a123 leaves; A3: its turn
@@ -156,12 +154,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        arm_length_1_minus_reach = arm_length_1 - reach
-        arm_length_1_plus_reach = arm_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (arm_length_1_minus_reach + arm_length_2)*(arm_length_1_plus_reach + arm_length_2)
+        one_less_cos_a2 = (arm_length_1_plus_arm_length_2_2 + reach)*(arm_length_1_plus_arm_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_2 - arm_length_1_minus_reach)*(arm_length_1_plus_reach - arm_length_2)
+        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2_2)*(arm_length_1_minus_arm_length_2_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
@@ -176,9 +172,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            angle_a1_right = (ref_a1 - offset_a1)*DEGREE
+            angle_a1_left = angle_a1_right
         angle_a2 = arctan2(sin_a2, cos_a2)
         part_of_axis_a2 = angle_a2*RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)

@@ -67,12 +67,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        link_length_1_minus_reach = link_length_1 - reach
-        link_length_1_plus_reach = link_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a3 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        one_less_cos_a3 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -scale_a3_squared_times_rounding_2):
@@ -91,16 +89,16 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
             angle_a2_left = angle_of_arm_along_a2 + angle_of_wrist_x
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_a2_right = free_a2
-            angle_a2_left = free_a2
+            angle_a2_right = (ref_a2 - offset_a2)*DEGREE
+            angle_a2_left = angle_a2_right
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_right = offset_a2 + angle_a2_right/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
-        angle_a3 = arctan2(sin_a3 + 0.0, cos_a3 + 0.0)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
-        axis_a3_right = offset_a3 + angle_a3/DEGREE  # A3: its turn
+        angle_a3 = arctan2(sin_a3 + 0.0, cos_a3 + 0.0)
+        part_of_axis_a3 = angle_a3/DEGREE
+        axis_a3_right = offset_a3 + part_of_axis_a3  # A3: its turn
         if not -180.000000001 <= axis_a3_right - open_a3 < 179.999999999:
             axis_a3_right = nearest_period(axis_a3_right, open_a3)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
@@ -120,7 +118,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left = offset_a2 + angle_a2_left/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
-        axis_a3_left = offset_a3 - angle_a3/DEGREE  # A3: its turn
+        axis_a3_left = offset_a3 - part_of_axis_a3  # A3: its turn
         if not -180.000000001 <= axis_a3_left - open_a3 < 179.999999999:
             axis_a3_left = nearest_period(axis_a3_left, open_a3)
         # a4: what the sum a234 leaves; A4: its turn
@@ -156,12 +154,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        link_length_1_minus_reach = link_length_1 - reach
-        link_length_1_plus_reach = link_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a3 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        one_less_cos_a3 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -scale_a3_squared_times_rounding_2):
@@ -177,9 +173,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
             angle_a2_left = angle_of_arm_along_a2 + angle_of_wrist_x
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_a2_right = free_a2
-            angle_a2_left = free_a2
+            angle_a2_right = (ref_a2 - offset_a2)*DEGREE
+            angle_a2_left = angle_a2_right
         angle_a3 = arctan2(sin_a3, cos_a3)
         part_of_axis_a3 = angle_a3*RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)

@@ -40,9 +40,9 @@ def unrolled(k: Constants) -> Unrolled:
     single_a4 = k.single_a4
     scale_a2_squared_times_rounding_2 = 1e-12*scale_a2*scale_a2
     machine_scale_times_free_angle_2 = 1e-11*machine_scale
-    pitch_zc_by_360 = pitch_zc/360.0
     link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
+    part_of_a3_right = pitch_zc/(360.0*DEGREE)
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -63,12 +63,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 2*(3,)
         reach = sqrt(x*x + y*y)
-        link_length_1_minus_reach = link_length_1 - reach
-        link_length_1_plus_reach = link_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
@@ -83,16 +81,16 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            angle_a1_right = (ref_a1 - offset_a1)*DEGREE
+            angle_a1_left = angle_a1_right
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        axis_a2_right = offset_a2 + angle_a2/DEGREE  # A2: its turn
+        angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
+        part_of_axis_a2 = angle_a2/DEGREE
+        axis_a2_right = offset_a2 + part_of_axis_a2  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
         angle_heading = arctan2(heading_across + 0.0, heading_along + 0.0)
@@ -102,7 +100,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
         a4 = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc_by_360/DEGREE  # a3: affine in the z equation
+        a3 = z + a4*part_of_a3_right  # a3: affine in the z equation
         axis_a3_right = a3 + offset_a3
         # limits of A1, limits of A2, limits of A4, limits of A3
         refusal_right = (
@@ -115,7 +113,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        axis_a2_left = offset_a2 - angle_a2/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2 - part_of_axis_a2  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
@@ -123,7 +121,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
         a4 = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc_by_360/DEGREE  # a3: affine in the z equation
+        a3 = z + a4*part_of_a3_right  # a3: affine in the z equation
         axis_a3_left = a3 + offset_a3
         # limits of A1, limits of A2, limits of A4, limits of A3
         refusal_left = (
@@ -149,12 +147,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 2*(None,)
         reach = sqrt(x*x + y*y)
-        link_length_1_minus_reach = link_length_1 - reach
-        link_length_1_plus_reach = link_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
@@ -169,9 +165,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1_right = free_a1
-            angle_a1_left = free_a1
+            angle_a1_right = (ref_a1 - offset_a1)*DEGREE
+            angle_a1_left = angle_a1_right
         angle_a2 = arctan2(sin_a2, cos_a2)
         part_of_axis_a2 = angle_a2*RADIAN
         angle_heading = arctan2(heading_across, heading_along)
@@ -181,13 +176,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
         a4 = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
-        a3_right = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
+        a3_right = z + a4*part_of_a3_right  # a3: affine in the z equation
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
         axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left)/DEGREE
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
         a4 = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
-        a3_left = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
+        a3_left = z + a4*part_of_a3_right  # a3: affine in the z equation
         return (
             (offset_a1 + angle_a1_right*RADIAN, offset_a2 + part_of_axis_a2, a3_right + offset_a3, axis_a4_right),
             (offset_a1 + angle_a1_left*RADIAN, offset_a2 - part_of_axis_a2, a3_left + offset_a3, axis_a4_left),
@@ -229,7 +224,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4 - open_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, open_a4)
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
+        a3 = z + a4*part_of_a3_right  # a3: affine in the z equation
         if no_offsets:
             return (angle_a1*RADIAN, angle_a2*RADIAN, a3, axis_a4)
         return (offset_a1 + angle_a1*RADIAN, offset_a2 + angle_a2*RADIAN, a3 + offset_a3, axis_a4)

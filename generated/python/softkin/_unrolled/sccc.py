@@ -47,6 +47,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_free_angle_2 = 1e-11*machine_scale
     link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
+    part_of_open_a2_right = coupling_12/DEGREE
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -74,12 +75,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        link_length_1_minus_reach = link_length_1 - reach
-        link_length_1_plus_reach = link_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
@@ -101,12 +100,13 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
+        part_of_axis_a2_right = -motor_a1_right*part_of_open_a2_right
         axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
+        part_of_axis_a2_left = -motor_a1_left*part_of_open_a2_right
         # A2: where its turn is open
         if single_a2:
             open_a2_right = mid_a2
@@ -114,18 +114,22 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            part_of_open_a2 = offset_a2 + (ref_motor_a2 + coupling_12*free_a1)/DEGREE
-            open_a2_right = part_of_open_a2 - coupling_12*motor_a1_right/DEGREE
-            open_a2_left = part_of_open_a2 - coupling_12*motor_a1_left/DEGREE
-        axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: its turn
+            part_of_open_a2_right_2 = offset_a2 + (ref_motor_a2 + coupling_12*free_a1)/DEGREE
+            open_a2_right = part_of_axis_a2_right + part_of_open_a2_right_2
+            open_a2_left = part_of_axis_a2_left + part_of_open_a2_right_2
+        angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
+        part_of_axis_a2_right_2 = angle_a2/DEGREE
+        axis_a2_right = offset_a2 + part_of_axis_a2_right + part_of_axis_a2_right_2  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2_right < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2_right)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         motor_a2_right = DEGREE*(axis_a2_right - offset_a2)
-        axis_a2_left = offset_a2 - angle_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: its turn
+        part_of_axis_a3_right = -coupling_13*motor_a1_right - coupling_23*motor_a2_right
+        axis_a2_left = offset_a2 + part_of_axis_a2_left - part_of_axis_a2_right_2  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2_left < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
         motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
+        part_of_axis_a3_left = -coupling_13*motor_a1_left - coupling_23*motor_a2_left
         # A3: where its turn is open
         if single_a3:
             open_a3_right = mid_a3
@@ -134,19 +138,14 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a3 = (ref_a3 - offset_a3)*DEGREE + coupling_13*free_a1 + coupling_23*ref_motor_a2
-            part_of_open_a3 = offset_a3 + free_a3/DEGREE
-            open_a3_right = part_of_open_a3 + (-coupling_13*motor_a1_right - coupling_23*motor_a2_right)/DEGREE
-            open_a3_left = part_of_open_a3 + (-coupling_13*motor_a1_left - coupling_23*motor_a2_left)/DEGREE
+            open_a3_right = offset_a3 + (free_a3 + part_of_axis_a3_right)/DEGREE
+            open_a3_left = offset_a3 + (free_a3 + part_of_axis_a3_left)/DEGREE
         # a3: what the sum a123 leaves; A3: its turn
-        axis_a3_right = (
-            offset_a3 + (angle_heading - angle_a1_right - angle_a2)/DEGREE
-            - (coupling_13*motor_a1_right + coupling_23*motor_a2_right)/DEGREE
-        )
+        axis_a3_right = offset_a3 + (angle_heading + part_of_axis_a3_right - angle_a1_right - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a3_right - open_a3_right < 179.999999999:
             axis_a3_right = nearest_period(axis_a3_right, open_a3_right)
         limit_value_joint_2 = (motor_a2_right + coupling_12*motor_a1_right)/DEGREE  # joint 2
-        limit_a3 = DEGREE*(axis_a3_right - offset_a3) + coupling_13*motor_a1_right + coupling_23*motor_a2_right
-        limit_value_joint_3 = limit_a3/DEGREE  # joint 3
+        limit_value_joint_3 = (DEGREE*(axis_a3_right - offset_a3) - part_of_axis_a3_right)/DEGREE  # joint 3
         # limits of A1, limits of A2, limits of A3, limits of joint 2, limits of joint 3
         refusal_right = (
             0
@@ -156,15 +155,11 @@ def unrolled(k: Constants) -> Unrolled:
             else 3
         )
         # a3: what the sum a123 leaves; A3: its turn
-        axis_a3_left = (
-            offset_a3 + (angle_a2 + angle_heading - angle_a1_left)/DEGREE
-            - (coupling_13*motor_a1_left + coupling_23*motor_a2_left)/DEGREE
-        )
+        axis_a3_left = offset_a3 + (angle_a2 + angle_heading + part_of_axis_a3_left - angle_a1_left)/DEGREE
         if not -180.000000001 <= axis_a3_left - open_a3_left < 179.999999999:
             axis_a3_left = nearest_period(axis_a3_left, open_a3_left)
         limit_value_joint_2 = (motor_a2_left + coupling_12*motor_a1_left)/DEGREE  # joint 2
-        limit_a3 = DEGREE*(axis_a3_left - offset_a3) + coupling_13*motor_a1_left + coupling_23*motor_a2_left
-        limit_value_joint_3 = limit_a3/DEGREE  # joint 3
+        limit_value_joint_3 = (DEGREE*(axis_a3_left - offset_a3) - part_of_axis_a3_left)/DEGREE  # joint 3
         # limits of A1, limits of A2, limits of A3, limits of joint 2, limits of joint 3
         refusal_left = (
             0
@@ -197,12 +192,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        link_length_1_minus_reach = link_length_1 - reach
-        link_length_1_plus_reach = link_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
@@ -224,37 +217,46 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        angle_a2 = arctan2(sin_a2, cos_a2)
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
+        part_of_axis_a2_right = -motor_a1_right*part_of_open_a2_right
         axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
+        part_of_axis_a2_left = -motor_a1_left*part_of_open_a2_right
         # A2: where its turn is open
         if single_a2:
             open_a2_right = mid_a2
             open_a2_left = mid_a2
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            part_of_open_a2 = offset_a2 + ((ref_a2 - offset_a2)*DEGREE + coupling_12*free_a1)*RADIAN
-            open_a2_right = part_of_open_a2 - coupling_12*motor_a1_right*RADIAN
-            open_a2_left = part_of_open_a2 - coupling_12*motor_a1_left*RADIAN
-        axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: its turn
+            part_of_open_a2_right_2 = offset_a2 + ((ref_a2 - offset_a2)*DEGREE + coupling_12*free_a1)*RADIAN
+            open_a2_right = part_of_axis_a2_right + part_of_open_a2_right_2
+            open_a2_left = part_of_axis_a2_left + part_of_open_a2_right_2
+        angle_a2 = arctan2(sin_a2, cos_a2)
+        part_of_axis_a2_right_2 = angle_a2*RADIAN
+        axis_a2_right = offset_a2 + part_of_axis_a2_right + part_of_axis_a2_right_2  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2_right < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2_right)
         angle_heading = arctan2(sin_heading, cos_heading)
         # a3: what the sum a123 leaves
         axis_a3_right = (
-            offset_a3 + (angle_heading - angle_a1_right - angle_a2)*RADIAN
-            - (coupling_13*motor_a1_right + (DEGREE*(axis_a2_right - offset_a2))*coupling_23)*RADIAN
+            offset_a3
+            + (
+                angle_heading - angle_a1_right - angle_a2 - coupling_13*motor_a1_right
+                - (DEGREE*(axis_a2_right - offset_a2))*coupling_23
+            )*RADIAN
         )
-        axis_a2_left = offset_a2 - angle_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2 + part_of_axis_a2_left - part_of_axis_a2_right_2  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2_left < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
         # a3: what the sum a123 leaves
         axis_a3_left = (
-            offset_a3 + (angle_a2 + angle_heading - angle_a1_left)*RADIAN
-            - (coupling_13*motor_a1_left + (DEGREE*(axis_a2_left - offset_a2))*coupling_23)*RADIAN
+            offset_a3
+            + (
+                angle_a2 + angle_heading - angle_a1_left - coupling_13*motor_a1_left
+                - (DEGREE*(axis_a2_left - offset_a2))*coupling_23
+            )*RADIAN
         )
         return (
             (axis_a1_right, axis_a2_right, axis_a3_right),
@@ -304,19 +306,23 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a1 = nearest_period(axis_a1, open_a1)
         angle_a2 = arctan2(sin_a2, cos_a2)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
+        part_of_axis_a2 = offset_a2 - motor_a1*part_of_open_a2_right
         # A2: where its turn is open
         if single_a2:
             open_a2 = mid_a2
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            open_a2 = offset_a2 + ((ref_a2 - offset_a2)*DEGREE + coupling_12*free_a1)*RADIAN - coupling_12*motor_a1*RADIAN
-        axis_a2 = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
+            open_a2 = part_of_axis_a2 + ((ref_a2 - offset_a2)*DEGREE + coupling_12*free_a1)*RADIAN
+        axis_a2 = part_of_axis_a2 + angle_a2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - open_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, open_a2)
         # a3: what the sum a123 leaves
         axis_a3 = (
-            offset_a3 + (arctan2(sin_heading, cos_heading) - angle_a1 - angle_a2)*RADIAN
-            - (coupling_13*motor_a1 + (DEGREE*(axis_a2 - offset_a2))*coupling_23)*RADIAN
+            offset_a3
+            + (
+                arctan2(sin_heading, cos_heading) - angle_a1 - angle_a2 - coupling_13*motor_a1
+                - (DEGREE*(axis_a2 - offset_a2))*coupling_23
+            )*RADIAN
         )
         return (axis_a1, axis_a2, axis_a3)
 

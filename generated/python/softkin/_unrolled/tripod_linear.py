@@ -33,23 +33,24 @@ def unrolled(k: Constants) -> Unrolled:
     sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
     sin_rail_angle = k.sin_rail_angle
     arm_length_squared_2 = arm_length*arm_length
-    cos_rail_angle_squared_2 = cos_rail_angle*cos_rail_angle
-    inner_radius_minus_outer_radius_2 = inner_radius - outer_radius
-    sin_rail_angle_squared_2 = sin_rail_angle*sin_rail_angle
-    cos_rail_angle_times_sin_rail_angle_times_2 = 2.0*cos_rail_angle*sin_rail_angle
     arm_length_squared_times_rounding_2 = 1e-12*arm_length*arm_length
-    inner_radius_by_2_minus_outer_radius_by_2 = 0.5*inner_radius - 0.5*outer_radius
-    sin_rail_angle_squared_by_4 = 0.25*sin_rail_angle*sin_rail_angle
+    outer_radius_minus_inner_radius = outer_radius - inner_radius
+    part_of_root_square_a1_2 = 2.0*cos_rail_angle*sin_rail_angle
+    sin_rail_angle_squared_2 = sin_rail_angle*sin_rail_angle
+    cos_rail_angle_squared_2 = cos_rail_angle*cos_rail_angle
+    part_of_span_2_x = 0.5*inner_radius - 0.5*outer_radius
+    root_of_3 = root(3.0)
+    part_of_span_2_y = 0.5*outer_radius*root_of_3 - 0.5*inner_radius*root_of_3
+    part_of_root_square_a2_3 = root_of_3*cos_rail_angle*sin_rail_angle
+    part_of_root_square_a2_4 = 0.5*root_of_3*sin_rail_angle*sin_rail_angle
     cos_rail_angle_times_sin_rail_angle_2 = cos_rail_angle*sin_rail_angle
-    constant_part = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius
     sin_rail_angle_squared_times_3_by_4_2 = 0.75*sin_rail_angle*sin_rail_angle
-    root_of_3_times_sin_rail_angle_squared_by_2 = 0.5*root(3.0)*sin_rail_angle*sin_rail_angle
-    constant_part_2 = root(3.0)*cos_rail_angle*sin_rail_angle
-    one_by_2_by_arm_length = 0.5/arm_length
-    root_of_3_by_2_by_arm_length = 0.5*root(3.0)/arm_length
-    sin_rail_angle_by_2 = 0.5*sin_rail_angle
-    root_of_3_times_sin_rail_angle_by_2 = 0.5*root(3.0)*sin_rail_angle
-    assembly_sign_by_constant_part = assembly_sign/(arm_length*arm_length*arm_length)
+    sin_rail_angle_squared_times_1_by_4_2 = 0.25*sin_rail_angle*sin_rail_angle
+    part_of_middle_a2 = 0.5*root_of_3*sin_rail_angle
+    half_sin_rail_angle_2 = 0.5*sin_rail_angle
+    part_of_type2_rods_coplanar_below_below_below = assembly_sign/(arm_length*arm_length*arm_length)
+    root_of_3_times_half_by_arm_length_2 = 0.5*root_of_3/arm_length
+    half_by_arm_length_2 = 0.5/arm_length
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -58,234 +59,268 @@ def unrolled(k: Constants) -> Unrolled:
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return 8*(2,)
-        part_of_root_square_a1 = arm_length_squared_2 - z*z + z*z*cos_rail_angle_squared_2
-        span_1_x = x - inner_radius_minus_outer_radius_2  # rod 1
+        span_1_x = outer_radius_minus_inner_radius + x  # rod 1
+        z_minus_cos_rail_angle_squared_2_times_z = z - z*cos_rail_angle_squared_2
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            part_of_root_square_a1 + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
-            + span_1_x*span_1_x*sin_rail_angle_squared_2 - span_1_x*span_1_x - y*y
+            arm_length_squared_2 + span_1_x*(span_1_x*sin_rail_angle_squared_2 - span_1_x)
+            + (part_of_root_square_a1_2*span_1_x - z_minus_cos_rail_angle_squared_2_times_z)*z - y*y
         )
-        # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
-            return 8*(3,)
-        span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
-        part_of_root_square_a2 = (
-            part_of_root_square_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
+        if root_square_a1 > 0.0:
+            root_of_root_square_a1 = sqrt(root_square_a1)
+        else:
+            # rod 1 cannot reach
+            if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
+                return 8*(3,)
+            root_of_root_square_a1 = 0.0
+        span_2_x = part_of_span_2_x + x  # rod 2
+        span_2_y = part_of_span_2_y + y  # rod 2
+        part_of_root_square_a2_5 = (
+            z_minus_cos_rail_angle_squared_2_times_z + span_2_x*cos_rail_angle_times_sin_rail_angle_2
         )
-        part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle_2 - part_of_root_square_a2
-        span_2_y = y - constant_part  # rod 2
+        part_of_root_square_a2_6 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4_2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4_2
-            - part_of_root_square_a2_2 - span_2_y*span_2_y
-            - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
+            arm_length_squared_2 + (-part_of_root_square_a2_6 - part_of_root_square_a2_4*span_2_y)*span_2_x
+            + span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4_2 - span_2_y)
+            + (part_of_root_square_a2_3*span_2_y - part_of_root_square_a2_5)*z
         )
-        # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
-            return 8*(3,)
-        span_3_y = constant_part + y  # rod 3
+        if root_square_a2 > 0.0:
+            root_of_root_square_a2 = sqrt(root_square_a2)
+        else:
+            # rod 2 cannot reach
+            if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
+                return 8*(3,)
+            root_of_root_square_a2 = 0.0
+        span_3_y = y - part_of_span_2_y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
-            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4_2 - part_of_root_square_a2_2 - span_3_y*span_3_y
-            - constant_part_2*span_3_y*z
+            arm_length_squared_2 + (part_of_root_square_a2_4*span_3_y - part_of_root_square_a2_6)*span_2_x
+            + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4_2 - span_3_y)
+            + (-part_of_root_square_a2_5 - part_of_root_square_a2_3*span_3_y)*z
         )
-        # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
-            return 8*(3,)
+        if root_square_a3 > 0.0:
+            root_of_root_square_a3 = sqrt(root_square_a3)
+        else:
+            # rod 3 cannot reach
+            if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
+                return 8*(3,)
+            root_of_root_square_a3 = 0.0
         # ball joint of rod 1
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
             return 8*(3,)
+        part = root_of_3_times_half_by_arm_length_2*x
+        half_by_arm_length_2_times_y = half_by_arm_length_2*y
         # ball joint of rod 2
-        if not (abs(one_by_2_by_arm_length*y + root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint):
             return 8*(3,)
         # ball joint of rod 3
-        if not (abs(one_by_2_by_arm_length*y - root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint):
             return 8*(3,)
         cos_rail_angle_times_z = z*cos_rail_angle
-        part_of_middle_a2 = cos_rail_angle_times_z - span_2_x*sin_rail_angle_by_2
-        middle_a2 = -part_of_middle_a2 - root_of_3_times_sin_rail_angle_by_2*span_2_y
-        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
-        rod_2_x_below = x - pivot_2_x
-        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
-        rod_2_z_below = minus_pivot_2_z + z
-        middle_a3 = root_of_3_times_sin_rail_angle_by_2*span_3_y - part_of_middle_a2
-        a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
-        rod_3_x_below = x - pivot_3_x
-        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
-        rod_3_z_below = minus_pivot_3_z + z
-        part_of_type2_rods_coplanar = rod_2_x_below*rod_3_z_below*y - rod_2_z_below*rod_3_x_below*y
-        middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
-        minus_a1 = middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
-        rod_2_y_below = y - pivot_2_y
-        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
-        rod_3_y_below = y - pivot_3_y
+        part_of_middle_a2_2 = cos_rail_angle_times_z - half_sin_rail_angle_2*span_2_x
+        middle_a3 = part_of_middle_a2*span_3_y - part_of_middle_a2_2
+        a3 = middle_a3 + root_of_root_square_a3
         axis_a3_below = a3 + offset_a3
+        middle_a2 = -part_of_middle_a2_2 - part_of_middle_a2*span_2_y
+        a2 = middle_a2 + root_of_root_square_a2
         axis_a2_below = a2 + offset_a2
-        axis_a1_below = offset_a1 - minus_a1
-        a3 = middle_a3 - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
-        rod_3_x_above = x - pivot_3_x
-        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
-        rod_3_z_above = minus_pivot_3_z + z
-        part_of_type2_rods_coplanar_below_above_below = rod_2_x_below*rod_3_z_above*y - rod_2_z_below*rod_3_x_above*y
-        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
-        rod_3_y_above = y - pivot_3_y
+        middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
+        a1 = root_of_root_square_a1 - middle_a1
+        axis_a1_below = a1 + offset_a1
+        pivot_2_x = a2*half_sin_rail_angle_2 - part_of_span_2_x  # rod 2
+        rod_2_x_below = x - pivot_2_x
+        pivot_2_y = -part_of_span_2_y - a2*part_of_middle_a2  # rod 2
+        rod_2_y_below = y - pivot_2_y
+        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        rod_2_z_below = z - pivot_2_z
+        pivot_3_x = a3*half_sin_rail_angle_2 - part_of_span_2_x  # rod 3
+        rod_3_x_below = x - pivot_3_x
+        pivot_3_y = part_of_span_2_y + a3*part_of_middle_a2  # rod 3
+        rod_3_y_below = y - pivot_3_y
+        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        rod_3_z_below = z - pivot_3_z
+        part_of_type2_rods_coplanar_below_below_below_2 = (
+            (rod_2_x_below*rod_3_z_below - rod_2_z_below*rod_3_x_below)*y
+        )
+        part_of_refusal_below_below = 0 if (axis_a2_below >= lowest_a2) and (axis_a2_below <= highest_a2) else 3
+        part_of_refusal_below_below_below = 0 if (axis_a3_below >= lowest_a3) and (axis_a3_below <= highest_a3) else 3
+        a3 = middle_a3 - root_of_root_square_a3
         axis_a3_above = a3 + offset_a3
-        a2 = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
-        rod_2_x_above = x - pivot_2_x
-        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
-        rod_2_z_above = minus_pivot_2_z + z
-        part_of_type2_rods_coplanar_below_above_below_above_below_above_2 = (
-            rod_2_x_above*rod_3_z_below*y - rod_2_z_above*rod_3_x_below*y
-        )
-        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
-        rod_2_y_above = y - pivot_2_y
+        pivot_3_x = a3*half_sin_rail_angle_2 - part_of_span_2_x  # rod 3
+        rod_3_x_above = x - pivot_3_x
+        pivot_3_y = part_of_span_2_y + a3*part_of_middle_a2  # rod 3
+        rod_3_y_above = y - pivot_3_y
+        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        rod_3_z_above = z - pivot_3_z
+        part_of_type2_rods_coplanar_below_below_above = (rod_2_x_below*rod_3_z_above - rod_2_z_below*rod_3_x_above)*y
+        part_of_refusal_below_below_above = 0 if (axis_a3_above >= lowest_a3) and (axis_a3_above <= highest_a3) else 3
+        a2 = middle_a2 - root_of_root_square_a2
         axis_a2_above = a2 + offset_a2
-        part_of_type2_rods_coplanar_below_above_below_above_below_above_3 = (
-            rod_2_x_above*rod_3_z_above*y - rod_2_z_above*rod_3_x_above*y
-        )
+        pivot_2_x = a2*half_sin_rail_angle_2 - part_of_span_2_x  # rod 2
+        rod_2_x_above = x - pivot_2_x
+        pivot_2_y = -part_of_span_2_y - a2*part_of_middle_a2  # rod 2
+        rod_2_y_above = y - pivot_2_y
+        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        rod_2_z_above = z - pivot_2_z
+        part_of_type2_rods_coplanar_below_above_below = (rod_2_x_above*rod_3_z_below - rod_2_z_above*rod_3_x_below)*y
+        part_of_refusal_below_above = 0 if (axis_a2_above >= lowest_a2) and (axis_a2_above <= highest_a2) else 3
+        part_of_type2_rods_coplanar_below_above_above = (rod_2_x_above*rod_3_z_above - rod_2_z_above*rod_3_x_above)*y
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
         if axis_a1_below >= lowest_a1 and axis_a1_below <= highest_a1:
-            pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
+            pivot_1_x = -outer_radius_minus_inner_radius - a1*sin_rail_angle  # rod 1
             rod_1_x = x - pivot_1_x
-            pivot_1_z = minus_a1*cos_rail_angle  # rod 1
+            pivot_1_z = -a1*cos_rail_angle  # rod 1
             rod_1_z = z - pivot_1_z
-            if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
-                    type2_rods_coplanar_below_below = (
-                        (
-                            rod_1_x*rod_2_y_below*rod_3_z_below + rod_1_z*rod_2_x_below*rod_3_y_below
-                            - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_below*rod_3_y_below
-                            - rod_1_z*rod_2_y_below*rod_3_x_below
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_below_below_below_2 = 0 if type2_rods_coplanar_below_below >= min_type2_margin else 3
-                else:
-                    refusal_below_below_below_2 = 3
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
-                    type2_rods_coplanar_below_above = (
-                        (
-                            rod_1_x*rod_2_y_below*rod_3_z_above + rod_1_z*rod_2_x_below*rod_3_y_above
-                            - part_of_type2_rods_coplanar_below_above_below - rod_1_x*rod_2_z_below*rod_3_y_above
-                            - rod_1_z*rod_2_y_below*rod_3_x_above
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_below_below_above_2 = 0 if type2_rods_coplanar_below_above >= min_type2_margin else 3
-                else:
-                    refusal_below_below_above_2 = 3
+            type2_rods_coplanar_below_below = (
+                -part_of_type2_rods_coplanar_below_below_below
+                *(
+                    part_of_type2_rods_coplanar_below_below_below_2
+                    + (rod_2_z_below*rod_3_y_below - rod_2_y_below*rod_3_z_below)*rod_1_x
+                    + (rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_y_below)*rod_1_z
+                )
+            )
+            # limits of A3
+            if part_of_refusal_below_below > 0:
+                refusal_below_below = part_of_refusal_below_below
+                refusal_below_above = part_of_refusal_below_below
             else:
-                refusal_below_below_below_2 = 3
-                refusal_below_below_above_2 = 3
-            if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
-                    type2_rods_coplanar_above_below = (
-                        (
-                            rod_1_x*rod_2_y_above*rod_3_z_below + rod_1_z*rod_2_x_above*rod_3_y_below
-                            - part_of_type2_rods_coplanar_below_above_below_above_below_above_2
-                            - rod_1_x*rod_2_z_above*rod_3_y_below - rod_1_z*rod_2_y_above*rod_3_x_below
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_below_above_below_2 = 0 if type2_rods_coplanar_above_below >= min_type2_margin else 3
-                else:
-                    refusal_below_above_below_2 = 3
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
-                    type2_rods_coplanar_above_above = (
-                        (
-                            rod_1_x*rod_2_y_above*rod_3_z_above + rod_1_z*rod_2_x_above*rod_3_y_above
-                            - part_of_type2_rods_coplanar_below_above_below_above_below_above_3
-                            - rod_1_x*rod_2_z_above*rod_3_y_above - rod_1_z*rod_2_y_above*rod_3_x_above
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_below_above_above_2 = 0 if type2_rods_coplanar_above_above >= min_type2_margin else 3
-                else:
-                    refusal_below_above_above_2 = 3
+                refusal_below_below = part_of_refusal_below_below_below
+                refusal_below_above = part_of_refusal_below_below_above
+            refusal_below_below_below_2 = (
+                refusal_below_below
+                if refusal_below_below > 0
+                else (0 if type2_rods_coplanar_below_below >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_below_above = (
+                -(
+                    part_of_type2_rods_coplanar_below_below_above
+                    + (rod_2_z_below*rod_3_y_above - rod_2_y_below*rod_3_z_above)*rod_1_x
+                    + (rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_y_above)*rod_1_z
+                )
+                *part_of_type2_rods_coplanar_below_below_below
+            )
+            refusal_below_below_above_2 = (
+                refusal_below_above
+                if refusal_below_above > 0
+                else (0 if type2_rods_coplanar_below_above >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_above_below = (
+                -(
+                    part_of_type2_rods_coplanar_below_above_below
+                    + (rod_2_z_above*rod_3_y_below - rod_2_y_above*rod_3_z_below)*rod_1_x
+                    + (rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_y_below)*rod_1_z
+                )
+                *part_of_type2_rods_coplanar_below_below_below
+            )
+            # limits of A3
+            if part_of_refusal_below_above > 0:
+                refusal_above_below = part_of_refusal_below_above
+                refusal_above_above = part_of_refusal_below_above
             else:
-                refusal_below_above_below_2 = 3
-                refusal_below_above_above_2 = 3
+                refusal_above_below = part_of_refusal_below_below_below
+                refusal_above_above = part_of_refusal_below_below_above
+            refusal_below_above_below_2 = (
+                refusal_above_below
+                if refusal_above_below > 0
+                else (0 if type2_rods_coplanar_above_below >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_above_above = (
+                -(
+                    part_of_type2_rods_coplanar_below_above_above
+                    + (rod_2_z_above*rod_3_y_above - rod_2_y_above*rod_3_z_above)*rod_1_x
+                    + (rod_2_y_above*rod_3_x_above - rod_2_x_above*rod_3_y_above)*rod_1_z
+                )
+                *part_of_type2_rods_coplanar_below_below_below
+            )
+            refusal_below_above_above_2 = (
+                refusal_above_above
+                if refusal_above_above > 0
+                else (0 if type2_rods_coplanar_above_above >= min_type2_margin else 3)
+            )
         else:
             refusal_below_below_below_2 = 3
             refusal_below_below_above_2 = 3
             refusal_below_above_below_2 = 3
             refusal_below_above_above_2 = 3
-        minus_a1 = middle_a1 + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        axis_a1_above = offset_a1 - minus_a1
+        a1 = -middle_a1 - root_of_root_square_a1
+        axis_a1_above = a1 + offset_a1
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
         if axis_a1_above >= lowest_a1 and axis_a1_above <= highest_a1:
-            pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
+            pivot_1_x = -outer_radius_minus_inner_radius - a1*sin_rail_angle  # rod 1
             rod_1_x = x - pivot_1_x
-            pivot_1_z = minus_a1*cos_rail_angle  # rod 1
+            pivot_1_z = -a1*cos_rail_angle  # rod 1
             rod_1_z = z - pivot_1_z
-            if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
-                    type2_rods_coplanar_below_below = (
-                        (
-                            rod_1_x*rod_2_y_below*rod_3_z_below + rod_1_z*rod_2_x_below*rod_3_y_below
-                            - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_below*rod_3_y_below
-                            - rod_1_z*rod_2_y_below*rod_3_x_below
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_above_below_below_2 = 0 if type2_rods_coplanar_below_below >= min_type2_margin else 3
-                else:
-                    refusal_above_below_below_2 = 3
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
-                    type2_rods_coplanar_below_above = (
-                        (
-                            rod_1_x*rod_2_y_below*rod_3_z_above + rod_1_z*rod_2_x_below*rod_3_y_above
-                            - part_of_type2_rods_coplanar_below_above_below - rod_1_x*rod_2_z_below*rod_3_y_above
-                            - rod_1_z*rod_2_y_below*rod_3_x_above
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_above_below_above_2 = 0 if type2_rods_coplanar_below_above >= min_type2_margin else 3
-                else:
-                    refusal_above_below_above_2 = 3
+            part_of_type2_rods_coplanar_above_below_below = rod_1_x*rod_3_z_below - rod_1_z*rod_3_x_below
+            part_of_type2_rods_coplanar_above_below_below_2 = rod_1_z*rod_2_x_below - rod_1_x*rod_2_z_below
+            type2_rods_coplanar_below_below = (
+                -(
+                    part_of_type2_rods_coplanar_below_below_below_2
+                    - part_of_type2_rods_coplanar_above_below_below*rod_2_y_below
+                    - part_of_type2_rods_coplanar_above_below_below_2*rod_3_y_below
+                )
+                *part_of_type2_rods_coplanar_below_below_below
+            )
+            # limits of A3
+            if part_of_refusal_below_below > 0:
+                refusal_below_below = part_of_refusal_below_below
+                refusal_below_above = part_of_refusal_below_below
             else:
-                refusal_above_below_below_2 = 3
-                refusal_above_below_above_2 = 3
-            if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
-                    type2_rods_coplanar_above_below = (
-                        (
-                            rod_1_x*rod_2_y_above*rod_3_z_below + rod_1_z*rod_2_x_above*rod_3_y_below
-                            - part_of_type2_rods_coplanar_below_above_below_above_below_above_2
-                            - rod_1_x*rod_2_z_above*rod_3_y_below - rod_1_z*rod_2_y_above*rod_3_x_below
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_above_above_below_2 = 0 if type2_rods_coplanar_above_below >= min_type2_margin else 3
-                else:
-                    refusal_above_above_below_2 = 3
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
-                    type2_rods_coplanar_above_above = (
-                        (
-                            rod_1_x*rod_2_y_above*rod_3_z_above + rod_1_z*rod_2_x_above*rod_3_y_above
-                            - part_of_type2_rods_coplanar_below_above_below_above_below_above_3
-                            - rod_1_x*rod_2_z_above*rod_3_y_above - rod_1_z*rod_2_y_above*rod_3_x_above
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_above_above_above_2 = 0 if type2_rods_coplanar_above_above >= min_type2_margin else 3
-                else:
-                    refusal_above_above_above_2 = 3
+                refusal_below_below = part_of_refusal_below_below_below
+                refusal_below_above = part_of_refusal_below_below_above
+            refusal_above_below_below_2 = (
+                refusal_below_below
+                if refusal_below_below > 0
+                else (0 if type2_rods_coplanar_below_below >= min_type2_margin else 3)
+            )
+            part_of_type2_rods_coplanar_above_below_above = rod_1_x*rod_3_z_above - rod_1_z*rod_3_x_above
+            type2_rods_coplanar_below_above = (
+                -(
+                    part_of_type2_rods_coplanar_below_below_above
+                    - part_of_type2_rods_coplanar_above_below_above*rod_2_y_below
+                    - part_of_type2_rods_coplanar_above_below_below_2*rod_3_y_above
+                )
+                *part_of_type2_rods_coplanar_below_below_below
+            )
+            refusal_above_below_above_2 = (
+                refusal_below_above
+                if refusal_below_above > 0
+                else (0 if type2_rods_coplanar_below_above >= min_type2_margin else 3)
+            )
+            part_of_type2_rods_coplanar_above_above_below = rod_1_z*rod_2_x_above - rod_1_x*rod_2_z_above
+            type2_rods_coplanar_above_below = (
+                -(
+                    part_of_type2_rods_coplanar_below_above_below
+                    - part_of_type2_rods_coplanar_above_above_below*rod_3_y_below
+                    - part_of_type2_rods_coplanar_above_below_below*rod_2_y_above
+                )
+                *part_of_type2_rods_coplanar_below_below_below
+            )
+            # limits of A3
+            if part_of_refusal_below_above > 0:
+                refusal_above_below = part_of_refusal_below_above
+                refusal_above_above = part_of_refusal_below_above
             else:
-                refusal_above_above_below_2 = 3
-                refusal_above_above_above_2 = 3
+                refusal_above_below = part_of_refusal_below_below_below
+                refusal_above_above = part_of_refusal_below_below_above
+            refusal_above_above_below_2 = (
+                refusal_above_below
+                if refusal_above_below > 0
+                else (0 if type2_rods_coplanar_above_below >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_above_above = (
+                -(
+                    part_of_type2_rods_coplanar_below_above_above
+                    - part_of_type2_rods_coplanar_above_above_below*rod_3_y_above
+                    - part_of_type2_rods_coplanar_above_below_above*rod_2_y_above
+                )
+                *part_of_type2_rods_coplanar_below_below_below
+            )
+            refusal_above_above_above_2 = (
+                refusal_above_above
+                if refusal_above_above > 0
+                else (0 if type2_rods_coplanar_above_above >= min_type2_margin else 3)
+            )
         else:
             refusal_above_below_below_2 = 3
             refusal_above_below_above_2 = 3
@@ -337,184 +372,200 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        part_of_root_square_a1 = arm_length_squared_2 - z*z + z*z*cos_rail_angle_squared_2
-        span_1_x = x - inner_radius_minus_outer_radius_2  # rod 1
+        span_1_x = outer_radius_minus_inner_radius + x  # rod 1
+        z_minus_cos_rail_angle_squared_2_times_z = z - z*cos_rail_angle_squared_2
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            part_of_root_square_a1 + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
-            + span_1_x*span_1_x*sin_rail_angle_squared_2 - span_1_x*span_1_x - y*y
+            arm_length_squared_2 + span_1_x*(span_1_x*sin_rail_angle_squared_2 - span_1_x)
+            + (part_of_root_square_a1_2*span_1_x - z_minus_cos_rail_angle_squared_2_times_z)*z - y*y
         )
-        # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
-            return 8*(None,)
-        span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
-        part_of_root_square_a2 = (
-            part_of_root_square_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
+        if root_square_a1 > 0.0:
+            root_of_root_square_a1 = sqrt(root_square_a1)
+        else:
+            # rod 1 cannot reach
+            if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
+                return 8*(None,)
+            root_of_root_square_a1 = 0.0
+        span_2_x = part_of_span_2_x + x  # rod 2
+        span_2_y = part_of_span_2_y + y  # rod 2
+        part_of_root_square_a2_5 = (
+            z_minus_cos_rail_angle_squared_2_times_z + span_2_x*cos_rail_angle_times_sin_rail_angle_2
         )
-        part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle_2 - part_of_root_square_a2
-        span_2_y = y - constant_part  # rod 2
+        part_of_root_square_a2_6 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4_2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4_2
-            - part_of_root_square_a2_2 - span_2_y*span_2_y
-            - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
+            arm_length_squared_2 + (-part_of_root_square_a2_6 - part_of_root_square_a2_4*span_2_y)*span_2_x
+            + span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4_2 - span_2_y)
+            + (part_of_root_square_a2_3*span_2_y - part_of_root_square_a2_5)*z
         )
-        # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
-            return 8*(None,)
-        span_3_y = constant_part + y  # rod 3
+        if root_square_a2 > 0.0:
+            root_of_root_square_a2 = sqrt(root_square_a2)
+        else:
+            # rod 2 cannot reach
+            if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
+                return 8*(None,)
+            root_of_root_square_a2 = 0.0
+        span_3_y = y - part_of_span_2_y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
-            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4_2 - part_of_root_square_a2_2 - span_3_y*span_3_y
-            - constant_part_2*span_3_y*z
+            arm_length_squared_2 + (part_of_root_square_a2_4*span_3_y - part_of_root_square_a2_6)*span_2_x
+            + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4_2 - span_3_y)
+            + (-part_of_root_square_a2_5 - part_of_root_square_a2_3*span_3_y)*z
         )
-        # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
-            return 8*(None,)
+        if root_square_a3 > 0.0:
+            root_of_root_square_a3 = sqrt(root_square_a3)
+        else:
+            # rod 3 cannot reach
+            if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
+                return 8*(None,)
+            root_of_root_square_a3 = 0.0
         # ball joint of rod 1
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
             return 8*(None,)
+        part = root_of_3_times_half_by_arm_length_2*x
+        half_by_arm_length_2_times_y = half_by_arm_length_2*y
         # ball joint of rod 2
-        if not (abs(one_by_2_by_arm_length*y + root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint):
             return 8*(None,)
         # ball joint of rod 3
-        if not (abs(one_by_2_by_arm_length*y - root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint):
             return 8*(None,)
         cos_rail_angle_times_z = z*cos_rail_angle
-        part_of_middle_a2 = cos_rail_angle_times_z - span_2_x*sin_rail_angle_by_2
-        middle_a2 = -part_of_middle_a2 - root_of_3_times_sin_rail_angle_by_2*span_2_y
-        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
-        rod_2_x_below = x - pivot_2_x
-        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
-        rod_2_z_below = minus_pivot_2_z + z
-        middle_a3 = root_of_3_times_sin_rail_angle_by_2*span_3_y - part_of_middle_a2
-        a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
-        rod_3_x_below = x - pivot_3_x
-        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
-        rod_3_z_below = minus_pivot_3_z + z
-        part_of_type2_rods_coplanar = rod_2_x_below*rod_3_z_below*y - rod_2_z_below*rod_3_x_below*y
         middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
-        minus_a1 = middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
+        a1 = root_of_root_square_a1 - middle_a1
+        pivot_1_x = -outer_radius_minus_inner_radius - a1*sin_rail_angle  # rod 1
         rod_1_x = x - pivot_1_x
-        pivot_1_z = minus_a1*cos_rail_angle  # rod 1
+        pivot_1_z = -a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
-        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
+        part_of_middle_a2_2 = cos_rail_angle_times_z - half_sin_rail_angle_2*span_2_x
+        middle_a2 = -part_of_middle_a2_2 - part_of_middle_a2*span_2_y
+        a2 = middle_a2 + root_of_root_square_a2
+        pivot_2_x = a2*half_sin_rail_angle_2 - part_of_span_2_x  # rod 2
+        rod_2_x_below = x - pivot_2_x
+        pivot_2_y = -part_of_span_2_y - a2*part_of_middle_a2  # rod 2
         rod_2_y_below = y - pivot_2_y
-        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
+        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        rod_2_z_below = z - pivot_2_z
+        middle_a3 = part_of_middle_a2*span_3_y - part_of_middle_a2_2
+        a3 = middle_a3 + root_of_root_square_a3
+        pivot_3_x = a3*half_sin_rail_angle_2 - part_of_span_2_x  # rod 3
+        rod_3_x_below = x - pivot_3_x
+        pivot_3_y = part_of_span_2_y + a3*part_of_middle_a2  # rod 3
         rod_3_y_below = y - pivot_3_y
+        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        rod_3_z_below = z - pivot_3_z
+        part_of_type2_rods_coplanar_below_below_below_2 = (
+            (rod_2_x_below*rod_3_z_below - rod_2_z_below*rod_3_x_below)*y
+        )
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_below*rod_3_z_below + rod_1_z*rod_2_x_below*rod_3_y_below
-                - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_below*rod_3_y_below
-                - rod_1_z*rod_2_y_below*rod_3_x_below
+            -part_of_type2_rods_coplanar_below_below_below
+            *(
+                part_of_type2_rods_coplanar_below_below_below_2
+                + (rod_2_z_below*rod_3_y_below - rod_2_y_below*rod_3_z_below)*rod_1_x
+                + (rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_y_below)*rod_1_z
             )
-            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        axis_a1_below = offset_a1 - minus_a1
+        axis_a1_below = a1 + offset_a1
         axis_a2_below = a2 + offset_a2
         axis_a3_below = a3 + offset_a3
-        a3 = middle_a3 - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
+        a3 = middle_a3 - root_of_root_square_a3
+        pivot_3_x = a3*half_sin_rail_angle_2 - part_of_span_2_x  # rod 3
         rod_3_x_above = x - pivot_3_x
-        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
-        rod_3_z_above = minus_pivot_3_z + z
-        part_of_type2_rods_coplanar_below_above_below = rod_2_x_below*rod_3_z_above*y - rod_2_z_below*rod_3_x_above*y
-        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
+        pivot_3_y = part_of_span_2_y + a3*part_of_middle_a2  # rod 3
         rod_3_y_above = y - pivot_3_y
+        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        rod_3_z_above = z - pivot_3_z
+        part_of_type2_rods_coplanar_below_below_above = (rod_2_x_below*rod_3_z_above - rod_2_z_below*rod_3_x_above)*y
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_below*rod_3_z_above + rod_1_z*rod_2_x_below*rod_3_y_above
-                - part_of_type2_rods_coplanar_below_above_below - rod_1_x*rod_2_z_below*rod_3_y_above
-                - rod_1_z*rod_2_y_below*rod_3_x_above
+            -(
+                part_of_type2_rods_coplanar_below_below_above
+                + (rod_2_z_below*rod_3_y_above - rod_2_y_below*rod_3_z_above)*rod_1_x
+                + (rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_y_above)*rod_1_z
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_below_below_below
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_above = a3 + offset_a3
-        a2 = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
+        a2 = middle_a2 - root_of_root_square_a2
+        pivot_2_x = a2*half_sin_rail_angle_2 - part_of_span_2_x  # rod 2
         rod_2_x_above = x - pivot_2_x
-        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
-        rod_2_z_above = minus_pivot_2_z + z
-        part_of_type2_rods_coplanar_below_above_below_above_below_above_2 = (
-            rod_2_x_above*rod_3_z_below*y - rod_2_z_above*rod_3_x_below*y
-        )
-        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
+        pivot_2_y = -part_of_span_2_y - a2*part_of_middle_a2  # rod 2
         rod_2_y_above = y - pivot_2_y
+        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        rod_2_z_above = z - pivot_2_z
+        part_of_type2_rods_coplanar_below_above_below = (rod_2_x_above*rod_3_z_below - rod_2_z_above*rod_3_x_below)*y
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_above*rod_3_z_below + rod_1_z*rod_2_x_above*rod_3_y_below
-                - part_of_type2_rods_coplanar_below_above_below_above_below_above_2
-                - rod_1_x*rod_2_z_above*rod_3_y_below - rod_1_z*rod_2_y_above*rod_3_x_below
+            -(
+                part_of_type2_rods_coplanar_below_above_below
+                + (rod_2_z_above*rod_3_y_below - rod_2_y_above*rod_3_z_below)*rod_1_x
+                + (rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_y_below)*rod_1_z
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_below_below_below
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_above = a2 + offset_a2
-        part_of_type2_rods_coplanar_below_above_below_above_below_above_3 = (
-            rod_2_x_above*rod_3_z_above*y - rod_2_z_above*rod_3_x_above*y
-        )
+        part_of_type2_rods_coplanar_below_above_above = (rod_2_x_above*rod_3_z_above - rod_2_z_above*rod_3_x_above)*y
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_above*rod_3_z_above + rod_1_z*rod_2_x_above*rod_3_y_above
-                - part_of_type2_rods_coplanar_below_above_below_above_below_above_3
-                - rod_1_x*rod_2_z_above*rod_3_y_above - rod_1_z*rod_2_y_above*rod_3_x_above
+            -(
+                part_of_type2_rods_coplanar_below_above_above
+                + (rod_2_z_above*rod_3_y_above - rod_2_y_above*rod_3_z_above)*rod_1_x
+                + (rod_2_y_above*rod_3_x_above - rod_2_x_above*rod_3_y_above)*rod_1_z
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_below_below_below
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        minus_a1 = middle_a1 + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
+        a1 = -middle_a1 - root_of_root_square_a1
+        pivot_1_x = -outer_radius_minus_inner_radius - a1*sin_rail_angle  # rod 1
         rod_1_x = x - pivot_1_x
-        pivot_1_z = minus_a1*cos_rail_angle  # rod 1
+        pivot_1_z = -a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
+        part_of_type2_rods_coplanar_above_below_below = rod_1_x*rod_3_z_below - rod_1_z*rod_3_x_below
+        part_of_type2_rods_coplanar_above_below_below_2 = rod_1_z*rod_2_x_below - rod_1_x*rod_2_z_below
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_below*rod_3_z_below + rod_1_z*rod_2_x_below*rod_3_y_below
-                - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_below*rod_3_y_below
-                - rod_1_z*rod_2_y_below*rod_3_x_below
+            -(
+                part_of_type2_rods_coplanar_below_below_below_2
+                - part_of_type2_rods_coplanar_above_below_below*rod_2_y_below
+                - part_of_type2_rods_coplanar_above_below_below_2*rod_3_y_below
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_below_below_below
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        axis_a1_above = offset_a1 - minus_a1
+        axis_a1_above = a1 + offset_a1
+        part_of_type2_rods_coplanar_above_below_above = rod_1_x*rod_3_z_above - rod_1_z*rod_3_x_above
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_below*rod_3_z_above + rod_1_z*rod_2_x_below*rod_3_y_above
-                - part_of_type2_rods_coplanar_below_above_below - rod_1_x*rod_2_z_below*rod_3_y_above
-                - rod_1_z*rod_2_y_below*rod_3_x_above
+            -(
+                part_of_type2_rods_coplanar_below_below_above
+                - part_of_type2_rods_coplanar_above_below_above*rod_2_y_below
+                - part_of_type2_rods_coplanar_above_below_below_2*rod_3_y_above
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_below_below_below
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
+        part_of_type2_rods_coplanar_above_above_below = rod_1_z*rod_2_x_above - rod_1_x*rod_2_z_above
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_above*rod_3_z_below + rod_1_z*rod_2_x_above*rod_3_y_below
-                - part_of_type2_rods_coplanar_below_above_below_above_below_above_2
-                - rod_1_x*rod_2_z_above*rod_3_y_below - rod_1_z*rod_2_y_above*rod_3_x_below
+            -(
+                part_of_type2_rods_coplanar_below_above_below
+                - part_of_type2_rods_coplanar_above_above_below*rod_3_y_below
+                - part_of_type2_rods_coplanar_above_below_below*rod_2_y_above
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_below_below_below
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_above*rod_3_z_above + rod_1_z*rod_2_x_above*rod_3_y_above
-                - part_of_type2_rods_coplanar_below_above_below_above_below_above_3
-                - rod_1_x*rod_2_z_above*rod_3_y_above - rod_1_z*rod_2_y_above*rod_3_x_above
+            -(
+                part_of_type2_rods_coplanar_below_above_above
+                - part_of_type2_rods_coplanar_above_above_below*rod_3_y_above
+                - part_of_type2_rods_coplanar_above_below_above*rod_2_y_above
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_below_below_below
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -533,69 +584,74 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
-        span_1_x = x - inner_radius_minus_outer_radius_2  # rod 1
+        span_1_x = outer_radius_minus_inner_radius + x  # rod 1
+        z_minus_cos_rail_angle_squared_2_times_z = z - z*cos_rail_angle_squared_2
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared_2 + z*z*cos_rail_angle_squared_2
-            + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2 + span_1_x*span_1_x*sin_rail_angle_squared_2
-            - span_1_x*span_1_x - y*y - z*z
+            arm_length_squared_2 + span_1_x*(span_1_x*sin_rail_angle_squared_2 - span_1_x)
+            + (part_of_root_square_a1_2*span_1_x - z_minus_cos_rail_angle_squared_2_times_z)*z - y*y
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
             return None
-        span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
-        span_2_y = y - constant_part  # rod 2
+        span_2_x = part_of_span_2_x + x  # rod 2
+        span_2_y = part_of_span_2_y + y  # rod 2
+        part_of_root_square_a2_5 = (
+            z_minus_cos_rail_angle_squared_2_times_z + span_2_x*cos_rail_angle_times_sin_rail_angle_2
+        )
+        part_of_root_square_a2_6 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4_2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared_2 + constant_part_2*span_2_y*z + z*z*cos_rail_angle_squared_2
-            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4_2
-            - span_2_x*span_2_x - span_2_y*span_2_y - z*z - span_2_x*z*cos_rail_angle_times_sin_rail_angle_2
-            - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
+            arm_length_squared_2 + (-part_of_root_square_a2_6 - part_of_root_square_a2_4*span_2_y)*span_2_x
+            + span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4_2 - span_2_y)
+            + (part_of_root_square_a2_3*span_2_y - part_of_root_square_a2_5)*z
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
             return None
-        span_3_y = constant_part + y  # rod 3
+        span_3_y = y - part_of_span_2_y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared_2 + z*z*cos_rail_angle_squared_2
-            + root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
-            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4_2
-            - span_2_x*span_2_x - span_3_y*span_3_y - z*z - constant_part_2*span_3_y*z
-            - span_2_x*z*cos_rail_angle_times_sin_rail_angle_2
+            arm_length_squared_2 + (part_of_root_square_a2_4*span_3_y - part_of_root_square_a2_6)*span_2_x
+            + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4_2 - span_3_y)
+            + (-part_of_root_square_a2_5 - part_of_root_square_a2_3*span_3_y)*z
         )
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
             return None
-        minus_a1 = (
-            z*cos_rail_angle + span_1_x*sin_rail_angle
-            - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
+        cos_rail_angle_times_z = z*cos_rail_angle
+        a1 = (
+            (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
+            - (cos_rail_angle_times_z + span_1_x*sin_rail_angle)
         )
-        pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
-        rod_1_x = x - pivot_1_x
-        pivot_1_z = minus_a1*cos_rail_angle  # rod 1
-        rod_1_z = z - pivot_1_z
-        middle_a2 = span_2_x*sin_rail_angle_by_2 - z*cos_rail_angle - root_of_3_times_sin_rail_angle_by_2*span_2_y
-        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
-        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
+        pivot_1_x = -outer_radius_minus_inner_radius - a1*sin_rail_angle  # rod 1
+        pivot_1_z = -a1*cos_rail_angle  # rod 1
+        part_of_middle_a2_2 = cos_rail_angle_times_z - half_sin_rail_angle_2*span_2_x
+        a2 = (
+            -part_of_middle_a2_2 - part_of_middle_a2*span_2_y
+            + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
+        )
+        pivot_2_x = a2*half_sin_rail_angle_2 - part_of_span_2_x  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
+        pivot_2_y = -part_of_span_2_y - a2*part_of_middle_a2  # rod 2
         rod_2_y = y - pivot_2_y
-        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
-        rod_2_z = minus_pivot_2_z + z
-        middle_a3 = root_of_3_times_sin_rail_angle_by_2*span_3_y + span_2_x*sin_rail_angle_by_2 - z*cos_rail_angle
-        a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
-        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
+        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        rod_2_z = z - pivot_2_z
+        a3 = (
+            part_of_middle_a2*span_3_y - part_of_middle_a2_2
+            + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
+        )
+        pivot_3_x = a3*half_sin_rail_angle_2 - part_of_span_2_x  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
+        pivot_3_y = part_of_span_2_y + a3*part_of_middle_a2  # rod 3
         rod_3_y = y - pivot_3_y
-        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
-        rod_3_z = minus_pivot_3_z + z
+        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
-            assembly_sign_by_constant_part
+            -part_of_type2_rods_coplanar_below_below_below
             *(
-                rod_1_x*rod_2_y*rod_3_z + rod_1_z*rod_2_x*rod_3_y + rod_2_z*rod_3_x*y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_z*rod_2_y*rod_3_x - rod_2_x*rod_3_z*y
+                (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*(z - pivot_1_z)
+                + (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*(x - pivot_1_x)
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
@@ -604,14 +660,16 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 1
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
             return None
+        part = root_of_3_times_half_by_arm_length_2*x
+        half_by_arm_length_2_times_y = half_by_arm_length_2*y
         # ball joint of rod 2
-        if not (abs(one_by_2_by_arm_length*y + root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 3
-        if not (abs(one_by_2_by_arm_length*y - root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint):
             return None
         if no_offsets:
-            return (-minus_a1, a2, a3)
-        return (offset_a1 - minus_a1, a2 + offset_a2, a3 + offset_a3)
+            return (a1, a2, a3)
+        return (a1 + offset_a1, a2 + offset_a2, a3 + offset_a3)
 
     return Unrolled(every_branch, branches, branch)

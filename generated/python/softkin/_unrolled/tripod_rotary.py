@@ -38,18 +38,19 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a3 = k.single_a3
-    arm_1_radius_minus_fixed_length_1 = arm_1_radius - fixed_length_1
     arm_length_1_times_shortest_link_2 = 1e-9*arm_length_1
-    arm_length_1_times_2 = 2.0*arm_length_1
-    constant_part = 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
-    arm_1_radius_by_2_minus_fixed_length_1_by_2 = 0.5*arm_1_radius - 0.5*fixed_length_1
-    constant_part_2 = 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1
-    share_of_arm_length_1 = 5e-10*arm_length_1
-    one_by_2_by_arm_length_2 = 0.5/arm_length_2
-    root_of_3_by_2_by_arm_length_2 = 0.5*root(3.0)/arm_length_2
-    arm_length_1_by_2 = 0.5*arm_length_1
-    root_of_3_times_arm_length_1_by_2 = 0.5*root(3.0)*arm_length_1
-    assembly_sign_by_constant_part = assembly_sign/(arm_length_2*arm_length_2*arm_length_2)
+    arm_1_radius_minus_fixed_length_1 = arm_1_radius - fixed_length_1
+    part_of_scaled_cosine_a1_2 = 2.0*arm_1_radius_minus_fixed_length_1*arm_length_1
+    part_of_divisor_a2_2 = 5e-10*arm_length_1
+    twice_arm_length_1_2 = 2.0*arm_length_1
+    part_of_span_2_x = 0.5*fixed_length_1 - 0.5*arm_1_radius
+    root_of_3 = root(3.0)
+    part_of_span_2_y = 0.5*arm_1_radius*root_of_3 - 0.5*fixed_length_1*root_of_3
+    half_arm_length_1_2 = 0.5*arm_length_1
+    arm_length_1_times_root_of_3_times_half_2 = 0.5*arm_length_1*root_of_3
+    part_of_type2_rods_coplanar_outward_outward_outward = assembly_sign/(arm_length_2*arm_length_2*arm_length_2)
+    root_of_3_times_half_by_arm_length_2_2 = 0.5*root_of_3/arm_length_2
+    half_by_arm_length_2_2 = 0.5/arm_length_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -69,49 +70,46 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > arm_length_1_times_shortest_link_2):
             return 8*(3,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1*twice_arm_length_1_2  # a1: law of cosines in the rod 1 equation
+        part_of_scaled_cosine_a1_3 = part_of_scaled_cosine_a1_2 + (fixed_length_2 - span_1_z)*z
         # cosine times the scale, seen from the origin
-        scaled_cosine_a1 = (
-            constant_part + (-arm_1_radius_minus_fixed_length_1 - span_1_x)*x + (fixed_length_2 - span_1_z)*z - y*y
-        )
+        scaled_cosine_a1 = part_of_scaled_cosine_a1_3 - (arm_1_radius_minus_fixed_length_1 + span_1_x)*x - y*y
         one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
         one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return 8*(3,)
-        span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
-        span_2_y = constant_part_2 + y  # rod 2
-        along_a2 = span_2_x - root(3.0)*span_2_y
+        span_2_x = part_of_span_2_x + x  # rod 2
+        span_2_y = part_of_span_2_y + y  # rod 2
+        root_of_3_2 = root(3.0)
+        along_a2 = span_2_x - root_of_3_2*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > share_of_arm_length_1):
+        if not (effective_a2 > part_of_divisor_a2_2):
             return 8*(3,)
-        divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > part_of_divisor_a2_2 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        part_of_scaled_cosine_a2 = (
-            (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (span_1_z - fixed_length_2)*z
-        )
-        part_of_scaled_cosine_a2_2 = constant_part - part_of_scaled_cosine_a2
+        part_of_scaled_cosine_a2 = (part_of_span_2_x + span_2_x)*x - part_of_scaled_cosine_a1_3
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = (constant_part_2 + span_2_y)*y - part_of_scaled_cosine_a2_2
+        scaled_cosine_a2 = part_of_scaled_cosine_a2 + (part_of_span_2_y + span_2_y)*y
         one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
         one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return 8*(3,)
-        span_3_y = y - constant_part_2  # rod 3
-        along_a3 = span_2_x + root(3.0)*span_3_y
+        span_3_y = y - part_of_span_2_y  # rod 3
+        along_a3 = span_2_x + root_of_3_2*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > share_of_arm_length_1):
+        if not (effective_a3 > part_of_divisor_a2_2):
             return 8*(3,)
-        divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > part_of_divisor_a2_2 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
-        scaled_cosine_a3 = (span_3_y - constant_part_2)*y - part_of_scaled_cosine_a2_2
+        scaled_cosine_a3 = part_of_scaled_cosine_a2 + (span_3_y - part_of_span_2_y)*y
         one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
         one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
@@ -121,238 +119,276 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 1
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return 8*(3,)
+        part = root_of_3_times_half_by_arm_length_2_2*x
+        half_by_arm_length_2_2_times_y = half_by_arm_length_2_2*y
         # ball joint of rod 2
-        if not (abs(one_by_2_by_arm_length_2*y + root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_2_times_y + part) <= sin_max_angle_ball_joint):
             return 8*(3,)
         # ball joint of rod 3
-        if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_2_times_y - part) <= sin_max_angle_ball_joint):
             return 8*(3,)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
-        across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
-        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
-        rod_2_x_outward = x - pivot_2_x
-        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
-        across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2 = -across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        rod_2_z_outward = z - pivot_2_z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
-        across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2*sin_swing_a3/divisor_a3
+        across_a2_times_sin_swing_a3 = across_a2*sin_swing_a3
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
-        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - across_a2_times_sin_swing_a3_by_divisor_a3
-        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
-        rod_3_x_outward = x - pivot_3_x
-        along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
-        across_a2_times_cos_swing_a3_by_divisor_a3 = across_a2*cos_swing_a3/divisor_a3
-        sin_a3 = -across_a2_times_cos_swing_a3_by_divisor_a3 - along_a3_times_sin_swing_a3_by_divisor_a3
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        rod_3_z_outward = z - pivot_3_z
-        part_of_type2_rods_coplanar = rod_2_x_outward*rod_3_z_outward*y - rod_2_z_outward*rod_3_x_outward*y
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
-        sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
-        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_span_1_z_by_divisor_a1
-        sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
-        cos_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*cos_swing_a1/divisor_a1
-        sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
-        rod_2_y_outward = y - pivot_2_y
-        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
-        rod_3_y_outward = y - pivot_3_y
+        along_a3_times_cos_swing_a3 = -along_a3*cos_swing_a3
+        cos_a3 = (-across_a2_times_sin_swing_a3 - along_a3_times_cos_swing_a3)/divisor_a3
+        along_a3_times_sin_swing_a3 = along_a3*sin_swing_a3
+        across_a2_times_cos_swing_a3 = -across_a2*cos_swing_a3
+        sin_a3 = (across_a2_times_cos_swing_a3 - along_a3_times_sin_swing_a3)/divisor_a3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_outward - open_a3 < 179.999999999:
             axis_a3_outward = nearest_period(axis_a3_outward, open_a3)
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        across_a2_times_sin_swing_a2 = across_a2*sin_swing_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        along_a2_times_cos_swing_a2 = -along_a2*cos_swing_a2
+        cos_a2 = (-across_a2_times_sin_swing_a2 - along_a2_times_cos_swing_a2)/divisor_a2
+        along_a2_times_sin_swing_a2 = along_a2*sin_swing_a2
+        across_a2_times_cos_swing_a2 = -across_a2*cos_swing_a2
+        sin_a2 = (across_a2_times_cos_swing_a2 - along_a2_times_sin_swing_a2)/divisor_a2
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_outward - open_a2 < 179.999999999:
             axis_a2_outward = nearest_period(axis_a2_outward, open_a2)
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sin_swing_a1_outward_times_span_1_z = span_1_z*sin_swing_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        cos_swing_a1_times_span_1_x = -span_1_x*cos_swing_a1
+        cos_a1 = (-cos_swing_a1_times_span_1_x - sin_swing_a1_outward_times_span_1_z)/divisor_a1
+        sin_swing_a1_outward_times_span_1_x = span_1_x*sin_swing_a1
+        cos_swing_a1_times_span_1_z = -span_1_z*cos_swing_a1
+        sin_a1 = (sin_swing_a1_outward_times_span_1_x - cos_swing_a1_times_span_1_z)/divisor_a1
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
-        cos_a3 = across_a2_times_sin_swing_a3_by_divisor_a3 + along_a3_times_cos_swing_a3_by_divisor_a3
-        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
-        rod_3_x_inward = x - pivot_3_x
-        sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - across_a2_times_cos_swing_a3_by_divisor_a3
+        pivot_2_x = half_arm_length_1_2*cos_a2 - part_of_span_2_x  # rod 2
+        rod_2_x_outward = x - pivot_2_x
+        pivot_2_y = -part_of_span_2_y - arm_length_1_times_root_of_3_times_half_2*cos_a2  # rod 2
+        rod_2_y_outward = y - pivot_2_y
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
+        rod_2_z_outward = z - pivot_2_z
+        pivot_3_x = half_arm_length_1_2*cos_a3 - part_of_span_2_x  # rod 3
+        rod_3_x_outward = x - pivot_3_x
+        pivot_3_y = part_of_span_2_y + arm_length_1_times_root_of_3_times_half_2*cos_a3  # rod 3
+        rod_3_y_outward = y - pivot_3_y
         pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        rod_3_z_inward = z - pivot_3_z
-        part_of_type2_rods_coplanar_outward_inward_outward = (
-            rod_2_x_outward*rod_3_z_inward*y - rod_2_z_outward*rod_3_x_inward*y
+        rod_3_z_outward = z - pivot_3_z
+        part_of_type2_rods_coplanar_outward_outward_outward_2 = (
+            (rod_2_x_outward*rod_3_z_outward - rod_2_z_outward*rod_3_x_outward)*y
         )
-        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
-        rod_3_y_inward = y - pivot_3_y
+        part_of_refusal_outward_outward = (
+            0
+            if (axis_a2_outward >= lowest_a2) and (axis_a2_outward <= highest_a2)
+            else 3
+        )
+        part_of_refusal_outward_outward_outward = (
+            0
+            if (axis_a3_outward >= lowest_a3) and (axis_a3_outward <= highest_a3)
+            else 3
+        )
+        cos_a3 = (across_a2_times_sin_swing_a3 - along_a3_times_cos_swing_a3)/divisor_a3
+        sin_a3 = (across_a2_times_cos_swing_a3 + along_a3_times_sin_swing_a3)/divisor_a3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_inward - open_a3 < 179.999999999:
             axis_a3_inward = nearest_period(axis_a3_inward, open_a3)
-        cos_a2 = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
-        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
-        rod_2_x_inward = x - pivot_2_x
-        sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - across_a2_times_cos_swing_a2_by_divisor_a2
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        rod_2_z_inward = z - pivot_2_z
-        part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2 = (
-            rod_2_x_inward*rod_3_z_outward*y - rod_2_z_inward*rod_3_x_outward*y
+        pivot_3_x = half_arm_length_1_2*cos_a3 - part_of_span_2_x  # rod 3
+        rod_3_x_inward = x - pivot_3_x
+        pivot_3_y = part_of_span_2_y + arm_length_1_times_root_of_3_times_half_2*cos_a3  # rod 3
+        rod_3_y_inward = y - pivot_3_y
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
+        rod_3_z_inward = z - pivot_3_z
+        part_of_type2_rods_coplanar_outward_outward_inward = (
+            (rod_2_x_outward*rod_3_z_inward - rod_2_z_outward*rod_3_x_inward)*y
         )
-        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
-        rod_2_y_inward = y - pivot_2_y
+        part_of_refusal_outward_outward_inward = (
+            0
+            if (axis_a3_inward >= lowest_a3) and (axis_a3_inward <= highest_a3)
+            else 3
+        )
+        cos_a2 = (across_a2_times_sin_swing_a2 - along_a2_times_cos_swing_a2)/divisor_a2
+        sin_a2 = (across_a2_times_cos_swing_a2 + along_a2_times_sin_swing_a2)/divisor_a2
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
-        part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3 = (
-            rod_2_x_inward*rod_3_z_inward*y - rod_2_z_inward*rod_3_x_inward*y
+        pivot_2_x = half_arm_length_1_2*cos_a2 - part_of_span_2_x  # rod 2
+        rod_2_x_inward = x - pivot_2_x
+        pivot_2_y = -part_of_span_2_y - arm_length_1_times_root_of_3_times_half_2*cos_a2  # rod 2
+        rod_2_y_inward = y - pivot_2_y
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
+        rod_2_z_inward = z - pivot_2_z
+        part_of_type2_rods_coplanar_outward_inward_outward = (
+            (rod_2_x_inward*rod_3_z_outward - rod_2_z_inward*rod_3_x_outward)*y
         )
+        part_of_refusal_outward_inward = 0 if (axis_a2_inward >= lowest_a2) and (axis_a2_inward <= highest_a2) else 3
+        part_of_type2_rods_coplanar_outward_inward_inward = (
+            (rod_2_x_inward*rod_3_z_inward - rod_2_z_inward*rod_3_x_inward)*y
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
             pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
             rod_1_x = x - pivot_1_x
             pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
             rod_1_z = z - pivot_1_z
-            if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_outward_outward = (
-                        (
-                            rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_z*rod_2_x_outward*rod_3_y_outward
-                            - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_outward*rod_3_y_outward
-                            - rod_1_z*rod_2_y_outward*rod_3_x_outward
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_outward_outward_outward_2 = 0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3
-                else:
-                    refusal_outward_outward_outward_2 = 3
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_outward_inward = (
-                        (
-                            rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_z*rod_2_x_outward*rod_3_y_inward
-                            - part_of_type2_rods_coplanar_outward_inward_outward - rod_1_x*rod_2_z_outward*rod_3_y_inward
-                            - rod_1_z*rod_2_y_outward*rod_3_x_inward
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_outward_outward_inward_2 = 0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3
-                else:
-                    refusal_outward_outward_inward_2 = 3
+            type2_rods_coplanar_outward_outward = (
+                -part_of_type2_rods_coplanar_outward_outward_outward
+                *(
+                    part_of_type2_rods_coplanar_outward_outward_outward_2
+                    + (rod_2_z_outward*rod_3_y_outward - rod_2_y_outward*rod_3_z_outward)*rod_1_x
+                    + (rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_y_outward)*rod_1_z
+                )
+            )
+            # limits of A3
+            if part_of_refusal_outward_outward > 0:
+                refusal_outward_outward = part_of_refusal_outward_outward
+                refusal_outward_inward = part_of_refusal_outward_outward
             else:
-                refusal_outward_outward_outward_2 = 3
-                refusal_outward_outward_inward_2 = 3
-            if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_inward_outward = (
-                        (
-                            rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_z*rod_2_x_inward*rod_3_y_outward
-                            - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2
-                            - rod_1_x*rod_2_z_inward*rod_3_y_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_outward_inward_outward_2 = 0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3
-                else:
-                    refusal_outward_inward_outward_2 = 3
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_inward_inward = (
-                        (
-                            rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_z*rod_2_x_inward*rod_3_y_inward
-                            - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3
-                            - rod_1_x*rod_2_z_inward*rod_3_y_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_outward_inward_inward_2 = 0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3
-                else:
-                    refusal_outward_inward_inward_2 = 3
+                refusal_outward_outward = part_of_refusal_outward_outward_outward
+                refusal_outward_inward = part_of_refusal_outward_outward_inward
+            refusal_outward_outward_outward_2 = (
+                refusal_outward_outward
+                if refusal_outward_outward > 0
+                else (0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_outward_inward = (
+                -(
+                    part_of_type2_rods_coplanar_outward_outward_inward
+                    + (rod_2_z_outward*rod_3_y_inward - rod_2_y_outward*rod_3_z_inward)*rod_1_x
+                    + (rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_y_inward)*rod_1_z
+                )
+                *part_of_type2_rods_coplanar_outward_outward_outward
+            )
+            refusal_outward_outward_inward_2 = (
+                refusal_outward_inward
+                if refusal_outward_inward > 0
+                else (0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_inward_outward = (
+                -(
+                    part_of_type2_rods_coplanar_outward_inward_outward
+                    + (rod_2_z_inward*rod_3_y_outward - rod_2_y_inward*rod_3_z_outward)*rod_1_x
+                    + (rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_y_outward)*rod_1_z
+                )
+                *part_of_type2_rods_coplanar_outward_outward_outward
+            )
+            # limits of A3
+            if part_of_refusal_outward_inward > 0:
+                refusal_inward_outward = part_of_refusal_outward_inward
+                refusal_inward_inward = part_of_refusal_outward_inward
             else:
-                refusal_outward_inward_outward_2 = 3
-                refusal_outward_inward_inward_2 = 3
+                refusal_inward_outward = part_of_refusal_outward_outward_outward
+                refusal_inward_inward = part_of_refusal_outward_outward_inward
+            refusal_outward_inward_outward_2 = (
+                refusal_inward_outward
+                if refusal_inward_outward > 0
+                else (0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_inward_inward = (
+                -(
+                    part_of_type2_rods_coplanar_outward_inward_inward
+                    + (rod_2_z_inward*rod_3_y_inward - rod_2_y_inward*rod_3_z_inward)*rod_1_x
+                    + (rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_y_inward)*rod_1_z
+                )
+                *part_of_type2_rods_coplanar_outward_outward_outward
+            )
+            refusal_outward_inward_inward_2 = (
+                refusal_inward_inward
+                if refusal_inward_inward > 0
+                else (0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3)
+            )
         else:
             refusal_outward_outward_outward_2 = 3
             refusal_outward_outward_inward_2 = 3
             refusal_outward_inward_outward_2 = 3
             refusal_outward_inward_inward_2 = 3
-        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_span_1_z_by_divisor_a1
-        sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
+        cos_a1 = (sin_swing_a1_outward_times_span_1_z - cos_swing_a1_times_span_1_x)/divisor_a1
+        sin_a1 = (-cos_swing_a1_times_span_1_z - sin_swing_a1_outward_times_span_1_x)/divisor_a1
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
             pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
             rod_1_x = x - pivot_1_x
             pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
             rod_1_z = z - pivot_1_z
-            if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_outward_outward = (
-                        (
-                            rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_z*rod_2_x_outward*rod_3_y_outward
-                            - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_outward*rod_3_y_outward
-                            - rod_1_z*rod_2_y_outward*rod_3_x_outward
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_inward_outward_outward_2 = 0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3
-                else:
-                    refusal_inward_outward_outward_2 = 3
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_outward_inward = (
-                        (
-                            rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_z*rod_2_x_outward*rod_3_y_inward
-                            - part_of_type2_rods_coplanar_outward_inward_outward - rod_1_x*rod_2_z_outward*rod_3_y_inward
-                            - rod_1_z*rod_2_y_outward*rod_3_x_inward
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_inward_outward_inward_2 = 0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3
-                else:
-                    refusal_inward_outward_inward_2 = 3
+            part_of_type2_rods_coplanar_inward_outward_outward = rod_1_x*rod_3_z_outward - rod_1_z*rod_3_x_outward
+            part_of_type2_rods_coplanar_inward_outward_outward_2 = rod_1_z*rod_2_x_outward - rod_1_x*rod_2_z_outward
+            type2_rods_coplanar_outward_outward = (
+                -(
+                    part_of_type2_rods_coplanar_outward_outward_outward_2
+                    - part_of_type2_rods_coplanar_inward_outward_outward*rod_2_y_outward
+                    - part_of_type2_rods_coplanar_inward_outward_outward_2*rod_3_y_outward
+                )
+                *part_of_type2_rods_coplanar_outward_outward_outward
+            )
+            # limits of A3
+            if part_of_refusal_outward_outward > 0:
+                refusal_outward_outward = part_of_refusal_outward_outward
+                refusal_outward_inward = part_of_refusal_outward_outward
             else:
-                refusal_inward_outward_outward_2 = 3
-                refusal_inward_outward_inward_2 = 3
-            if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_inward_outward = (
-                        (
-                            rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_z*rod_2_x_inward*rod_3_y_outward
-                            - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2
-                            - rod_1_x*rod_2_z_inward*rod_3_y_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_inward_inward_outward_2 = 0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3
-                else:
-                    refusal_inward_inward_outward_2 = 3
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
-                if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_inward_inward = (
-                        (
-                            rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_z*rod_2_x_inward*rod_3_y_inward
-                            - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3
-                            - rod_1_x*rod_2_z_inward*rod_3_y_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
-                        )
-                        *assembly_sign_by_constant_part
-                    )
-                    refusal_inward_inward_inward_2 = 0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3
-                else:
-                    refusal_inward_inward_inward_2 = 3
+                refusal_outward_outward = part_of_refusal_outward_outward_outward
+                refusal_outward_inward = part_of_refusal_outward_outward_inward
+            refusal_inward_outward_outward_2 = (
+                refusal_outward_outward
+                if refusal_outward_outward > 0
+                else (0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3)
+            )
+            part_of_type2_rods_coplanar_inward_outward_inward = rod_1_x*rod_3_z_inward - rod_1_z*rod_3_x_inward
+            type2_rods_coplanar_outward_inward = (
+                -(
+                    part_of_type2_rods_coplanar_outward_outward_inward
+                    - part_of_type2_rods_coplanar_inward_outward_inward*rod_2_y_outward
+                    - part_of_type2_rods_coplanar_inward_outward_outward_2*rod_3_y_inward
+                )
+                *part_of_type2_rods_coplanar_outward_outward_outward
+            )
+            refusal_inward_outward_inward_2 = (
+                refusal_outward_inward
+                if refusal_outward_inward > 0
+                else (0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3)
+            )
+            part_of_type2_rods_coplanar_inward_inward_outward = rod_1_z*rod_2_x_inward - rod_1_x*rod_2_z_inward
+            type2_rods_coplanar_inward_outward = (
+                -(
+                    part_of_type2_rods_coplanar_outward_inward_outward
+                    - part_of_type2_rods_coplanar_inward_inward_outward*rod_3_y_outward
+                    - part_of_type2_rods_coplanar_inward_outward_outward*rod_2_y_inward
+                )
+                *part_of_type2_rods_coplanar_outward_outward_outward
+            )
+            # limits of A3
+            if part_of_refusal_outward_inward > 0:
+                refusal_inward_outward = part_of_refusal_outward_inward
+                refusal_inward_inward = part_of_refusal_outward_inward
             else:
-                refusal_inward_inward_outward_2 = 3
-                refusal_inward_inward_inward_2 = 3
+                refusal_inward_outward = part_of_refusal_outward_outward_outward
+                refusal_inward_inward = part_of_refusal_outward_outward_inward
+            refusal_inward_inward_outward_2 = (
+                refusal_inward_outward
+                if refusal_inward_outward > 0
+                else (0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3)
+            )
+            type2_rods_coplanar_inward_inward = (
+                -(
+                    part_of_type2_rods_coplanar_outward_inward_inward
+                    - part_of_type2_rods_coplanar_inward_inward_outward*rod_3_y_inward
+                    - part_of_type2_rods_coplanar_inward_outward_inward*rod_2_y_inward
+                )
+                *part_of_type2_rods_coplanar_outward_outward_outward
+            )
+            refusal_inward_inward_inward_2 = (
+                refusal_inward_inward
+                if refusal_inward_inward > 0
+                else (0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3)
+            )
         else:
             refusal_inward_outward_outward_2 = 3
             refusal_inward_outward_inward_2 = 3
@@ -411,49 +447,46 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > arm_length_1_times_shortest_link_2):
             return 8*(None,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1*twice_arm_length_1_2  # a1: law of cosines in the rod 1 equation
+        part_of_scaled_cosine_a1_3 = part_of_scaled_cosine_a1_2 + (fixed_length_2 - span_1_z)*z
         # cosine times the scale, seen from the origin
-        scaled_cosine_a1 = (
-            constant_part + (-arm_1_radius_minus_fixed_length_1 - span_1_x)*x + (fixed_length_2 - span_1_z)*z - y*y
-        )
+        scaled_cosine_a1 = part_of_scaled_cosine_a1_3 - (arm_1_radius_minus_fixed_length_1 + span_1_x)*x - y*y
         one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
         one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return 8*(None,)
-        span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
-        span_2_y = constant_part_2 + y  # rod 2
-        along_a2 = span_2_x - root(3.0)*span_2_y
+        span_2_x = part_of_span_2_x + x  # rod 2
+        span_2_y = part_of_span_2_y + y  # rod 2
+        root_of_3_2 = root(3.0)
+        along_a2 = span_2_x - root_of_3_2*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > share_of_arm_length_1):
+        if not (effective_a2 > part_of_divisor_a2_2):
             return 8*(None,)
-        divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > part_of_divisor_a2_2 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        part_of_scaled_cosine_a2 = (
-            (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (span_1_z - fixed_length_2)*z
-        )
-        part_of_scaled_cosine_a2_2 = constant_part - part_of_scaled_cosine_a2
+        part_of_scaled_cosine_a2 = (part_of_span_2_x + span_2_x)*x - part_of_scaled_cosine_a1_3
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = (constant_part_2 + span_2_y)*y - part_of_scaled_cosine_a2_2
+        scaled_cosine_a2 = part_of_scaled_cosine_a2 + (part_of_span_2_y + span_2_y)*y
         one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
         one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return 8*(None,)
-        span_3_y = y - constant_part_2  # rod 3
-        along_a3 = span_2_x + root(3.0)*span_3_y
+        span_3_y = y - part_of_span_2_y  # rod 3
+        along_a3 = span_2_x + root_of_3_2*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > share_of_arm_length_1):
+        if not (effective_a3 > part_of_divisor_a2_2):
             return 8*(None,)
-        divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > part_of_divisor_a2_2 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
-        scaled_cosine_a3 = (span_3_y - constant_part_2)*y - part_of_scaled_cosine_a2_2
+        scaled_cosine_a3 = part_of_scaled_cosine_a2 + (span_3_y - part_of_span_2_y)*y
         one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
         one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
@@ -463,173 +496,181 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 1
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return 8*(None,)
+        part = root_of_3_times_half_by_arm_length_2_2*x
+        half_by_arm_length_2_2_times_y = half_by_arm_length_2_2*y
         # ball joint of rod 2
-        if not (abs(one_by_2_by_arm_length_2*y + root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_2_times_y + part) <= sin_max_angle_ball_joint):
             return 8*(None,)
         # ball joint of rod 3
-        if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_2_times_y - part) <= sin_max_angle_ball_joint):
             return 8*(None,)
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sin_swing_a1_outward_times_span_1_z = span_1_z*sin_swing_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        cos_swing_a1_times_span_1_x = -span_1_x*cos_swing_a1
+        cos_a1 = (-cos_swing_a1_times_span_1_x - sin_swing_a1_outward_times_span_1_z)/divisor_a1
+        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
+        rod_1_x = x - pivot_1_x
+        sin_swing_a1_outward_times_span_1_x = span_1_x*sin_swing_a1
+        cos_swing_a1_times_span_1_z = -span_1_z*cos_swing_a1
+        sin_a1 = (sin_swing_a1_outward_times_span_1_x - cos_swing_a1_times_span_1_z)/divisor_a1
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
+        rod_1_z = z - pivot_1_z
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
-        across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
+        across_a2_times_sin_swing_a2 = across_a2*sin_swing_a2
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
-        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
+        along_a2_times_cos_swing_a2 = -along_a2*cos_swing_a2
+        cos_a2 = (-across_a2_times_sin_swing_a2 - along_a2_times_cos_swing_a2)/divisor_a2
+        pivot_2_x = half_arm_length_1_2*cos_a2 - part_of_span_2_x  # rod 2
         rod_2_x_outward = x - pivot_2_x
-        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
-        across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2 = -across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
+        pivot_2_y = -part_of_span_2_y - arm_length_1_times_root_of_3_times_half_2*cos_a2  # rod 2
+        rod_2_y_outward = y - pivot_2_y
+        along_a2_times_sin_swing_a2 = along_a2*sin_swing_a2
+        across_a2_times_cos_swing_a2 = -across_a2*cos_swing_a2
+        sin_a2 = (across_a2_times_cos_swing_a2 - along_a2_times_sin_swing_a2)/divisor_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z_outward = z - pivot_2_z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
-        across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2*sin_swing_a3/divisor_a3
+        across_a2_times_sin_swing_a3 = across_a2*sin_swing_a3
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
-        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - across_a2_times_sin_swing_a3_by_divisor_a3
-        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
+        along_a3_times_cos_swing_a3 = -along_a3*cos_swing_a3
+        cos_a3 = (-across_a2_times_sin_swing_a3 - along_a3_times_cos_swing_a3)/divisor_a3
+        pivot_3_x = half_arm_length_1_2*cos_a3 - part_of_span_2_x  # rod 3
         rod_3_x_outward = x - pivot_3_x
-        along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
-        across_a2_times_cos_swing_a3_by_divisor_a3 = across_a2*cos_swing_a3/divisor_a3
-        sin_a3 = -across_a2_times_cos_swing_a3_by_divisor_a3 - along_a3_times_sin_swing_a3_by_divisor_a3
+        pivot_3_y = part_of_span_2_y + arm_length_1_times_root_of_3_times_half_2*cos_a3  # rod 3
+        rod_3_y_outward = y - pivot_3_y
+        along_a3_times_sin_swing_a3 = along_a3*sin_swing_a3
+        across_a2_times_cos_swing_a3 = -across_a2*cos_swing_a3
+        sin_a3 = (across_a2_times_cos_swing_a3 - along_a3_times_sin_swing_a3)/divisor_a3
         pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z_outward = z - pivot_3_z
-        part_of_type2_rods_coplanar = rod_2_x_outward*rod_3_z_outward*y - rod_2_z_outward*rod_3_x_outward*y
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
-        sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
-        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_span_1_z_by_divisor_a1
-        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
-        rod_1_x = x - pivot_1_x
-        sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
-        cos_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*cos_swing_a1/divisor_a1
-        sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
-        rod_1_z = z - pivot_1_z
-        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
-        rod_2_y_outward = y - pivot_2_y
-        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
-        rod_3_y_outward = y - pivot_3_y
+        part_of_type2_rods_coplanar_outward_outward_outward_2 = (
+            (rod_2_x_outward*rod_3_z_outward - rod_2_z_outward*rod_3_x_outward)*y
+        )
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_z*rod_2_x_outward*rod_3_y_outward
-                - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_outward*rod_3_y_outward
-                - rod_1_z*rod_2_y_outward*rod_3_x_outward
+            -part_of_type2_rods_coplanar_outward_outward_outward
+            *(
+                part_of_type2_rods_coplanar_outward_outward_outward_2
+                + (rod_2_z_outward*rod_3_y_outward - rod_2_y_outward*rod_3_z_outward)*rod_1_x
+                + (rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_y_outward)*rod_1_z
             )
-            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
-        cos_a3 = across_a2_times_sin_swing_a3_by_divisor_a3 + along_a3_times_cos_swing_a3_by_divisor_a3
-        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
+        cos_a3 = (across_a2_times_sin_swing_a3 - along_a3_times_cos_swing_a3)/divisor_a3
+        pivot_3_x = half_arm_length_1_2*cos_a3 - part_of_span_2_x  # rod 3
         rod_3_x_inward = x - pivot_3_x
-        sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - across_a2_times_cos_swing_a3_by_divisor_a3
+        pivot_3_y = part_of_span_2_y + arm_length_1_times_root_of_3_times_half_2*cos_a3  # rod 3
+        rod_3_y_inward = y - pivot_3_y
+        sin_a3 = (across_a2_times_cos_swing_a3 + along_a3_times_sin_swing_a3)/divisor_a3
         pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z_inward = z - pivot_3_z
-        part_of_type2_rods_coplanar_outward_inward_outward = (
-            rod_2_x_outward*rod_3_z_inward*y - rod_2_z_outward*rod_3_x_inward*y
+        part_of_type2_rods_coplanar_outward_outward_inward = (
+            (rod_2_x_outward*rod_3_z_inward - rod_2_z_outward*rod_3_x_inward)*y
         )
-        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
-        rod_3_y_inward = y - pivot_3_y
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_z*rod_2_x_outward*rod_3_y_inward
-                - part_of_type2_rods_coplanar_outward_inward_outward - rod_1_x*rod_2_z_outward*rod_3_y_inward
-                - rod_1_z*rod_2_y_outward*rod_3_x_inward
+            -(
+                part_of_type2_rods_coplanar_outward_outward_inward
+                + (rod_2_z_outward*rod_3_y_inward - rod_2_y_outward*rod_3_z_inward)*rod_1_x
+                + (rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_y_inward)*rod_1_z
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_outward_outward_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
-        cos_a2 = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
-        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
+        cos_a2 = (across_a2_times_sin_swing_a2 - along_a2_times_cos_swing_a2)/divisor_a2
+        pivot_2_x = half_arm_length_1_2*cos_a2 - part_of_span_2_x  # rod 2
         rod_2_x_inward = x - pivot_2_x
-        sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - across_a2_times_cos_swing_a2_by_divisor_a2
+        pivot_2_y = -part_of_span_2_y - arm_length_1_times_root_of_3_times_half_2*cos_a2  # rod 2
+        rod_2_y_inward = y - pivot_2_y
+        sin_a2 = (across_a2_times_cos_swing_a2 + along_a2_times_sin_swing_a2)/divisor_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z_inward = z - pivot_2_z
-        part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2 = (
-            rod_2_x_inward*rod_3_z_outward*y - rod_2_z_inward*rod_3_x_outward*y
+        part_of_type2_rods_coplanar_outward_inward_outward = (
+            (rod_2_x_inward*rod_3_z_outward - rod_2_z_inward*rod_3_x_outward)*y
         )
-        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
-        rod_2_y_inward = y - pivot_2_y
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_z*rod_2_x_inward*rod_3_y_outward
-                - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2
-                - rod_1_x*rod_2_z_inward*rod_3_y_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
+            -(
+                part_of_type2_rods_coplanar_outward_inward_outward
+                + (rod_2_z_inward*rod_3_y_outward - rod_2_y_inward*rod_3_z_outward)*rod_1_x
+                + (rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_y_outward)*rod_1_z
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_outward_outward_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
-        part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3 = (
-            rod_2_x_inward*rod_3_z_inward*y - rod_2_z_inward*rod_3_x_inward*y
+        part_of_type2_rods_coplanar_outward_inward_inward = (
+            (rod_2_x_inward*rod_3_z_inward - rod_2_z_inward*rod_3_x_inward)*y
         )
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_z*rod_2_x_inward*rod_3_y_inward
-                - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3
-                - rod_1_x*rod_2_z_inward*rod_3_y_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
+            -(
+                part_of_type2_rods_coplanar_outward_inward_inward
+                + (rod_2_z_inward*rod_3_y_inward - rod_2_y_inward*rod_3_z_inward)*rod_1_x
+                + (rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_y_inward)*rod_1_z
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_outward_outward_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_span_1_z_by_divisor_a1
+        cos_a1 = (sin_swing_a1_outward_times_span_1_z - cos_swing_a1_times_span_1_x)/divisor_a1
         pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
-        sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
+        sin_a1 = (-cos_swing_a1_times_span_1_z - sin_swing_a1_outward_times_span_1_x)/divisor_a1
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
+        part_of_type2_rods_coplanar_inward_outward_outward = rod_1_x*rod_3_z_outward - rod_1_z*rod_3_x_outward
+        part_of_type2_rods_coplanar_inward_outward_outward_2 = rod_1_z*rod_2_x_outward - rod_1_x*rod_2_z_outward
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_z*rod_2_x_outward*rod_3_y_outward
-                - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_outward*rod_3_y_outward
-                - rod_1_z*rod_2_y_outward*rod_3_x_outward
+            -(
+                part_of_type2_rods_coplanar_outward_outward_outward_2
+                - part_of_type2_rods_coplanar_inward_outward_outward*rod_2_y_outward
+                - part_of_type2_rods_coplanar_inward_outward_outward_2*rod_3_y_outward
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_outward_outward_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
+        part_of_type2_rods_coplanar_inward_outward_inward = rod_1_x*rod_3_z_inward - rod_1_z*rod_3_x_inward
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_z*rod_2_x_outward*rod_3_y_inward
-                - part_of_type2_rods_coplanar_outward_inward_outward - rod_1_x*rod_2_z_outward*rod_3_y_inward
-                - rod_1_z*rod_2_y_outward*rod_3_x_inward
+            -(
+                part_of_type2_rods_coplanar_outward_outward_inward
+                - part_of_type2_rods_coplanar_inward_outward_inward*rod_2_y_outward
+                - part_of_type2_rods_coplanar_inward_outward_outward_2*rod_3_y_inward
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_outward_outward_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
+        part_of_type2_rods_coplanar_inward_inward_outward = rod_1_z*rod_2_x_inward - rod_1_x*rod_2_z_inward
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_z*rod_2_x_inward*rod_3_y_outward
-                - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2
-                - rod_1_x*rod_2_z_inward*rod_3_y_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
+            -(
+                part_of_type2_rods_coplanar_outward_inward_outward
+                - part_of_type2_rods_coplanar_inward_inward_outward*rod_3_y_outward
+                - part_of_type2_rods_coplanar_inward_outward_outward*rod_2_y_inward
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_outward_outward_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            (
-                rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_z*rod_2_x_inward*rod_3_y_inward
-                - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3
-                - rod_1_x*rod_2_z_inward*rod_3_y_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
+            -(
+                part_of_type2_rods_coplanar_outward_inward_inward
+                - part_of_type2_rods_coplanar_inward_inward_outward*rod_3_y_inward
+                - part_of_type2_rods_coplanar_inward_outward_inward*rod_2_y_inward
             )
-            *assembly_sign_by_constant_part
+            *part_of_type2_rods_coplanar_outward_outward_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -655,53 +696,48 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > arm_length_1_times_shortest_link_2):
             return None
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1*twice_arm_length_1_2  # a1: law of cosines in the rod 1 equation
+        part_of_scaled_cosine_a1_3 = part_of_scaled_cosine_a1_2 + (fixed_length_2 - span_1_z)*z
         # cosine times the scale, seen from the origin
-        scaled_cosine_a1 = (
-            constant_part + (-arm_1_radius_minus_fixed_length_1 - span_1_x)*x + (fixed_length_2 - span_1_z)*z - y*y
-        )
-        one_less_cos_a1 = arm_length_1_times_2*divisor_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
-        one_plus_cos_a1 = scaled_cosine_a1 + arm_length_1_times_2*divisor_a1  # 1 + cosine, times the scale
+        scaled_cosine_a1 = part_of_scaled_cosine_a1_3 - (arm_1_radius_minus_fixed_length_1 + span_1_x)*x - y*y
+        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
+        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return None
-        span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
-        span_2_y = constant_part_2 + y  # rod 2
-        along_a2 = span_2_x - root(3.0)*span_2_y
+        span_2_x = part_of_span_2_x + x  # rod 2
+        span_2_y = part_of_span_2_y + y  # rod 2
+        root_of_3_2 = root(3.0)
+        along_a2 = span_2_x - root_of_3_2*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > share_of_arm_length_1):
+        if not (effective_a2 > part_of_divisor_a2_2):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > part_of_divisor_a2_2 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
+        part_of_scaled_cosine_a2 = (part_of_span_2_x + span_2_x)*x - part_of_scaled_cosine_a1_3
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = (
-            (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (constant_part_2 + span_2_y)*y
-            + (span_1_z - fixed_length_2)*z - constant_part
-        )
-        one_less_cos_a2 = arm_length_1*divisor_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
-        one_plus_cos_a2 = scaled_cosine_a2 + arm_length_1*divisor_a2  # 1 + cosine, times the scale
+        scaled_cosine_a2 = part_of_scaled_cosine_a2 + (part_of_span_2_y + span_2_y)*y
+        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
+        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return None
-        span_3_y = y - constant_part_2  # rod 3
-        along_a3 = span_2_x + root(3.0)*span_3_y
+        span_3_y = y - part_of_span_2_y  # rod 3
+        along_a3 = span_2_x + root_of_3_2*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > share_of_arm_length_1):
+        if not (effective_a3 > part_of_divisor_a2_2):
             return None
-        divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > part_of_divisor_a2_2 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
-        scaled_cosine_a3 = (
-            (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (span_3_y - constant_part_2)*y
-            + (span_1_z - fixed_length_2)*z - constant_part
-        )
-        one_less_cos_a3 = arm_length_1*divisor_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
-        one_plus_cos_a3 = scaled_cosine_a3 + arm_length_1*divisor_a3  # 1 + cosine, times the scale
+        scaled_cosine_a3 = part_of_scaled_cosine_a2 + (span_3_y - part_of_span_2_y)*y
+        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
+        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
@@ -710,41 +746,39 @@ def unrolled(k: Constants) -> Unrolled:
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
-        cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
+        cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/divisor_a1
         pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
-        rod_1_x = x - pivot_1_x
-        sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
+        sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
-        rod_1_z = z - pivot_1_z
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
-        cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
+        cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/divisor_a2
+        pivot_2_x = half_arm_length_1_2*cos_a2 - part_of_span_2_x  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -part_of_span_2_y - arm_length_1_times_root_of_3_times_half_2*cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
-        sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
+        sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/divisor_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
-        cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
+        cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/divisor_a3
+        pivot_3_x = half_arm_length_1_2*cos_a3 - part_of_span_2_x  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = part_of_span_2_y + arm_length_1_times_root_of_3_times_half_2*cos_a3  # rod 3
         rod_3_y = y - pivot_3_y
-        sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
+        sin_a3 = (along_a3*sin_swing_a3 - across_a2*cos_swing_a3)/divisor_a3
         pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
-            assembly_sign_by_constant_part
+            -part_of_type2_rods_coplanar_outward_outward_outward
             *(
-                rod_1_x*rod_2_y*rod_3_z + rod_1_z*rod_2_x*rod_3_y + rod_2_z*rod_3_x*y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_z*rod_2_y*rod_3_x - rod_2_x*rod_3_z*y
+                (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*(z - pivot_1_z)
+                + (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*(x - pivot_1_x)
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
@@ -753,11 +787,13 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 1
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return None
+        part = root_of_3_times_half_by_arm_length_2_2*x
+        half_by_arm_length_2_2_times_y = half_by_arm_length_2_2*y
         # ball joint of rod 2
-        if not (abs(one_by_2_by_arm_length_2*y + root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_2_times_y + part) <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 3
-        if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_2_times_y - part) <= sin_max_angle_ball_joint):
             return None
         if no_offsets:
             return (arctan2(sin_a1, cos_a1)*RADIAN, arctan2(sin_a2, cos_a2)*RADIAN, arctan2(sin_a3, cos_a3)*RADIAN)

@@ -26,7 +26,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a = k.single_a
     single_b = k.single_b
     tool_side = k.tool_side
-    offset_b_times_2 = 2.0*offset_b
+    twice_offset_b = 2.0*offset_b
     no_offsets = not any((offset_a, offset_b,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -76,7 +76,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a_negative = direction_of_axis_a  # A: its turn
         if not -180.000000001 <= axis_a_negative - open_a < 179.999999999:
             axis_a_negative = nearest_period(axis_a_negative, open_a)
-        axis_b_negative = offset_b_times_2 - axis_b_positive  # B: its turn
+        axis_b_negative = twice_offset_b - axis_b_positive  # B: its turn
         if not -180.000000001 <= axis_b_negative - open_b < 179.999999999:
             axis_b_negative = nearest_period(axis_b_negative, open_b)
         # limits of A, limits of B
@@ -120,7 +120,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         return (
             (axis_a, axis_b),
-            (direction_of_axis_a, offset_b_times_2 - axis_b),
+            (direction_of_axis_a, twice_offset_b - axis_b),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

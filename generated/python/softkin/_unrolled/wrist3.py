@@ -30,7 +30,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a = k.single_a
     single_b = k.single_b
     single_c = k.single_c
-    offset_b_times_2 = 2.0*offset_b
+    twice_offset_b = 2.0*offset_b
     no_offsets = not any((offset_a, offset_b, offset_c,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -87,7 +87,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a_up = direction_of_axis_a  # A: its turn
         if not -180.000000001 <= axis_a_up - open_a < 179.999999999:
             axis_a_up = nearest_period(axis_a_up, open_a)
-        axis_b_up = offset_b_times_2 - axis_b_down  # B: its turn
+        axis_b_up = twice_offset_b - axis_b_down  # B: its turn
         if not -180.000000001 <= axis_b_up - open_b < 179.999999999:
             axis_b_up = nearest_period(axis_b_up, open_b)
         axis_c_up = direction_of_axis_c  # C: its turn
@@ -142,7 +142,7 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_c = offset_c + arctan2(direction_y_c_up, direction_x_c_up)*RADIAN
         return (
             (axis_a, axis_b, axis_c),
-            (direction_of_axis_a, offset_b_times_2 - axis_b, direction_of_axis_c),
+            (direction_of_axis_a, twice_offset_b - axis_b, direction_of_axis_c),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
