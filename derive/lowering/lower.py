@@ -13,22 +13,34 @@ from derive.lowering.dividing import Dividing
 from derive.lowering.draft import Draft, Effect, Reader, changed, values_of
 from derive.lowering.factoring import Factoring
 from derive.lowering.hoisting import Constant, Gathering, hoisted
+from derive.lowering.mirrored import Mirrored
 from derive.lowering.opening import opened
 from derive.lowering.sharing import Sharing
 from derive.lowering.writing import written
 
 
-def lowered(programs: Sequence[Program], constants: Collection[str]) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
-    """The programs, and what they read of constants alone. A program that others call comes before them."""
+def lowered(
+    programs: Sequence[Program], constants: Collection[str], *, any_turn: bool = False, inverts: bool = True
+) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
+    """The programs, and what they read of constants alone. A program that others call comes before them.
+
+    any_turn: whether an angle may be a turn more or less, unless its value is taken; inverts: whether a division takes longer
+    than several multiplications.
+    """
     reader = Reader()
     graph, constant = reader.graph, Constant(constants)
-    drafts = [_shorter(reader.draft(p), graph, constant) for p in programs]
+    drafts = [reader.draft(p) for p in programs]
+    if any_turn:
+        drafts = [changed(draft, Mirrored(graph, _nodes(draft))) for draft in drafts]
+    drafts = [_shorter(draft, graph, constant) for draft in drafts]
+    if inverts:
+        drafts = [changed(draft, Dividing(graph, _nodes(draft), constant)) for draft in drafts]
     names, lets = hoisted(drafts, constant, constants)
     taken = {*constants, *(let.name.name for let in lets)}
     done: dict[str, Program] = {}
     for draft in drafts:
         draft.items[:] = [replace(i, statement=calling(i.statement, done)) if isinstance(i, Effect) else i for i in draft.items]
-        done[draft.program.name] = written(draft, names, taken)
+        done[draft.program.name] = written(draft, names, taken, any_turn=any_turn)
     return tuple(done.values()), lets
 
 
@@ -38,8 +50,7 @@ def _shorter(draft: Draft, graph: Graph, constant: Constant) -> Draft:
     draft = changed(draft, Gathering(graph, constant))
     draft = distributed(collected(draft, graph, constant), graph, constant)
     draft = opened(draft, graph, constant)
-    draft = changed(draft, Sharing(graph, _nodes(draft), constant))
-    return changed(draft, Dividing(graph, _nodes(draft), constant))
+    return changed(draft, Sharing(graph, _nodes(draft), constant))
 
 
 def _nodes(draft: Draft) -> list[Node]:

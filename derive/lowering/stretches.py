@@ -207,7 +207,23 @@ def _simplified(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:
             known.setdefault(value, let.name)
         kept.append(replace(let, value=value))
     needed = _ancestors(kept, results)
-    return [let for let in kept if let.name in needed]
+    return _without_copies([let for let in kept if let.name in needed], results)
+
+
+def _without_copies(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:
+    """What a result is a copy of has the name of the result, unless it is one itself."""
+    own = {let.name for let in lets} - results
+    names: dict[sp.Basic, sp.Symbol] = {}
+    for let in lets:
+        if let.value in own and let.value not in names:
+            names[let.value] = let.name
+    notes = {let.name: let.note for let in lets if names.get(let.value) == let.name}
+    found: list[Let] = []
+    for let in lets:
+        if names.get(let.value) != let.name:
+            name = names.get(let.name, let.name)
+            found.append(replace(let, name=name, value=let.value.xreplace(names), note=let.note or notes.get(name, "")))
+    return found
 
 
 def _ancestors(lets: Sequence[Let], wanted: set[sp.Symbol]) -> set[sp.Symbol]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import sympy as sp
@@ -16,9 +16,9 @@ from sympy.logic.boolalg import Boolean
 from derive.ir.graph import ODD, PRODUCT, SUM, Node, Value, is_whole, reached
 from derive.ir.names import Names
 from derive.ir.passes import with_inputs
-from derive.ir.primitives import Select
+from derive.ir.primitives import Atan2, Select
 from derive.ir.program import Let, Output, Program, Solve, Statement, binds, rewritten
-from derive.ir.symbols import count
+from derive.ir.symbols import count, is_count
 from derive.lowering.draft import Draft, Effect, Item, Named, read_values
 from derive.lowering.wording import said
 
@@ -26,10 +26,12 @@ _WHOLE = count("whole")
 """Some whole number: what is computed of such has the type of it."""
 
 
-def written(draft: Draft, constants: Mapping[Node, Named], taken: Iterable[str] = ()) -> Program:
-    """The program of a draft. constants: what is bound elsewhere; taken: names that are not free."""
+def written(
+    draft: Draft, constants: Mapping[Node, Named], taken: Iterable[str] = (), *, any_turn: bool = False
+) -> Program:
+    """The program of a draft. constants: what is bound elsewhere; taken: names that are not free; any_turn: see `lowered`."""
     elsewhere = {named.name.name for named in constants.values()}
-    writer = _Writer(draft, dict(constants), Names({*taken, *elsewhere, *_names_in(draft)}))
+    writer = _Writer(draft, dict(constants), Names({*taken, *elsewhere, *_names_in(draft)}), any_turn)
     body = tuple(writer.statements())
     outputs = tuple(Output(o.name, writer.text(v)) for o, v in zip(draft.program.outputs, draft.outputs, strict=True))
     return with_inputs(replace(draft.program, body=(*body, *writer.last), outputs=outputs))
@@ -46,6 +48,7 @@ class _Writer:
     draft: Draft
     constants: dict[Node, Named]
     free: Names
+    any_turn: bool
     last: list[Statement] = field(default_factory=list)
     """What the outputs alone need."""
 
@@ -80,7 +83,7 @@ class _Writer:
             look(read_values(item), None)
         look(self.draft.outputs, None)
         for node in sorted((n for n, times in readers.items() if times > 1), key=lambda n: n.place):
-            if node not in self.names and not is_condition(node) and not _is_slight(node):
+            if node not in self.names and not is_condition(node) and not _is_slight(node, self.names):
                 self.names[node] = self._new_name(node, first[node])
 
     def _new_name(self, node: Node, reader: Node | None) -> Named:
@@ -89,7 +92,8 @@ class _Writer:
         value = Value(node, self._better_sign(node))
         proposal = said(value, self._called, "" if known is None else known.name.name)
         order = len(self.draft.program.body) if known is None else known.order
-        return Named(self.free.fresh(proposal, _WHOLE if is_whole(node) else None), value.sign, "", order)
+        has_whole_sides = node.head is Select and known is not None and is_count(known.name)
+        return Named(self.free.fresh(proposal, _WHOLE if has_whole_sides or is_whole(node) else None), value.sign, "", order)
 
     def _called(self, node: Node) -> sp.Expr | None:
         """The name of a value; of one that stays away from zero by a choice, the name of what it is elsewhere."""
@@ -194,6 +198,8 @@ class _Writer:
         if node.head is Select:
             condition, *sides = node.parts
             return Select(self.text(condition), *(self.text(Value(side.node, sign * side.sign)) for side in sides))
+        if node.head is Atan2 and self.any_turn and sign < 0 and self.text(node.parts[0]).could_extract_minus_sign():
+            return Atan2(self.text(-node.parts[0]), self.text(node.parts[1]))
         whole = node.head(*map(self.text, node.parts))
         return -whole if sign < 0 else whole
 
@@ -258,9 +264,11 @@ def is_condition(node: Node) -> bool:
     return isinstance(node.head, type) and issubclass(node.head, Boolean)
 
 
-def _is_slight(node: Node) -> bool:
-    """Whether a value is written as easily as a name: the size of a name, a multiple of it."""
+def _is_slight(node: Node, names: Container[Node]) -> bool:
+    """Whether a value is written as easily as a name: the size of a name, a multiple of a name that the program reads."""
     sources = node.sources()
+    if node.head is sp.Abs and sources[0] in names:
+        return True
     if node.divisors or not all(n.is_leaf for n in sources):
         return False
     return node.head is sp.Abs or (node.head is PRODUCT and sum(not n.is_number for n in sources) < 2)

@@ -19,6 +19,7 @@ from dataclasses import replace
 
 import sympy as sp
 
+from derive.ir.passes import with_inputs
 from derive.ir.primitives import (
     NearestPeriod,
     Root,
@@ -26,6 +27,7 @@ from derive.ir.primitives import (
 )
 from derive.ir.program import (
     Let,
+    Program,
     expressions,
     rewritten,
 )
@@ -40,6 +42,15 @@ class Grouped(sp.Function):
 
     nargs = 1
     is_real = True
+
+
+def squares_where_read(program: Program) -> Program:
+    """The program with the squares of names as products: it costs no more, and a root of them is known to be one of squares."""
+    own = {let.name: let.value for let in program.lets() if isinstance(let.value, sp.Pow) and let.value.base.is_Symbol}
+    squares = {name: value for name, value in own.items() if value.exp == 2}
+    body = [rewritten(s, lambda e: e.xreplace(squares)) for s in program.body if not (isinstance(s, Let) and s.name in squares)]
+    outputs = tuple(replace(o, value=o.value.xreplace(squares)) for o in program.outputs)
+    return with_inputs(replace(program, body=tuple(body), outputs=outputs))
 
 
 def written_where_read(

@@ -34,15 +34,14 @@ from derive.ir.symbols import (
 )
 from derive.ir.tree import Item
 from derive.kinematics.kinematics import Kinematics
+from derive.lowering.lower import lowered
 from derive.lowering.scheduling import scheduled, spared
 from derive.optimize.angle_addition import angles_first
 from derive.optimize.coalesce import reused_names
-from derive.optimize.common_parts import common_parts
-from derive.optimize.constant_parts import constant_parts
 from derive.optimize.guards import guarded
-from derive.optimize.inline import written_where_read
+from derive.optimize.inline import squares_where_read, written_where_read
 from derive.optimize.known_projection import aimed
-from derive.optimize.negation import with_fewer_signs, without_minus
+from derive.optimize.negation import without_minus
 from derive.optimize.rotation_identities import shorter_columns
 from derive.optimize.symmetry import with_twins
 from derive.optimize.unroll import (
@@ -117,7 +116,7 @@ def signs(kin: Kinematics) -> tuple[Sign, ...]:
 
 def branches(kin: Kinematics, one: Program) -> Program:
     """All branches, each axis in any turn. one: a single branch for input that is trusted."""
-    return common_parts(any_turn(with_twins(unroll(one, signs(kin)))), signs(kin), _constants(kin))
+    return any_turn(with_twins(unroll(one, signs(kin))))
 
 
 def _nearest(kin: Kinematics, program: Program) -> Program:
@@ -128,7 +127,7 @@ def _nearest(kin: Kinematics, program: Program) -> Program:
 
 def _trusted(kin: Kinematics) -> Program:
     """One branch for input that is trusted, before its turns are let go."""
-    return with_fewer_signs(shorter_columns(_nearest(kin, kin.branch)))
+    return shorter_columns(_nearest(kin, kin.branch))
 
 
 def _constants(kin: Kinematics) -> frozenset[str]:
@@ -139,7 +138,7 @@ def unrolled(kin: Kinematics) -> Unrolled:
     """The functions on plain numbers. Near a fold they have no answer, an empty tuple: one branch after the other has."""
     kin = replace(kin, branch=untold(far_from_folds(kin.derived_branch)))
     one = _trusted(kin)
-    methods, parts = _with_constant_parts(kin, _methods(kin, one))
+    methods, parts = _shorter(kin, _methods(kin, one))
     known = (*kin.setup.lets(), *parts)
     last = finish(kin, one)
     functions = (_directions(kin, methods[0], known), _direction(kin, methods[1], known, parts), *((last,) if last else ()))
@@ -163,10 +162,11 @@ def trusted_branch(kin: Kinematics) -> Function:
     return written.function([*lines, f"return {_texts(values)}"])
 
 
-def _with_constant_parts(kin: Kinematics, methods: Sequence[Method]) -> tuple[list[Method], tuple[Let, ...]]:
-    """The methods, and what they read that is computed from constants."""
-    programs, parts = constant_parts((m.program for m in methods), (o.name for o in kin.setup.outputs))
-    return [replace(m, program=p) for m, p in zip(methods, programs, strict=True)], parts
+def _shorter(kin: Kinematics, methods: Sequence[Method]) -> tuple[list[Method], tuple[Let, ...]]:
+    """The methods with fewer operations, and what they read that is computed from constants."""
+    named = [replace(m.program, name=m.name) for m in methods]
+    programs, parts = lowered(named, _constants(kin), any_turn=True, inverts=False)
+    return [replace(m, program=squares_where_read(p)) for m, p in zip(methods, programs, strict=True)], parts
 
 
 def _methods(kin: Kinematics, one: Program) -> tuple[Method, Method]:

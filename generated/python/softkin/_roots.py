@@ -150,10 +150,7 @@ def _over_the_end(trial: Trial, cells: Cells) -> Cells:
     """
     swap = cells.first[:, GUARD] < 0.0
     within, beyond = (cells.joint(np.where(swap == flag, cells.low, cells.high)) for flag in (False, True))
-    low, high = (
-        np.zeros(len(cells)),
-        np.ones(len(cells)),
-    )  # as fractions of the way from the end with solutions to the other
+    low, high = np.zeros(len(cells)), np.ones(len(cells))  # fractions of the way from the inner end
     path = Cells(cells.rows, within, beyond - within, cells.curved, cells.cuts, low, high, *_ordered(cells, swap))
     level = np.where(path.first[:, GUARD] > TOUCHED, TOUCHED, 0.0)
     meet, rim = (_closing(trial, path, GUARD, at)[2] for at in (level, 0.0 * level))
@@ -180,9 +177,9 @@ def _ordered(cells: Cells, swap: Flags) -> tuple[Reals, Reals]:
 
 
 def _closing(trial: Trial, cells: Cells, column: int, level: Reals) -> tuple[Reals, Reals, Reals]:
-    """Find the place where a column equals a level. Returns the end on the side of the first, the other end, and the better one.
+    """Find the place where a column equals a level. Returns the end on the side of the first, the other, and the better.
 
-    Newton's method from the end that is nearer to zero; bisection where that leads out of the cell, and in every third step.
+    Newton's method from the end that is nearer to zero; bisection outside the cell, and in every third step.
     """
     low, high = cells.low.copy(), cells.high.copy()
     first, last = cells.first[:, column : column + 2].copy(), cells.last[:, column : column + 2].copy()
@@ -270,8 +267,8 @@ def nearest_root(
     finish_given: Values,
     count: int,
 ) -> Values:
-    """True and the results of `finish` at the root that fits and is nearest to the start; False and zeros where there is none,
-    or none is wanted.
+    """True and the results of `finish` at the root that fits and is nearest to the start; False and zeros where there
+    is none, or none is wanted.
 
     given: the arguments, a value for every row or one for all; the parts of a place by their names.
     """

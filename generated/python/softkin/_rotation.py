@@ -61,25 +61,22 @@ def made_rotation(rotation: Rotation) -> Rotation | Diagnosis:
     else:
         length_z = sqrt(r13 * r13 + r23 * r23 + r33 * r33)  # z keeps its direction, which is that of the tool
         divisor_z = length_z if length_z > 0.5 else 1.0
-        unit_z1 = r13 / divisor_z
-        unit_z2 = r23 / divisor_z
-        unit_z3 = r33 / divisor_z
-        along_z = r11 * unit_z1 + r21 * unit_z2 + r31 * unit_z3
-        across_z1 = r11 - along_z * unit_z1
-        across_z2 = r21 - along_z * unit_z2
-        across_z3 = r31 - along_z * unit_z3
+        made_r13 = r13 / divisor_z
+        made_r23 = r23 / divisor_z
+        made_r33 = r33 / divisor_z
+        along_z = made_r13 * r11 + made_r23 * r21 + made_r33 * r31
+        across_z1 = r11 - along_z * made_r13
+        across_z2 = r21 - along_z * made_r23
+        across_z3 = r31 - along_z * made_r33
         # x is made perpendicular to z
         length_x = sqrt(across_z1 * across_z1 + across_z2 * across_z2 + across_z3 * across_z3)
         divisor_x = length_x if length_x > 0.5 else 1.0
         made_r11 = across_z1 / divisor_x
-        made_r12 = (across_z3 * unit_z2 - across_z2 * unit_z3) / divisor_x
-        made_r13 = unit_z1
+        made_r12 = (across_z3 * made_r23 - across_z2 * made_r33) / divisor_x
         made_r21 = across_z2 / divisor_x
-        made_r22 = (across_z1 * unit_z3 - across_z3 * unit_z1) / divisor_x
-        made_r23 = unit_z2
+        made_r22 = (across_z1 * made_r33 - across_z3 * made_r13) / divisor_x
         made_r31 = across_z3 / divisor_x
-        made_r32 = (across_z2 * unit_z1 - across_z1 * unit_z2) / divisor_x
-        made_r33 = unit_z3
+        made_r32 = (across_z2 * made_r13 - across_z1 * made_r23) / divisor_x
     return ((made_r11, made_r12, made_r13), (made_r21, made_r22, made_r23), (made_r31, made_r32, made_r33))
 
 

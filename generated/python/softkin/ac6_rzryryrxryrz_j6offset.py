@@ -86,22 +86,22 @@ class Constants:
         effective_q3_tried = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
         searched = abs(j6_offset_x) > 0.0  # whether to scan A6 for a root
         machine_scale_times_free_angle = 1e-11 * machine_scale
+        size_of_j6_offset_x = abs(j6_offset_x)
         a2_plus_effective_q3_tried = a2 + effective_q3_tried
         a2_minus_effective_q3_tried = a2 - effective_q3_tried
         d4_by_effective_q3_tried = d4 / effective_q3_tried
         a3_by_effective_q3_tried = a3 / effective_q3_tried
-        size_of_j6_offset_x = abs(j6_offset_x)
         part_of_fits = 0.5 * machine_scale * machine_scale / (sqrt(a3 * a3 + d4 * d4) * a2)
         one_by_machine_scale = 1.0 / machine_scale
         self.d1, self.a1, self.a2, self.a3, self.d4, self.j6_offset_x, self.d6 = d1, a1, a2, a3, d4, j6_offset_x, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.offset_a5, self.offset_a6, self.effective_q3_tried = offset_a5, offset_a6, effective_q3_tried
         self.searched, self.machine_scale_times_free_angle = searched, machine_scale_times_free_angle
-        self.a2_plus_effective_q3_tried = a2_plus_effective_q3_tried
+        self.size_of_j6_offset_x, self.a2_plus_effective_q3_tried = size_of_j6_offset_x, a2_plus_effective_q3_tried
         self.a2_minus_effective_q3_tried = a2_minus_effective_q3_tried
         self.d4_by_effective_q3_tried = d4_by_effective_q3_tried
-        self.a3_by_effective_q3_tried, self.size_of_j6_offset_x = a3_by_effective_q3_tried, size_of_j6_offset_x
-        self.part_of_fits, self.one_by_machine_scale = part_of_fits, one_by_machine_scale
+        self.a3_by_effective_q3_tried, self.part_of_fits = a3_by_effective_q3_tried, part_of_fits
+        self.one_by_machine_scale = one_by_machine_scale
 
 
 class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
@@ -272,18 +272,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
         slope_wrist_x_tried = j6_offset_x * (goal_r12 * cos_q6_tried + goal_r11 * sin_q6_tried)
         slope_wrist_y_tried = j6_offset_x * (goal_r22 * cos_q6_tried + goal_r21 * sin_q6_tried)
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
             along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
             if distance_q1_tried > machine_scale_times_free_angle:
                 length_q1_tried = distance_q1_tried
-                slope_distance_q1_tried = (
+                slope_length_q1_tried = (
                     (slope_wrist_x_tried * wrist_x_tried + slope_wrist_y_tried * wrist_y_tried)
                     / (distance_q1_tried if distance_q1_tried > 0.0 else 1.0)
                     if distance_q1_tried > 0.0
                     else 0.0
                 )
-                slope_length_q1_tried = slope_distance_q1_tried
             else:
                 length_q1_tried = 1.0
                 slope_length_q1_tried = 0.0
@@ -344,8 +343,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         ) * slope_reach_tried
         if sum_q3_tried > 0.0:
             divisor_of_cos_q3_tried = sum_q3_tried
-            slope_sum_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-            slope_divisor_of_cos_q3_tried = slope_sum_q3_tried
+            slope_divisor_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
         else:
             divisor_of_cos_q3_tried = 1.0
             slope_divisor_of_cos_q3_tried = 0.0
@@ -382,11 +380,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_sin_q3_tried = (
             a3_by_effective_q3_tried * slope_sin_swing_q3_tried - d4_by_effective_q3_tried * slope_cos_swing_q3_tried
         )
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if reach_tried > machine_scale_times_free_angle and freed != 1:
             arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
             arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
-            # rotation by q2 that takes the arm to the point that it must reach
+            # rotation by q2 that takes the arm to its target point
             along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
             across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
             part_of_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
@@ -405,15 +403,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 - slope_arm_along_q2_tried * wrist_z_from_q1_tried
             )
             if part_of_length_q2_tried > 0.0 and reach_tried > machine_scale_times_free_angle:
-                root_of_length_q2_tried = sqrt(part_of_length_q2_tried) if part_of_length_q2_tried > 0.0 else 0.0
-                length_q2_tried = root_of_length_q2_tried
-                slope_root_of_length_q2_tried = (
+                length_q2_tried = sqrt(part_of_length_q2_tried) if part_of_length_q2_tried > 0.0 else 0.0
+                slope_length_q2_tried = (
                     (across_q2_tried * slope_across_q2_tried + along_q2_tried * slope_along_q2_tried)
-                    / (root_of_length_q2_tried if root_of_length_q2_tried > 0.0 else 1.0)
-                    if root_of_length_q2_tried > 0.0
+                    / (length_q2_tried if length_q2_tried > 0.0 else 1.0)
+                    if length_q2_tried > 0.0
                     else 0.0
                 )
-                slope_length_q2_tried = slope_root_of_length_q2_tried
             else:
                 length_q2_tried = 1.0
                 slope_length_q2_tried = 0.0
@@ -519,7 +515,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * j6_offset_x - d6 * goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
             along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
             length_q1_tried = distance_q1_tried if distance_q1_tried > machine_scale_times_free_angle else 1.0
@@ -560,11 +556,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if reach_tried > machine_scale_times_free_angle and freed != 1:
             arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
             arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
-            # rotation by q2 that takes the arm to the point that it must reach
+            # rotation by q2 that takes the arm to its target point
             along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
             across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
             part_of_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
@@ -1172,18 +1168,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             # wrist centre: the last joints do not move this point
             wrist_x_tried = wrist_x_closed + (r12_at_q6 * sin_q6 - r11_at_q6 * cos_q6) * j6_offset_x
             wrist_y_tried = wrist_y_closed + (r22_at_q6 * sin_q6 - r21_at_q6 * cos_q6) * j6_offset_x
-            margin_shoulder_tried = one_by_machine_scale * (wrist_x_tried * cos_q1 + wrist_y_tried * sin_q1)
-            branch_shoulder = margin_shoulder_tried
+            branch_shoulder = one_by_machine_scale * (wrist_x_tried * cos_q1 + wrist_y_tried * sin_q1)
             branch_wrist = (sin_q4 if size_of_j6_offset_x > 0.0 else cos_q5) * one_by_machine_scale
             branch_crossing = (
-                -(1.0 if margin_elbow_closed >= 0.0 else -1.0)
-                * (1.0 if margin_shoulder_tried >= 0.0 else -1.0)
+                -(1.0 if branch_shoulder >= 0.0 else -1.0)
+                * (1.0 if margin_elbow_closed >= 0.0 else -1.0)
                 * determinant
                 * part_of_fits
             )
         else:
-            margin_shoulder_closed = one_by_machine_scale * (wrist_x_closed * cos_q1 + wrist_y_closed * sin_q1)
-            branch_shoulder = margin_shoulder_closed
+            branch_shoulder = one_by_machine_scale * (wrist_x_closed * cos_q1 + wrist_y_closed * sin_q1)
             branch_wrist = cos_q5
             branch_crossing = 1.0
         return (
@@ -1346,7 +1340,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q5 = found_q5
             q6 = found_q6
         else:
-            # in the singularity: the angle of the reference
+            # if singular: that of the reference
             if distance_q1_closed > machine_scale_times_free_angle:
                 along_q1_closed = sigma_shoulder * wrist_x_closed  # rotation by q1 that points the arm at the point
                 cos_q1_closed = along_q1_closed / distance_q1_closed
@@ -1364,11 +1358,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 * sigma_elbow
                 / divisor_of_cos_q3_closed
             )
-            # in the singularity: the angle of the reference
+            # if singular: that of the reference
             if reach_closed > machine_scale_times_free_angle:
                 arm_along_q2_closed = effective_q3_tried * sin_swing_q3_closed
                 arm_across_q2_closed = a2 + effective_q3_tried * cos_swing_q3_closed
-                # rotation by q2 that takes the arm to the point that it must reach
+                # rotation by q2 that takes the arm to its target point
                 along_q2_closed = (
                     arm_across_q2_closed * wrist_z_from_q1_closed + arm_along_q2_closed * wrist_x_from_q1_closed
                 )
@@ -1400,8 +1394,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             radius_q4_closed = sqrt(
                 r23_from_q1_closed * r23_from_q1_closed + r33_from_q123_closed * r33_from_q123_closed
             )
-            # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the
-            # reference
+            # polar coordinates: angle q4 from the r33 and r23 equations; if singular: that of the reference
             if radius_q4_closed > 1e-11:
                 direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
                 direction_y_q4_closed = -sigma_wrist * r23_from_q1_closed

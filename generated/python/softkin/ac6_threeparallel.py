@@ -379,7 +379,7 @@ class Ac6ThreeParallel(Mechanism):
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_shoulder
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d4 * wrist_y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d4 * wrist_x) / distance_q1_squared
@@ -389,7 +389,7 @@ class Ac6ThreeParallel(Mechanism):
             sin_q1_before_q1_for_q3 = sin(reference_a1)
         wrist_z = z - d6 * r33
         wrist_y_from_q1_fixed = wrist_z - d1
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         if ahead_squared_q1 > machine_scale_squared_times_plane:
             ahead_q1 = ahead_q1_before_q1_for_q3
             cos_q1 = cos_q1_before_q1_for_q3
@@ -413,20 +413,18 @@ class Ac6ThreeParallel(Mechanism):
             if radius_q6_before_q1_for_q3 > 1e-11:
                 along_q6_before_q1_for_q3 = -sigma_wrist * r21_from_q1_before_q1_for_q3
                 one_by_radius_q6_before_q1_for_q3 = 1.0 / radius_q6_before_q1_for_q3
-                part_of_cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
-                cos_q6_before_q1_for_q3 = part_of_cos_q6_before_q1_for_q3
+                cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
                 across_q6_before_q1_for_q3 = sigma_wrist * r22_from_q1_before_q1_for_q3
-                part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
-                sin_q6_before_q1_for_q3 = part_of_sin_q6_before_q1_for_q3
+                sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
                 radius_q6_rate_q1_for_q3 = (
                     r21_from_q1_before_q1_for_q3 * r21_from_q1_rate_q1_for_q3
                     + r22_from_q1_before_q1_for_q3 * r22_from_q1_rate_q1_for_q3
                 ) / radius_q6_before_q1_for_q3
                 cos_q6_rate_q1_for_q3 = (
-                    along_q6_rate_q1_for_q3 - part_of_cos_q6_before_q1_for_q3 * radius_q6_rate_q1_for_q3
+                    along_q6_rate_q1_for_q3 - radius_q6_rate_q1_for_q3 * cos_q6_before_q1_for_q3
                 ) * one_by_radius_q6_before_q1_for_q3
                 sin_q6_rate_q1_for_q3 = (
-                    across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3 * radius_q6_rate_q1_for_q3
+                    across_q6_rate_q1_for_q3 - radius_q6_rate_q1_for_q3 * sin_q6_before_q1_for_q3
                 ) * one_by_radius_q6_before_q1_for_q3
             else:
                 cos_q6_before_q1_for_q3 = cos_of_reference_a6
@@ -454,7 +452,7 @@ class Ac6ThreeParallel(Mechanism):
                 + wrist_y_from_q1_before_q1_for_q3 * wrist_y_from_q1_before_q1_for_q3
                 - a2_squared_plus_a3_squared
             )
-            # turned, within rounding, to where q3 has a solution
+            # turned so that q3 has a solution
             if abs(value_q1_for_q3) <= size_q1_for_q3:
                 ahead_q1 = ahead_q1_before_q1_for_q3
                 cos_q1 = cos_q1_before_q1_for_q3
@@ -476,7 +474,7 @@ class Ac6ThreeParallel(Mechanism):
                     wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_rate_q1_for_q3
                     + wrist_y_from_q1_before_q1_for_q3 * wrist_y_from_q1_rate_q1_for_q3
                 )
-                # turn of q1 to the bound, to first order
+                # turn of q1 to first order
                 if abs(rate_q1_for_q3) > size_q1_for_q3_times_rounding:
                     excess_q1_for_q3 = (
                         value_q1_for_q3 - size_q1_for_q3 if value_q1_for_q3 > 0.0 else size_q1_for_q3 + value_q1_for_q3
@@ -555,8 +553,8 @@ class Ac6ThreeParallel(Mechanism):
                     near_radius_q1_for_q3 = sqrt(
                         near_p_q1_for_q3 * near_p_q1_for_q3 + near_q_q1_for_q3 * near_q_q1_for_q3
                     )
-                    # the earlier angle follows the later one
-                    # it stays where every angle gives this later one
+                    # the earlier angle follows
+                    # it stays where it has no effect
                     if near_radius_q1_for_q3 > 1e-12:
                         near_along_q1_for_q3 = (
                             sigma_wrist * (near_cos_q6_q1_for_q3 * r21 - near_sin_q6_q1_for_q3 * r22) * near_q_q1_for_q3
@@ -581,7 +579,7 @@ class Ac6ThreeParallel(Mechanism):
                         near_cost_q1_for_q3 = abs(d4 + near_cos_q1_for_q3 * wrist_y - near_sin_q1_for_q3 * wrist_x)
                         mirrored_q6_q1_for_q3 = (
                             2.0 * centre_q6_q1_for_q3 - moved_q6_q1_for_q3
-                        )  # mirror image: on the other arc
+                        )  # mirror image on the other arc
                         mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
                         mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
                         mirrored_q_q1_for_q3 = sigma_wrist * (
@@ -593,8 +591,8 @@ class Ac6ThreeParallel(Mechanism):
                         mirrored_radius_q1_for_q3 = sqrt(
                             mirrored_p_q1_for_q3 * mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3 * mirrored_q_q1_for_q3
                         )
-                        # the earlier angle follows the later one
-                        # it stays where every angle gives this later one
+                        # the earlier angle follows
+                        # it stays where it has no effect
                         if mirrored_radius_q1_for_q3 > 1e-12:
                             mirrored_along_q1_for_q3 = (
                                 sigma_wrist
@@ -622,41 +620,32 @@ class Ac6ThreeParallel(Mechanism):
                             d4 + mirrored_cos_q1_for_q3 * wrist_y - mirrored_sin_q1_for_q3 * wrist_x
                         )
                         if near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3:
-                            swept_cost_q1_for_q3 = near_cost_q1_for_q3
-                            swept_cos_q1_for_q3 = near_cos_q1_for_q3
-                            swept_sin_q1_for_q3 = near_sin_q1_for_q3
+                            best_cost_q1_for_q3 = near_cost_q1_for_q3
+                            best_cos_q1_for_q3 = near_cos_q1_for_q3
+                            best_sin_q1_for_q3 = near_sin_q1_for_q3
                         else:
-                            swept_cost_q1_for_q3 = mirrored_cost_q1_for_q3
-                            swept_cos_q1_for_q3 = mirrored_cos_q1_for_q3
-                            swept_sin_q1_for_q3 = mirrored_sin_q1_for_q3
+                            best_cost_q1_for_q3 = mirrored_cost_q1_for_q3
+                            best_cos_q1_for_q3 = mirrored_cos_q1_for_q3
+                            best_sin_q1_for_q3 = mirrored_sin_q1_for_q3
                     else:
-                        swept_cost_q1_for_q3 = 0.0
-                        swept_cos_q1_for_q3 = near_cos_q1_for_q3
-                        swept_sin_q1_for_q3 = near_sin_q1_for_q3
-                    best_cost_q1_for_q3 = swept_cost_q1_for_q3
-                    swept_ahead_q1_for_q3 = swept_cos_q1_for_q3 * wrist_x + swept_sin_q1_for_q3 * wrist_y
-                    best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
-                    best_cos_q1_for_q3 = swept_cos_q1_for_q3
-                    best_sin_q1_for_q3 = swept_sin_q1_for_q3
+                        best_cost_q1_for_q3 = 0.0
+                        best_cos_q1_for_q3 = near_cos_q1_for_q3
+                        best_sin_q1_for_q3 = near_sin_q1_for_q3
+                    best_ahead_q1_for_q3 = best_cos_q1_for_q3 * wrist_x + best_sin_q1_for_q3 * wrist_y
                 else:
                     turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3_squared)
                     one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
-                    turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                    best_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
                         cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
                     )
-                    turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                    best_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
                         sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
                     )
-                    # residual of the equation of q1
-                    turned_cost_q1_for_q3 = abs(d4 + turned_cos_q1_for_q3 * wrist_y - turned_sin_q1_for_q3 * wrist_x)
-                    best_cost_q1_for_q3 = turned_cost_q1_for_q3
-                    turned_ahead_q1_for_q3 = (
+                    best_cost_q1_for_q3 = abs(d4 + best_cos_q1_for_q3 * wrist_y - best_sin_q1_for_q3 * wrist_x)
+                    best_ahead_q1_for_q3 = (
                         ahead_q1_before_q1_for_q3 - d4 * turn_q1_for_q3
                     ) * one_by_turned_length_q1_for_q3
-                    best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
-                    best_cos_q1_for_q3 = turned_cos_q1_for_q3
-                    best_sin_q1_for_q3 = turned_sin_q1_for_q3
-                # turned, within rounding, to where q3 has a solution
+                # turned so that q3 has a solution
                 if best_cost_q1_for_q3 > machine_scale_times_rounding:
                     ahead_q1 = ahead_q1_before_q1_for_q3
                     cos_q1 = cos_q1_before_q1_for_q3
@@ -672,7 +661,7 @@ class Ac6ThreeParallel(Mechanism):
         radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
         q6_radius_of_q5 = sigma_wrist * radius_q6
         q6_radius_of_q5_times_r33 = q6_radius_of_q5 * r33
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_q6 > 1e-11:
             along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6 / radius_q6
@@ -697,14 +686,13 @@ class Ac6ThreeParallel(Mechanism):
             + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
             - a2_squared_plus_a3_squared
         )
-        size_of_value_q6_of_q3 = abs(value_q6_of_q3)
-        # moved to where q3 has a solution, if that changes the pose by rounding only
-        if size_of_value_q6_of_q3 <= size_q1_for_q3:
+        # moved so that q3 has a solution
+        if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
         else:
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            if radius_q6 > 0.1 and size_of_value_q6_of_q3 > part_of_cos_q6:
+            # moved so that q3 has a solution
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
@@ -773,7 +761,7 @@ class Ac6ThreeParallel(Mechanism):
                     * radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3
                     sin_q6 = sin_q6_before_q6_of_q3
@@ -818,8 +806,7 @@ class Ac6ThreeParallel(Mechanism):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / abs(divisor_of_cos_q3)
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3 * cos_q3
             arm_across_q2 = a3 * sin_q3

@@ -74,12 +74,12 @@ class Constants:
         effective_q3 = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
         rounding_q1 = 1e-34 * machine_scale * machine_scale  # rounding error of a squared length
         size_q1_for_q3 = 2.0 * abs(effective_q3) * a2
-        d4_by_effective_q3 = d4 / effective_q3
-        a3_by_effective_q3 = a3 / effective_q3
         size_q1_for_q3_times_rounding = 1e-12 * size_q1_for_q3
         machine_scale_times_free_angle = 1e-11 * machine_scale
         machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
         machine_scale_times_rounding = 1e-12 * machine_scale
+        d4_by_effective_q3 = d4 / effective_q3
+        a3_by_effective_q3 = a3 / effective_q3
         a2_squared_plus_effective_q3_squared = a2 * a2 + effective_q3 * effective_q3
         twice_d3 = 2.0 * d3
         a2_plus_effective_q3 = a2 + effective_q3
@@ -88,11 +88,11 @@ class Constants:
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.offset_a5, self.offset_a6, self.machine_scale = offset_a5, offset_a6, machine_scale
         self.effective_q3, self.rounding_q1, self.size_q1_for_q3 = effective_q3, rounding_q1, size_q1_for_q3
-        self.d4_by_effective_q3, self.a3_by_effective_q3 = d4_by_effective_q3, a3_by_effective_q3
         self.size_q1_for_q3_times_rounding = size_q1_for_q3_times_rounding
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
-        self.machine_scale_times_rounding = machine_scale_times_rounding
+        self.machine_scale_times_rounding, self.d4_by_effective_q3 = machine_scale_times_rounding, d4_by_effective_q3
+        self.a3_by_effective_q3 = a3_by_effective_q3
         self.a2_squared_plus_effective_q3_squared, self.twice_d3 = a2_squared_plus_effective_q3_squared, twice_d3
         self.a2_plus_effective_q3, self.a2_minus_effective_q3 = a2_plus_effective_q3, a2_minus_effective_q3
 
@@ -396,7 +396,7 @@ class ArticulatedRobot6DOF(Mechanism):
         wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d3 * wrist_y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d3 * wrist_x) / distance_q1_squared
@@ -404,7 +404,7 @@ class ArticulatedRobot6DOF(Mechanism):
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3 = cos(reference_a1)
             sin_q1_before_q1_for_q3 = sin(reference_a1)
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         if ahead_squared_q1 > machine_scale_squared_times_plane:
             ahead_q1 = ahead_q1_before_q1_for_q3
             cos_q1 = cos_q1_before_q1_for_q3
@@ -417,14 +417,14 @@ class ArticulatedRobot6DOF(Mechanism):
                 + wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
                 - a2_squared_plus_effective_q3_squared
             )
-            # turned, within rounding, to where q3 has a solution
+            # turned so that q3 has a solution
             if abs(value_q1_for_q3) <= size_q1_for_q3:
                 ahead_q1 = ahead_q1_before_q1_for_q3
                 cos_q1 = cos_q1_before_q1_for_q3
                 sin_q1 = sin_q1_before_q1_for_q3
             else:
                 rate_q1_for_q3 = -twice_d3 * wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
-                # turn of q1 to the bound, to first order
+                # turn of q1 to first order
                 if abs(rate_q1_for_q3) > size_q1_for_q3_times_rounding:
                     excess_q1_for_q3 = (
                         value_q1_for_q3 - size_q1_for_q3 if value_q1_for_q3 > 0.0 else size_q1_for_q3 + value_q1_for_q3
@@ -442,16 +442,13 @@ class ArticulatedRobot6DOF(Mechanism):
                 )
                 # residual of the equation of q1
                 turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3 * wrist_y - turned_sin_q1_for_q3 * wrist_x)
-                # turned, within rounding, to where q3 has a solution
+                # turned so that q3 has a solution
                 if turned_cost_q1_for_q3 > machine_scale_times_rounding:
                     ahead_q1 = ahead_q1_before_q1_for_q3
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
                 else:
-                    turned_ahead_q1_for_q3 = (
-                        ahead_q1_before_q1_for_q3 - d3 * turn_q1_for_q3
-                    ) * one_by_turned_length_q1_for_q3
-                    ahead_q1 = turned_ahead_q1_for_q3
+                    ahead_q1 = (ahead_q1_before_q1_for_q3 - d3 * turn_q1_for_q3) * one_by_turned_length_q1_for_q3
                     cos_q1 = turned_cos_q1_for_q3
                     sin_q1 = turned_sin_q1_for_q3
         wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
@@ -486,11 +483,11 @@ class ArticulatedRobot6DOF(Mechanism):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3 * sin_swing_q3
             arm_across_q2 = a2 + effective_q3 * cos_swing_q3
-            # rotation by q2 that takes the arm to the point that it must reach
+            # rotation by q2 that takes the arm to its target point
             along_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
             across_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
             across_q2_squared_plus_along_q2_squared = across_q2 * across_q2 + along_q2 * along_q2
@@ -523,8 +520,7 @@ class ArticulatedRobot6DOF(Mechanism):
         r23_from_q1 = r23 * cos_q1 - r13 * sin_q1
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
-        # reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 1e-11:
             direction_x_q4 = -sigma_hand * r13_from_q123
             direction_y_q4 = sigma_hand * r23_from_q1

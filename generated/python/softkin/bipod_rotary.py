@@ -68,14 +68,14 @@ class Constants:
         part_of_normal_divisor = 1e-22 * outer_arm * outer_arm
         twice_outer_arm = 2.0 * outer_arm
         outer_arm_squared_times_rounding = 1e-12 * outer_arm * outer_arm
-        tcp_displacement_minus_displacement = tcp_displacement - displacement
         machine_scale_times_plane = 1e-6 * machine_scale
         inner_arm_times_shortest_link = 1e-9 * inner_arm
+        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        tcp_displacement_minus_displacement = tcp_displacement - displacement
         inner_arm_minus_outer_arm = inner_arm - outer_arm
         inner_arm_plus_outer_arm = inner_arm + outer_arm
         assembly_sign_by_outer_arm_squared = assembly_sign / (outer_arm * outer_arm)
         outer_arm_squared = outer_arm * outer_arm
-        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         twice_inner_arm = 2.0 * inner_arm
         part_of_slope_1_by_x = 2.0 * tcp_displacement - 2.0 * displacement
         self.inner_arm, self.outer_arm, self.displacement = inner_arm, outer_arm, displacement
@@ -83,15 +83,15 @@ class Constants:
         self.min_type2_margin, self.machine_scale, self.assembly_sign = min_type2_margin, machine_scale, assembly_sign
         self.part_of_normal_divisor, self.twice_outer_arm = part_of_normal_divisor, twice_outer_arm
         self.outer_arm_squared_times_rounding = outer_arm_squared_times_rounding
-        self.tcp_displacement_minus_displacement = tcp_displacement_minus_displacement
         self.machine_scale_times_plane = machine_scale_times_plane
         self.inner_arm_times_shortest_link = inner_arm_times_shortest_link
+        self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
+        self.tcp_displacement_minus_displacement = tcp_displacement_minus_displacement
         self.inner_arm_minus_outer_arm = inner_arm_minus_outer_arm
         self.inner_arm_plus_outer_arm = inner_arm_plus_outer_arm
         self.assembly_sign_by_outer_arm_squared = assembly_sign_by_outer_arm_squared
-        self.outer_arm_squared = outer_arm_squared
-        self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
-        self.twice_inner_arm, self.part_of_slope_1_by_x = twice_inner_arm, part_of_slope_1_by_x
+        self.outer_arm_squared, self.twice_inner_arm = outer_arm_squared, twice_inner_arm
+        self.part_of_slope_1_by_x = part_of_slope_1_by_x
 
 
 class BipodRotary(OffsetKinematics):

@@ -370,7 +370,7 @@ class Crane(OffsetKinematics):
         offset_r, offset_theta = k.offset_r, k.offset_theta
         radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
         radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
             direction_y_theta = y
@@ -378,7 +378,7 @@ class Crane(OffsetKinematics):
             reference_theta = (ref_theta - offset_theta) * DEGREE
             direction_x_theta = cos(reference_theta)
             direction_y_theta = sin(reference_theta)
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
             direction_y_phi = radius_theta

@@ -22,8 +22,8 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     forward: 4280 additions, 5982 multiplications, 300 divisions, 140 square roots, 120 sines
     inverse: 224 additions, 317 multiplications, 7 divisions, 8 square roots, 2 sines
     repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
-    Newton's method: every pass improves the pose until all legs have their lengths: at most 20 passes, all of
-    which are counted
+    Newton's method: every pass improves the pose until all legs fit: at most 20 passes, all of which are
+    counted
 
 Six lengths allow up to 40 poses. Forward kinematics finds the one in the assembly mode of the home pose, by
 Newton's method from there; it refuses where that does not converge in 20 passes. On six machines of different
@@ -688,7 +688,7 @@ class Hexapod(IterativeForward):
         start_arm_6_x = platform_6_x * start_r11 + platform_6_y * start_r12 + platform_6_z * start_r13
         start_arm_6_y = platform_6_x * start_r21 + platform_6_y * start_r22 + platform_6_z * start_r23
         start_arm_6_z = platform_6_x * start_r31 + platform_6_y * start_r32 + platform_6_z * start_r33
-        # Newton's method: every pass improves the pose until all legs have their lengths
+        # Newton's method: every pass improves the pose until all legs fit
         x, y, z, roll, pitch, yaw, fitted = start_x, start_y, start_z, 0.0, 0.0, 0.0, False
         for _ in range(20):
             cos_pitch = cos(pitch)

@@ -249,7 +249,7 @@ class HGantry2(OffsetKinematics):
         if not (abs(z) <= machine_scale_times_plane):
             return None
         a = x - y  # a and b from the x and y equations, linear in both
-        return (a + offset_a, offset_b - (x + y))
+        return (a + offset_a, offset_b + (-x - y))
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -249,7 +249,7 @@ class HGantry3(OffsetKinematics):
         k = self._constants
         offset_a, offset_b, offset_z = k.offset_a, k.offset_b, k.offset_z
         a = x - y  # a and b from the x and y equations, linear in both
-        return (a + offset_a, offset_b - (x + y), offset_z + z)
+        return (a + offset_a, offset_b + (-x - y), offset_z + z)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -247,8 +247,7 @@ class Kin5Axes(Mechanism):
         r13_of_a = r13 / tool_side
         r23_of_a = r23 / tool_side
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
-        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the
-        # reference
+        # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
         if radius_a > 1e-11:
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a

@@ -72,14 +72,14 @@ class Constants:
         part_of_normal_divisor = 1e-22 * outer_arm * outer_arm
         twice_outer_arm = 2.0 * outer_arm
         outer_arm_squared_times_rounding = 1e-12 * outer_arm * outer_arm
-        part_of_pivot_1_x = 0.5 * tcp_link_distance - displacement
         machine_scale_times_plane = 1e-6 * machine_scale
         inner_arm_times_shortest_link = 1e-9 * inner_arm
+        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        part_of_pivot_1_x = 0.5 * tcp_link_distance - displacement
         inner_arm_plus_outer_arm = inner_arm + outer_arm
         inner_arm_minus_outer_arm = inner_arm - outer_arm
         assembly_sign_by_outer_arm_squared = assembly_sign / (outer_arm * outer_arm)
         outer_arm_squared = outer_arm * outer_arm
-        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         twice_inner_arm = 2.0 * inner_arm
         part_of_slope_1_by_x = tcp_link_distance - 2.0 * displacement
         self.inner_arm, self.outer_arm, self.displacement = inner_arm, outer_arm, displacement
@@ -87,14 +87,14 @@ class Constants:
         self.min_type2_margin, self.machine_scale, self.assembly_sign = min_type2_margin, machine_scale, assembly_sign
         self.part_of_normal_divisor, self.twice_outer_arm = part_of_normal_divisor, twice_outer_arm
         self.outer_arm_squared_times_rounding = outer_arm_squared_times_rounding
-        self.part_of_pivot_1_x, self.machine_scale_times_plane = part_of_pivot_1_x, machine_scale_times_plane
+        self.machine_scale_times_plane = machine_scale_times_plane
         self.inner_arm_times_shortest_link = inner_arm_times_shortest_link
-        self.inner_arm_plus_outer_arm = inner_arm_plus_outer_arm
+        self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
+        self.part_of_pivot_1_x, self.inner_arm_plus_outer_arm = part_of_pivot_1_x, inner_arm_plus_outer_arm
         self.inner_arm_minus_outer_arm = inner_arm_minus_outer_arm
         self.assembly_sign_by_outer_arm_squared = assembly_sign_by_outer_arm_squared
-        self.outer_arm_squared = outer_arm_squared
-        self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
-        self.twice_inner_arm, self.part_of_slope_1_by_x = twice_inner_arm, part_of_slope_1_by_x
+        self.outer_arm_squared, self.twice_inner_arm = outer_arm_squared, twice_inner_arm
+        self.part_of_slope_1_by_x = part_of_slope_1_by_x
 
 
 class P2CType2(OffsetKinematics):

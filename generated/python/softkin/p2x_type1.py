@@ -78,9 +78,9 @@ class Constants:
         part_of_foot_fraction = arm_length_1_minus_arm_length_2 * arm_length_1_plus_arm_length_2
         machine_scale_times_plane = 1e-6 * machine_scale
         arm_length_2_squared_times_rounding = 1e-12 * arm_length_2 * arm_length_2
+        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         part_of_type2_arms_aligned = assembly_sign / (arm_length_1 * arm_length_2)
         arm_length_1_times_arm_length_2 = arm_length_1 * arm_length_2
-        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         self.arm_length_1, self.arm_length_2, self.rail_y_1 = arm_length_1, arm_length_2, rail_y_1
         self.rail_y_2, self.tcp_offset_1, self.tcp_offset_2 = rail_y_2, tcp_offset_1, tcp_offset_2
         self.offset_a1, self.offset_a2, self.min_type2_margin = offset_a1, offset_a2, min_type2_margin
@@ -92,9 +92,9 @@ class Constants:
         self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
         self.part_of_foot_fraction, self.machine_scale_times_plane = part_of_foot_fraction, machine_scale_times_plane
         self.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding
+        self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
         self.part_of_type2_arms_aligned = part_of_type2_arms_aligned
         self.arm_length_1_times_arm_length_2 = arm_length_1_times_arm_length_2
-        self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
 
 
 class P2XType1(OffsetKinematics):

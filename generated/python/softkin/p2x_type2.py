@@ -58,15 +58,15 @@ class Constants:
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
         machine_scale_times_plane = 1e-6 * machine_scale
         part_of_constant = 2.5e-13 * arm_length * arm_length
-        assembly_sign_by_arm_length = assembly_sign / arm_length
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        assembly_sign_by_arm_length = assembly_sign / arm_length
         self.arm_length, self.tcp_link_distance, self.offset_a1 = arm_length, tcp_link_distance, offset_a1
         self.offset_a2, self.min_type2_margin, self.assembly_sign = offset_a2, min_type2_margin, assembly_sign
         self.span_1_x, self.machine_scale_times_rounding = span_1_x, machine_scale_times_rounding
         self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
         self.machine_scale_times_plane, self.part_of_constant = machine_scale_times_plane, part_of_constant
-        self.assembly_sign_by_arm_length = assembly_sign_by_arm_length
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
+        self.assembly_sign_by_arm_length = assembly_sign_by_arm_length
 
 
 class P2XType2(OffsetKinematics):

@@ -92,8 +92,12 @@ class PCC(OffsetKinematics):
         Parameter.of("angle", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
         Parameter.of("angle", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
         Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
-        Parameter.of("angle", "lower_elbow", "lower limit of the angle between the arms, both 0: no limit"),
-        Parameter.of("angle", "upper_elbow", "upper limit of the angle between the arms, both 0: no limit"),
+        Parameter.of(
+            "angle", "lower_elbow", "lower limit of the outer arm relative to the inner arm, both 0: no limit"
+        ),
+        Parameter.of(
+            "angle", "upper_elbow", "upper limit of the outer arm relative to the inner arm, both 0: no limit"
+        ),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
@@ -136,8 +140,8 @@ class PCC(OffsetKinematics):
         upper_a1: A1: upper limit of the axis, both 0: no limit [deg]
         lower_a2: A2: lower limit of the axis, both 0: no limit [deg]
         upper_a2: A2: upper limit of the axis, both 0: no limit [deg]
-        lower_elbow: lower limit of the angle between the arms, both 0: no limit [deg]
-        upper_elbow: upper limit of the angle between the arms, both 0: no limit [deg]
+        lower_elbow: lower limit of the outer arm relative to the inner arm, both 0: no limit [deg]
+        upper_elbow: upper limit of the outer arm relative to the inner arm, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         """
         self._accept(locals())
@@ -226,8 +230,7 @@ class PCC(OffsetKinematics):
             * sigma_elbow
             / divisor_of_cos_a2_from_a1
         )
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
             arm_across_a1 = link_length_2 * sin_a2_from_a1
@@ -264,10 +267,10 @@ class PCC(OffsetKinematics):
             return beyond_turn("A2", axis_a2, lowest_a2, highest_a2)
         a1 = DEGREE * (axis_a1 - offset_a1)
         a2 = DEGREE * (axis_a2 - offset_a2)
-        value_elbow = (a2 - a1) / DEGREE  # the angle between the arms
+        value_elbow = (a2 - a1) / DEGREE  # the outer arm relative to the inner arm
         if not lowest_elbow <= value_elbow <= highest_elbow:
             return beyond(
-                "the angle between the arms",
+                "the outer arm relative to the inner arm",
                 value_elbow,
                 lowest_elbow,
                 highest_elbow,
@@ -378,8 +381,7 @@ class PCC(OffsetKinematics):
             * sigma_elbow
             / divisor_of_cos_a2_from_a1
         )
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
             arm_across_a1 = link_length_2 * sin_a2_from_a1

@@ -171,7 +171,7 @@ class Polar(Mechanism):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y
@@ -273,7 +273,7 @@ class Polar(Mechanism):
         if not (abs(z) <= machine_scale_times_plane):
             return None
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y

@@ -175,7 +175,7 @@ class PolarZ(Mechanism):
         if not are_usable(x, y, z, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y
@@ -282,7 +282,7 @@ class PolarZ(Mechanism):
         machine_scale_times_free_angle, offset_c, offset_r = k.machine_scale_times_free_angle, k.offset_c, k.offset_r
         offset_z = k.offset_z
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y

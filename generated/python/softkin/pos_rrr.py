@@ -62,30 +62,31 @@ class Constants:
         effective_q3_2 = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
         rounding_q1 = 1e-34 * machine_scale * machine_scale  # rounding error of a squared length
         size_q1_for_q3_2 = 2.0 * abs(effective_q3_2) * a2
-        d4_by_effective_q3_2 = d4 / effective_q3_2
-        a3_by_effective_q3_2 = a3 / effective_q3_2
         a2_squared = a2 * a2
         size_q1_for_q3_2_times_rounding = 1e-12 * size_q1_for_q3_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
         machine_scale_times_rounding = 1e-12 * machine_scale
+        a2_times_shortest_link = 1e-9 * a2
+        d4_by_effective_q3_2 = d4 / effective_q3_2
+        a3_by_effective_q3_2 = a3 / effective_q3_2
         a2_squared_plus_effective_q3_2_squared = a2_squared + effective_q3_2 * effective_q3_2
         twice_d3 = 2.0 * d3
         a2_plus_effective_q3_2 = a2 + effective_q3_2
         a2_minus_effective_q3_2 = a2 - effective_q3_2
-        a2_times_shortest_link = 1e-9 * a2
         twice_a2 = 2.0 * a2
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.offset_a1 = d1, a1, a2, d3, a3, d4, offset_a1
         self.offset_a2, self.offset_a3, self.machine_scale = offset_a2, offset_a3, machine_scale
         self.effective_q3_2, self.rounding_q1, self.size_q1_for_q3_2 = effective_q3_2, rounding_q1, size_q1_for_q3_2
-        self.d4_by_effective_q3_2, self.a3_by_effective_q3_2 = d4_by_effective_q3_2, a3_by_effective_q3_2
         self.a2_squared, self.size_q1_for_q3_2_times_rounding = a2_squared, size_q1_for_q3_2_times_rounding
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
         self.machine_scale_times_rounding = machine_scale_times_rounding
+        self.a2_times_shortest_link, self.d4_by_effective_q3_2 = a2_times_shortest_link, d4_by_effective_q3_2
+        self.a3_by_effective_q3_2 = a3_by_effective_q3_2
         self.a2_squared_plus_effective_q3_2_squared, self.twice_d3 = a2_squared_plus_effective_q3_2_squared, twice_d3
         self.a2_plus_effective_q3_2, self.a2_minus_effective_q3_2 = a2_plus_effective_q3_2, a2_minus_effective_q3_2
-        self.a2_times_shortest_link, self.twice_a2 = a2_times_shortest_link, twice_a2
+        self.twice_a2 = twice_a2
 
 
 class PosRRR(OffsetKinematics):
@@ -278,7 +279,7 @@ class PosRRR(OffsetKinematics):
         wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - d3 * y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + d3 * x) / distance_q1_squared
@@ -286,7 +287,7 @@ class PosRRR(OffsetKinematics):
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3 = cos(reference_a1)
             sin_q1_before_q1_for_q3 = sin(reference_a1)
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         if ahead_squared_q1 > machine_scale_squared_times_plane:
             ahead_q1 = ahead_q1_before_q1_for_q3
             cos_q1 = cos_q1_before_q1_for_q3
@@ -299,14 +300,14 @@ class PosRRR(OffsetKinematics):
                 + wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
                 - a2_squared_plus_effective_q3_2_squared
             )
-            # turned, within rounding, to where q3 has a solution
+            # turned so that q3 has a solution
             if abs(value_q1_for_q3) <= size_q1_for_q3_2:
                 ahead_q1 = ahead_q1_before_q1_for_q3
                 cos_q1 = cos_q1_before_q1_for_q3
                 sin_q1 = sin_q1_before_q1_for_q3
             else:
                 rate_q1_for_q3 = -twice_d3 * wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
-                # turn of q1 to the bound, to first order
+                # turn of q1 to first order
                 if abs(rate_q1_for_q3) > size_q1_for_q3_2_times_rounding:
                     excess_q1_for_q3 = (
                         value_q1_for_q3 - size_q1_for_q3_2
@@ -326,16 +327,13 @@ class PosRRR(OffsetKinematics):
                 )
                 # residual of the equation of q1
                 turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3 * y - turned_sin_q1_for_q3 * x)
-                # turned, within rounding, to where q3 has a solution
+                # turned so that q3 has a solution
                 if turned_cost_q1_for_q3 > machine_scale_times_rounding:
                     ahead_q1 = ahead_q1_before_q1_for_q3
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
                 else:
-                    turned_ahead_q1_for_q3 = (
-                        ahead_q1_before_q1_for_q3 - d3 * turn_q1_for_q3
-                    ) * one_by_turned_length_q1_for_q3
-                    ahead_q1 = turned_ahead_q1_for_q3
+                    ahead_q1 = (ahead_q1_before_q1_for_q3 - d3 * turn_q1_for_q3) * one_by_turned_length_q1_for_q3
                     cos_q1 = turned_cos_q1_for_q3
                     sin_q1 = turned_sin_q1_for_q3
         wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
@@ -370,8 +368,7 @@ class PosRRR(OffsetKinematics):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3_2 * sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
@@ -571,7 +568,7 @@ class PosRRR(OffsetKinematics):
         wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - tool_z * y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + tool_z * x) / distance_q1_squared
@@ -579,7 +576,7 @@ class PosRRR(OffsetKinematics):
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3 = cos(reference_a1)
             sin_q1_before_q1_for_q3 = sin(reference_a1)
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         if ahead_squared_q1 > machine_scale_squared_times_plane:
             ahead_q1 = ahead_q1_before_q1_for_q3
             cos_q1 = cos_q1_before_q1_for_q3
@@ -594,14 +591,14 @@ class PosRRR(OffsetKinematics):
                 - effective_q3 * effective_q3
             )
             size_q1_for_q3 = abs(effective_q3) * twice_a2
-            # turned, within rounding, to where q3 has a solution
+            # turned so that q3 has a solution
             if abs(value_q1_for_q3) <= size_q1_for_q3:
                 ahead_q1 = ahead_q1_before_q1_for_q3
                 cos_q1 = cos_q1_before_q1_for_q3
                 sin_q1 = sin_q1_before_q1_for_q3
             else:
                 rate_q1_for_q3 = -2.0 * tool_z * wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
-                # turn of q1 to the bound, to first order
+                # turn of q1 to first order
                 if abs(rate_q1_for_q3) > 1e-12 * size_q1_for_q3:
                     excess_q1_for_q3 = (
                         value_q1_for_q3 - size_q1_for_q3 if value_q1_for_q3 > 0.0 else size_q1_for_q3 + value_q1_for_q3
@@ -619,16 +616,13 @@ class PosRRR(OffsetKinematics):
                 )
                 # residual of the equation of q1
                 turned_cost_q1_for_q3 = abs(tool_z + turned_cos_q1_for_q3 * y - turned_sin_q1_for_q3 * x)
-                # turned, within rounding, to where q3 has a solution
+                # turned so that q3 has a solution
                 if turned_cost_q1_for_q3 > machine_scale_times_rounding:
                     ahead_q1 = ahead_q1_before_q1_for_q3
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
                 else:
-                    turned_ahead_q1_for_q3 = (
-                        ahead_q1_before_q1_for_q3 - tool_z * turn_q1_for_q3
-                    ) * one_by_turned_length_q1_for_q3
-                    ahead_q1 = turned_ahead_q1_for_q3
+                    ahead_q1 = (ahead_q1_before_q1_for_q3 - tool_z * turn_q1_for_q3) * one_by_turned_length_q1_for_q3
                     cos_q1 = turned_cos_q1_for_q3
                     sin_q1 = turned_sin_q1_for_q3
         wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
@@ -669,8 +663,7 @@ class PosRRR(OffsetKinematics):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = (tool_x * cos_swing_q3 + tool_y * sin_swing_q3) / effective_q3
         sin_q3 = (tool_x * sin_swing_q3 - tool_y * cos_swing_q3) / effective_q3
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = tool_y * cos_q3 + tool_x * sin_q3
             arm_across_q2 = a2 + tool_x * cos_q3 - tool_y * sin_q3

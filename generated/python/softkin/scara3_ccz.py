@@ -58,15 +58,15 @@ class Constants:
         self.lowest_a3, self.highest_a3, *_ = machine._window("a3")
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
         machine_scale_times_free_angle = 1e-11 * machine_scale
+        link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        link_length_1_times_shortest_link = 1e-9 * link_length_1
         self.link_length_1, self.link_length_2, self.offset_a1 = link_length_1, link_length_2, offset_a1
         self.offset_a2, self.offset_a3, self.machine_scale = offset_a2, offset_a3, machine_scale
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
+        self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
-        self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
 
 
 class Scara3CCZ(OffsetKinematics):
@@ -223,8 +223,7 @@ class Scara3CCZ(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2 * cos_a2
             arm_across_a1 = link_length_2 * sin_a2
@@ -372,8 +371,7 @@ class Scara3CCZ(OffsetKinematics):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + point_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - point_y * cos_swing_a2) / effective_a2
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + tool_x * cos_a2 - point_y * sin_a2
             arm_across_a1 = point_y * cos_a2 + tool_x * sin_a2

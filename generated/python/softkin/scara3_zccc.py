@@ -67,15 +67,15 @@ class Constants:
         self.lowest_a4, self.highest_a4, self.single_a4, self.mid_a4 = machine._window("a4")
         machine_scale = link_length_1 + link_length_2 + link_length_3  # characteristic length of the machine
         machine_scale_times_free_angle = 1e-11 * machine_scale
+        link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        link_length_1_times_shortest_link = 1e-9 * link_length_1
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.machine_scale, self.machine_scale_times_free_angle = machine_scale, machine_scale_times_free_angle
+        self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
-        self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
 
 
 class Scara3ZCCC(OffsetKinematics, TwistChoice):
@@ -265,8 +265,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         axis_a1 = offset_a1 + z
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a3
-        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a2 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2 * cos_a3
             arm_across_a2 = link_length_2 * sin_a3
@@ -463,8 +462,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (tool_x * cos_swing_a3 + tool_y * sin_swing_a3) / effective_a3
         sin_a3 = (tool_x * sin_swing_a3 - tool_y * cos_swing_a3) / effective_a3
-        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a2 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + tool_x * cos_a3 - tool_y * sin_a3
             arm_across_a2 = tool_y * cos_a3 + tool_x * sin_a3

@@ -74,21 +74,21 @@ class Constants:
         )
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
         part_of_constant = -1.0 if flange_down else 1.0
-        part_of_z = (gear_coupling - pitch_zc / 360.0) / DEGREE
         machine_scale_times_free_angle = 1e-11 * machine_scale
+        part_of_constant_2 = gear_coupling / DEGREE - pitch_zc / (360.0 * DEGREE)
+        link_length_1_times_shortest_link = 1e-9 * link_length_1
+        part_of_z = (gear_coupling - pitch_zc / 360.0) / DEGREE
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        part_of_constant_2 = pitch_zc / (360.0 * DEGREE) - gear_coupling / DEGREE
-        link_length_1_times_shortest_link = 1e-9 * link_length_1
         self.link_length_1, self.link_length_2, self.pitch_zc = link_length_1, link_length_2, pitch_zc
         self.gear_coupling, self.flange_down, self.offset_a1 = gear_coupling, flange_down, offset_a1
         self.offset_a2, self.offset_a3, self.offset_a4 = offset_a2, offset_a3, offset_a4
-        self.machine_scale, self.part_of_constant, self.part_of_z = machine_scale, part_of_constant, part_of_z
+        self.machine_scale, self.part_of_constant = machine_scale, part_of_constant
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
+        self.part_of_constant_2 = part_of_constant_2
+        self.link_length_1_times_shortest_link, self.part_of_z = link_length_1_times_shortest_link, part_of_z
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
-        self.part_of_constant_2 = part_of_constant_2
-        self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
 
 
 class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
@@ -311,8 +311,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2 * cos_a2
             arm_across_a1 = link_length_2 * sin_a2
@@ -393,7 +392,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         return (
             (-link_length_2_times_sin_a12 - link_length_1 * sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
             (cos_a12_times_link_length_2 + link_length_1 * cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
-            (0.0, 0.0, 1.0, -part_of_constant_2),
+            (0.0, 0.0, 1.0, part_of_constant_2),
             (1.0, 1.0, 0.0, 1.0),
         )
 
@@ -427,7 +426,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         return (
             (-link_length_2_times_sin_a12 - link_length_1 * sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
             (cos_a12_times_link_length_2 + link_length_1 * cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
-            (0.0, 0.0, 1.0, -part_of_constant_2),
+            (0.0, 0.0, 1.0, part_of_constant_2),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 1.0, 0.0, 1.0),
@@ -523,8 +522,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + tool_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - tool_y * cos_swing_a2) / effective_a2
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + tool_x * cos_a2 - tool_y * sin_a2
             arm_across_a1 = tool_y * cos_a2 + tool_x * sin_a2

@@ -72,27 +72,27 @@ class Constants:
         machine_scale = link_length_1 + link_length_2 + link_length_3  # characteristic length of the machine
         machine_scale_times_plane = 1e-6 * machine_scale
         machine_scale_times_free_angle = 1e-11 * machine_scale
+        coupling_12_plus_coupling_13_plus_one = 1.0 + coupling_12 + coupling_13
+        coupling_23_plus_one = 1.0 + coupling_23
+        link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         part_of_open_a2 = coupling_12 / DEGREE
-        coupling_12_plus_coupling_13_plus_one = 1.0 + coupling_12 + coupling_13
-        coupling_23_plus_one = 1.0 + coupling_23
         part_of_constant = link_length_3 + (coupling_12 + coupling_13) * link_length_3
         part_of_constant_2 = link_length_2 + coupling_12 * link_length_2
         part_of_constant_3 = link_length_3 + coupling_23 * link_length_3
-        link_length_1_times_shortest_link = 1e-9 * link_length_1
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
         self.coupling_12, self.coupling_13, self.coupling_23 = coupling_12, coupling_13, coupling_23
         self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
         self.machine_scale, self.machine_scale_times_plane = machine_scale, machine_scale_times_plane
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
+        self.coupling_12_plus_coupling_13_plus_one = coupling_12_plus_coupling_13_plus_one
+        self.coupling_23_plus_one = coupling_23_plus_one
+        self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
-        self.part_of_open_a2 = part_of_open_a2
-        self.coupling_12_plus_coupling_13_plus_one = coupling_12_plus_coupling_13_plus_one
-        self.coupling_23_plus_one, self.part_of_constant = coupling_23_plus_one, part_of_constant
+        self.part_of_open_a2, self.part_of_constant = part_of_open_a2, part_of_constant
         self.part_of_constant_2, self.part_of_constant_3 = part_of_constant_2, part_of_constant_3
-        self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
 
 
 class SCCC(OffsetKinematics, TwistChoice):
@@ -302,8 +302,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2 * cos_a2
             arm_across_a1 = link_length_2 * sin_a2
@@ -328,9 +327,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2) * DEGREE
             reference_a2 = ref_motor_a2 + coupling_12 * reference_a1
-            # A2: without a commanded turn, the value nearest to this
-            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + reference_a2 / DEGREE
-            near_a2 = open_a2
+            near_a2 = mid_a2 if single_a2 else part_of_axis_a2 + reference_a2 / DEGREE
         axis_a2 = part_of_axis_a2 + angle_a2 / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
@@ -344,12 +341,11 @@ class SCCC(OffsetKinematics, TwistChoice):
             ref_motor_a2 = (ref_a2 - offset_a2) * DEGREE
             # A3: without a commanded turn, the value nearest to this
             if single_a3:
-                open_a3 = mid_a3
+                near_a3 = mid_a3
             else:
                 ref_motor_a3 = (ref_a3 - offset_a3) * DEGREE
                 reference_a3 = ref_motor_a3 + coupling_13 * reference_a1 + coupling_23 * ref_motor_a2
-                open_a3 = offset_a3 + (reference_a3 - part_of_axis_a3) / DEGREE
-            near_a3 = open_a3
+                near_a3 = offset_a3 + (reference_a3 - part_of_axis_a3) / DEGREE
         # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
         axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2 - part_of_axis_a3) / DEGREE
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
@@ -586,8 +582,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + tool_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - tool_y * cos_swing_a2) / effective_a2
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + tool_x * cos_a2 - tool_y * sin_a2
             arm_across_a1 = tool_y * cos_a2 + tool_x * sin_a2
@@ -607,9 +602,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2)
         else:
             reference_a2 = ref_motor_a2 + coupling_12 * reference_a1
-            # A2: without a commanded turn, the value nearest to this
-            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + reference_a2 / DEGREE
-            near_a2 = open_a2
+            near_a2 = mid_a2 if single_a2 else part_of_axis_a2 + reference_a2 / DEGREE
         axis_a2 = part_of_axis_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)

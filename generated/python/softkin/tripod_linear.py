@@ -75,6 +75,7 @@ class Constants:
         part_of_normal_divisor = 1e-22 * arm_length * arm_length * arm_length * arm_length
         arm_length_squared = arm_length * arm_length
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
+        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
         root_of_3 = root(3.0)
         part_of_pivot_2_y = 0.5 * root_of_3 * sin_rail_angle
         part_of_pivot_2_y_2 = 0.5 * inner_radius * root_of_3 - 0.5 * outer_radius * root_of_3
@@ -99,7 +100,6 @@ class Constants:
         one_minus_sin_rail_angle_squared = 1.0 - sin_rail_angle * sin_rail_angle
         part_of_radicand_a2_3 = 1.0 - 0.75 * sin_rail_angle * sin_rail_angle
         part_of_margin_rods_coplanar = arm_length * arm_length * arm_length
-        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
         twice_sin_rail_angle = 2.0 * sin_rail_angle
         part_of_slope_1_by_x = 2.0 * inner_radius - 2.0 * outer_radius
         self.outer_radius, self.inner_radius, self.arm_length = outer_radius, inner_radius, arm_length
@@ -109,7 +109,8 @@ class Constants:
         self.sin_max_angle_ball_joint, self.part_of_normal_divisor = sin_max_angle_ball_joint, part_of_normal_divisor
         self.arm_length_squared = arm_length_squared
         self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
-        self.part_of_pivot_2_y, self.part_of_pivot_2_y_2 = part_of_pivot_2_y, part_of_pivot_2_y_2
+        self.part_of_determinant_divisor, self.part_of_pivot_2_y = part_of_determinant_divisor, part_of_pivot_2_y
+        self.part_of_pivot_2_y_2 = part_of_pivot_2_y_2
         self.inner_radius_minus_outer_radius = inner_radius_minus_outer_radius
         self.half_sin_rail_angle, self.part_of_pivot_2_x = half_sin_rail_angle, part_of_pivot_2_x
         self.sin_rail_angle_times_root_of_3 = sin_rail_angle_times_root_of_3
@@ -127,8 +128,7 @@ class Constants:
         self.one_minus_sin_rail_angle_squared = one_minus_sin_rail_angle_squared
         self.part_of_radicand_a2_3 = part_of_radicand_a2_3
         self.part_of_margin_rods_coplanar = part_of_margin_rods_coplanar
-        self.part_of_determinant_divisor, self.twice_sin_rail_angle = part_of_determinant_divisor, twice_sin_rail_angle
-        self.part_of_slope_1_by_x = part_of_slope_1_by_x
+        self.twice_sin_rail_angle, self.part_of_slope_1_by_x = twice_sin_rail_angle, part_of_slope_1_by_x
 
 
 class TripodLinear(OffsetKinematics):
@@ -497,10 +497,10 @@ class TripodLinear(OffsetKinematics):
         rod_3_y = span_3_y - a3 * part_of_pivot_2_y
         pivot_3_z = -a3 * cos_rail_angle
         rod_3_z = z - pivot_3_z
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
-            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
-            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
+        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+            + (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
@@ -905,10 +905,13 @@ class TripodLinear(OffsetKinematics):
         pivot_3_z = -a3 * cos_rail_angle
         rod_3_z = flange_z - pivot_3_z
         type2_rods_coplanar = (
-            (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * flange_y
-            + rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
-            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
-        ) * part_of_type2_rods_coplanar
+            -(
+                flange_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
+                + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+                + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+            )
+            * part_of_type2_rods_coplanar
+        )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar

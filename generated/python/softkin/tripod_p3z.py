@@ -165,6 +165,7 @@ class Constants:
         centre_1_to_2_x_times_normal_z = centre_1_to_2_x * normal_z
         arm_length_squared = arm_length * arm_length
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
+        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
         part_of_projection_2 = 0.5 * centre_1_to_2_x * centre_1_to_2_x + 0.5 * centre_1_to_2_y * centre_1_to_2_y
         part_of_projection_3 = 0.5 * centre_1_to_3_x * centre_1_to_3_x + 0.5 * centre_1_to_3_y * centre_1_to_3_y
         one_by_arm_length = 1.0 / arm_length
@@ -179,7 +180,6 @@ class Constants:
         part_of_span_3_y = rail_y_3 - rail_y_3 * tcp_displacement / part_of_span_3_x_2
         part_of_type2_rods_coplanar = assembly_sign / (arm_length * arm_length * arm_length)
         part_of_margin_rods_coplanar = arm_length * arm_length * arm_length
-        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
         part_of_slope_1_by_x_2 = tcp_displacement / part_of_span_1_x_2 - 1.0
         part_of_slope_1_by_x = -part_of_slope_1_by_x_2 * rail_x_1
         part_of_slope_1_by_y = -part_of_slope_1_by_x_2 * rail_y_1
@@ -204,16 +204,16 @@ class Constants:
         self.centre_1_to_2_x_times_normal_z = centre_1_to_2_x_times_normal_z
         self.arm_length_squared = arm_length_squared
         self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
-        self.part_of_projection_2, self.part_of_projection_3 = part_of_projection_2, part_of_projection_3
-        self.one_by_arm_length, self.part_of_span_1_x = one_by_arm_length, part_of_span_1_x
-        self.part_of_span_1_y, self.part_of_span_2_x = part_of_span_1_y, part_of_span_2_x
-        self.part_of_span_2_y, self.part_of_span_3_x = part_of_span_2_y, part_of_span_3_x
-        self.part_of_span_3_y, self.part_of_type2_rods_coplanar = part_of_span_3_y, part_of_type2_rods_coplanar
+        self.part_of_determinant_divisor, self.part_of_projection_2 = part_of_determinant_divisor, part_of_projection_2
+        self.part_of_projection_3, self.one_by_arm_length = part_of_projection_3, one_by_arm_length
+        self.part_of_span_1_x, self.part_of_span_1_y = part_of_span_1_x, part_of_span_1_y
+        self.part_of_span_2_x, self.part_of_span_2_y = part_of_span_2_x, part_of_span_2_y
+        self.part_of_span_3_x, self.part_of_span_3_y = part_of_span_3_x, part_of_span_3_y
+        self.part_of_type2_rods_coplanar = part_of_type2_rods_coplanar
         self.part_of_margin_rods_coplanar = part_of_margin_rods_coplanar
-        self.part_of_determinant_divisor, self.part_of_slope_1_by_x = part_of_determinant_divisor, part_of_slope_1_by_x
-        self.part_of_slope_1_by_y, self.part_of_slope_2_by_x = part_of_slope_1_by_y, part_of_slope_2_by_x
-        self.part_of_slope_2_by_y, self.part_of_slope_3_by_x = part_of_slope_2_by_y, part_of_slope_3_by_x
-        self.part_of_slope_3_by_y = part_of_slope_3_by_y
+        self.part_of_slope_1_by_x, self.part_of_slope_1_by_y = part_of_slope_1_by_x, part_of_slope_1_by_y
+        self.part_of_slope_2_by_x, self.part_of_slope_2_by_y = part_of_slope_2_by_x, part_of_slope_2_by_y
+        self.part_of_slope_3_by_x, self.part_of_slope_3_by_y = part_of_slope_3_by_x, part_of_slope_3_by_y
 
 
 class TripodP3Z(OffsetKinematics):

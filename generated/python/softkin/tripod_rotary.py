@@ -92,21 +92,21 @@ class Constants:
         part_of_normal_divisor = 1e-22 * arm_length_2 * arm_length_2 * arm_length_2 * arm_length_2
         arm_length_2_squared = arm_length_2 * arm_length_2
         arm_length_2_squared_times_rounding = 1e-12 * arm_length_2 * arm_length_2
+        arm_length_1_times_shortest_link = 1e-9 * arm_length_1
+        fixed_length_1_minus_arm_1_radius = fixed_length_1 - arm_1_radius
+        part_of_scaled_cosine_a1 = 2.0 * arm_length_1 * fixed_length_1_minus_arm_1_radius
+        part_of_divisor_a2 = 5e-10 * arm_length_1
+        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
         root_of_3 = root(3.0)
         arm_length_1_times_root_of_3_times_half = 0.5 * arm_length_1 * root_of_3
         part_of_pivot_2_y = 0.5 * fixed_length_1 * root_of_3 - 0.5 * arm_1_radius * root_of_3
-        fixed_length_1_minus_arm_1_radius = fixed_length_1 - arm_1_radius
         half_arm_length_1 = 0.5 * arm_length_1
         part_of_pivot_2_x = 0.5 * arm_1_radius - 0.5 * fixed_length_1
         half_by_arm_length_2 = 0.5 / arm_length_2
-        arm_length_1_times_shortest_link = 1e-9 * arm_length_1
-        part_of_scaled_cosine_a1 = 2.0 * arm_length_1 * fixed_length_1_minus_arm_1_radius
-        part_of_divisor_a2 = 5e-10 * arm_length_1
         twice_arm_length_1 = 2.0 * arm_length_1
         part_of_type2_rods_coplanar = assembly_sign / (arm_length_2 * arm_length_2 * arm_length_2)
         root_of_3_times_half_by_arm_length_2 = 0.5 * root_of_3 / arm_length_2
         part_of_margin_rods_coplanar = arm_length_2 * arm_length_2 * arm_length_2
-        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
         part_of_slope_1_by_x = 2.0 * fixed_length_1 - 2.0 * arm_1_radius
         arm_length_1_times_root_of_3 = arm_length_1 * root_of_3
         self.arm_length_1, self.arm_length_2, self.arm_1_radius = arm_length_1, arm_length_2, arm_1_radius
@@ -116,17 +116,17 @@ class Constants:
         self.sin_max_angle_ball_joint, self.part_of_normal_divisor = sin_max_angle_ball_joint, part_of_normal_divisor
         self.arm_length_2_squared = arm_length_2_squared
         self.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding
-        self.arm_length_1_times_root_of_3_times_half = arm_length_1_times_root_of_3_times_half
-        self.part_of_pivot_2_y = part_of_pivot_2_y
-        self.fixed_length_1_minus_arm_1_radius = fixed_length_1_minus_arm_1_radius
-        self.half_arm_length_1, self.part_of_pivot_2_x = half_arm_length_1, part_of_pivot_2_x
-        self.half_by_arm_length_2 = half_by_arm_length_2
         self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
+        self.fixed_length_1_minus_arm_1_radius = fixed_length_1_minus_arm_1_radius
         self.part_of_scaled_cosine_a1, self.part_of_divisor_a2 = part_of_scaled_cosine_a1, part_of_divisor_a2
+        self.part_of_determinant_divisor = part_of_determinant_divisor
+        self.arm_length_1_times_root_of_3_times_half = arm_length_1_times_root_of_3_times_half
+        self.part_of_pivot_2_y, self.half_arm_length_1 = part_of_pivot_2_y, half_arm_length_1
+        self.part_of_pivot_2_x, self.half_by_arm_length_2 = part_of_pivot_2_x, half_by_arm_length_2
         self.twice_arm_length_1, self.part_of_type2_rods_coplanar = twice_arm_length_1, part_of_type2_rods_coplanar
         self.root_of_3_times_half_by_arm_length_2 = root_of_3_times_half_by_arm_length_2
         self.part_of_margin_rods_coplanar = part_of_margin_rods_coplanar
-        self.part_of_determinant_divisor, self.part_of_slope_1_by_x = part_of_determinant_divisor, part_of_slope_1_by_x
+        self.part_of_slope_1_by_x = part_of_slope_1_by_x
         self.arm_length_1_times_root_of_3 = arm_length_1_times_root_of_3
 
 
@@ -592,10 +592,10 @@ class TripodRotary(OffsetKinematics):
         rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half * cos_a3
         sin_a3 = (along_a3 * sin_swing_a3 - across_a2 * cos_swing_a3) / effective_a3
         rod_3_z = span_1_z + arm_length_1 * sin_a3
-        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
-            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
-            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
-            + (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
@@ -1103,13 +1103,10 @@ class TripodRotary(OffsetKinematics):
         sin_a3 = (along_a3 * sin_swing_a3 - across_a2 * cos_swing_a3) / effective_a3
         rod_3_z = span_1_z + arm_length_1 * sin_a3
         type2_rods_coplanar = (
-            -(
-                flange_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
-                + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
-                + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
-            )
-            * part_of_type2_rods_coplanar
-        )
+            (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * flange_y
+            + rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar

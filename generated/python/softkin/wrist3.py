@@ -221,8 +221,7 @@ class Wrist3(OrientationKinematics):
         if not are_usable(ref_a, ref_b, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
-        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the
-        # reference
+        # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
         if radius_c > 1e-11:
             direction_x_c = sigma_hand * r31
             direction_y_c = -sigma_hand * r32

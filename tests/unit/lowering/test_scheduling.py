@@ -48,7 +48,7 @@ def test_choices_by_one_condition_are_gathered_with_what_they_alone_need() -> No
         Let(D, X + 1),
         Let(E, Select(REGULAR, D / R, B + 1)),
     ]
-    assert shape(scheduled(body, [C, E])) == [(REGULAR, [A, C, D, E], [B, C, E])]
+    assert shape(scheduled(body, [C, E])) == [(REGULAR, [A, C, D, E], [C, E])]
 
 
 def test_what_is_read_elsewhere_stays_before() -> None:
@@ -62,6 +62,12 @@ def test_a_name_for_a_name_disappears_where_nobody_else_reads_it() -> None:
     assert isinstance(arms, If)
     assert arms.holds == (Let(B, X / R), Let(C, Y / R))
     assert arms.fails == (Let(B, Y), Let(C, X))
+
+
+def test_a_result_is_no_copy_of_what_its_side_computes() -> None:
+    body = [Let(A, sp.sin(X)), Let(B, Select(REGULAR, A, Y)), Let(C, Select(REGULAR, A + 1, X))]
+    (choice,) = scheduled(body, [B, C])
+    assert isinstance(choice, If) and choice.holds == (Let(B, sp.sin(X)), Let(C, B + 1))
 
 
 def test_a_negative_is_taken_from_what_has_been_computed() -> None:
@@ -134,7 +140,7 @@ def test_choices_on_both_sides_of_a_refusal_are_one_where_the_first_stands() -> 
     program = refusing(
         Let(A, Select(REGULAR, X, Y)), Require(sp.Gt(A, 0), Status.UNREACHABLE), Let(C, sp.sin(X)), Let(B, Select(REGULAR, Y, C))
     )
-    assert shape(structured(program)) == [(REGULAR, [A, B], [A, C, B]), "require"]
+    assert shape(structured(program)) == [(REGULAR, [A, B], [A, B]), "require"]
 
 
 def test_a_choice_waits_for_what_it_needs() -> None:
@@ -153,7 +159,7 @@ def test_what_a_later_choice_needs_does_not_go_before_an_earlier_one() -> None:
         Let(B, Select(REGULAR, A, C)),
         Let(E, Select(REGULAR, D, C + 1)),
     ]
-    assert shape(scheduled(body, [A, B, D, E])) == [(NEAR, [A, D], [A, D]), (REGULAR, [B, E], [C, B, E])]
+    assert shape(scheduled(body, [A, B, D, E])) == [(NEAR, [A, D], [A, D]), (REGULAR, [B, E], [B, E])]
 
 
 def test_a_side_runs_alone() -> None:
@@ -161,4 +167,5 @@ def test_a_side_runs_alone() -> None:
     program = refusing(Let(C, sp.sin(Y)), Let(A, Select(REGULAR, X, C)), Let(B, Select(REGULAR, Y, C + 1)))
     assert cost_of(program).trigonometric == 1
     (choice,) = structured(program)
-    assert isinstance(choice, If) and shape(choice.holds) == [A, B] and shape(choice.fails) == [C, A, B]
+    assert isinstance(choice, If) and choice.fails == (Let(A, sp.sin(Y)), Let(B, A + 1))
+    assert choice.holds == (Let(A, X), Let(B, Y))

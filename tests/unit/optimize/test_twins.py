@@ -1,4 +1,4 @@
-"""Twins and constant parts: the program before and after, and the same answers."""
+"""Twins: the program before and after, and the same answers."""
 
 from __future__ import annotations
 
@@ -7,14 +7,12 @@ import sympy as sp
 
 from derive.ir.constants import (
     DEGREE,
-    FREE_ANGLE,
 )
 from derive.ir.interpret import run
 from derive.ir.passes import assemble
 from derive.ir.primitives import (
     Atan2,
     NearestPeriod,
-    Root,
     Select,
 )
 from derive.ir.program import (
@@ -25,7 +23,6 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     real,
 )
-from derive.optimize.constant_parts import constant_parts
 from derive.optimize.symmetry import with_twins
 
 A, B, C, D, N, R, T, X, Y = (real(n) for n in "abcdnrtxy")
@@ -101,34 +98,3 @@ def test_an_angle_that_is_no_turn_is_left_alone() -> None:
     lets = [Let(AXIS_DOWN, Atan2(X, Y) / DEGREE), Let(AXIS_UP, Atan2(-X, -Y) / DEGREE)]
     program = assemble("single", lets, [Output("down", AXIS_DOWN + 1), Output("up", AXIS_UP + 1)])
     assert with_twins(program) == program
-
-
-def test_what_depends_on_constants_alone_is_computed_once() -> None:
-    value = (A + B - X) * Y / (C * C) + A * X / B + Select(sp.Gt(X, FREE_ANGLE * C), Root(X), A**2)
-    program = assemble("p", [Let(R, value)], [Output("o", R + A * B)])
-    (found,), parts = constant_parts([program], ["a", "b", "c"])
-    names = {let.name.name: let.value for let in parts}
-    assert {k: v for k, v in names.items() if "squared" not in k} == {
-        "a_plus_b": A + B,
-        "a_by_b": A / B,
-        "c_times_free_angle": C * FREE_ANGLE,
-        "a_times_b": A * B,
-    }
-    assert names["a_squared"] == A**2 and names["c_squared"] == C**2
-    same(program, assemble("p", [*parts, *found.body], found.outputs))
-
-
-def test_what_cannot_be_said_in_a_name_is_a_constant_part() -> None:
-    first, second = real("length_of_the_first_of_all_arms"), real("length_of_the_second_of_all_arms")
-    program = assemble("p", [Let(R, X + first * second)], [Output("o", R)])
-    (found,), (part,) = constant_parts([program], [first.name, second.name])
-    assert part == Let(real("constant_part"), first * second)
-    assert values(found) == {"r": X + real("constant_part")} or found.outputs[0].value == X + real("constant_part")
-
-
-def test_names_of_parts_are_free() -> None:
-    taken = Let(real("a_plus_b"), X * 3)
-    program = assemble("p", [taken, Let(R, (A + B) * Y + taken.name)], [Output("o", R)])
-    (found,), (part,) = constant_parts([program], ["a", "b"])
-    assert part.name == real("a_plus_b_2")
-    same(program, assemble("p", [part, *found.body], found.outputs))

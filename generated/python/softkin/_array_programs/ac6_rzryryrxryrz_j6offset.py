@@ -81,7 +81,7 @@ class ArrayPrograms(Programs):
             return (cos_q1_tried, sin_q1_tried, 0.0, 0.0)
 
         along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
-        slope_distance_q1_tried = select(
+        slope_length_q1_tried = select(
             distance_q1_tried > 0.0,
             (slope_wrist_x_tried * wrist_x_tried + slope_wrist_y_tried * wrist_y_tried)
             / select(distance_q1_tried > 0.0, distance_q1_tried, 1.0),
@@ -89,7 +89,7 @@ class ArrayPrograms(Programs):
         )
         holds = distance_q1_tried > k.machine_scale_times_free_angle
         length_q1_tried = select(holds, distance_q1_tried, 1.0)
-        slope_length_q1_tried = select(holds, slope_distance_q1_tried, 0.0)
+        slope_length_q1_tried = select(holds, slope_length_q1_tried, 0.0)
         one_by_distance_q1_tried = 1.0 / length_q1_tried
         cos_q1_tried = along_q1_tried * one_by_distance_q1_tried
         across_q1_tried = wanted_shoulder * wrist_y_tried
@@ -98,7 +98,7 @@ class ArrayPrograms(Programs):
         slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried * cos_q1_tried) * one_by_distance_q1_tried
         slope_across_q1_tried = wanted_shoulder * slope_wrist_y_tried
         slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried * sin_q1_tried) * one_by_distance_q1_tried
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried = elsewhere(
             (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
@@ -142,10 +142,10 @@ class ArrayPrograms(Programs):
         slope_one_plus_cos_q3_tried = (
             part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried
         ) * slope_reach_tried
-        slope_sum_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+        slope_divisor_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
         holds = sum_q3_tried > 0.0
         divisor_of_cos_q3_tried = select(holds, sum_q3_tried, 1.0)
-        slope_divisor_of_cos_q3_tried = select(holds, slope_sum_q3_tried, 0.0)
+        slope_divisor_of_cos_q3_tried = select(holds, slope_divisor_of_cos_q3_tried, 0.0)
         one_by_sum_q3_tried = 1.0 / divisor_of_cos_q3_tried
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_q3_tried
         sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
@@ -192,7 +192,7 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_tried = k.a3 * sin_q3_tried + k.d4 * cos_q3_tried
         arm_across_q2_tried = k.a2 + k.a3 * cos_q3_tried - k.d4 * sin_q3_tried
-        # rotation by q2 that takes the arm to the point that it must reach
+        # rotation by q2 that takes the arm to its target point
         along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
         across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
         part_of_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
@@ -210,16 +210,16 @@ class ArrayPrograms(Programs):
             - arm_along_q2_tried * slope_wrist_z_tried
             - slope_arm_along_q2_tried * wrist_z_from_q1_tried
         )
-        root_of_length_q2_tried = root(part_of_length_q2_tried)
-        slope_root_of_length_q2_tried = select(
-            root_of_length_q2_tried > 0.0,
+        length_q2_tried = root(part_of_length_q2_tried)
+        slope_length_q2_tried = select(
+            length_q2_tried > 0.0,
             (across_q2_tried * slope_across_q2_tried + along_q2_tried * slope_along_q2_tried)
-            / select(root_of_length_q2_tried > 0.0, root_of_length_q2_tried, 1.0),
+            / select(length_q2_tried > 0.0, length_q2_tried, 1.0),
             0.0,
         )
         holds = (part_of_length_q2_tried > 0.0) & (reach_tried > k.machine_scale_times_free_angle)
-        length_q2_tried = select(holds, root_of_length_q2_tried, 1.0)
-        slope_length_q2_tried = select(holds, slope_root_of_length_q2_tried, 0.0)
+        length_q2_tried = select(holds, length_q2_tried, 1.0)
+        slope_length_q2_tried = select(holds, slope_length_q2_tried, 0.0)
         one_by_root_of_length_q2_tried = 1.0 / length_q2_tried
         cos_q2_tried = along_q2_tried * one_by_root_of_length_q2_tried
         sin_q2_tried = across_q2_tried * one_by_root_of_length_q2_tried
@@ -229,7 +229,7 @@ class ArrayPrograms(Programs):
         slope_sin_q2_tried = (
             slope_across_q2_tried - slope_length_q2_tried * sin_q2_tried
         ) * one_by_root_of_length_q2_tried
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried = elsewhere(
             (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
@@ -329,7 +329,7 @@ class ArrayPrograms(Programs):
         cos_q1_tried = along_q1_tried / length_q1_tried
         across_q1_tried = wanted_shoulder * wrist_y_tried
         sin_q1_tried = across_q1_tried / length_q1_tried
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         cos_q1_tried, sin_q1_tried = elsewhere(
             (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried),
@@ -372,7 +372,7 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_tried = k.a3 * sin_q3_tried + k.d4 * cos_q3_tried
         arm_across_q2_tried = k.a2 + k.a3 * cos_q3_tried - k.d4 * sin_q3_tried
-        # rotation by q2 that takes the arm to the point that it must reach
+        # rotation by q2 that takes the arm to its target point
         along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
         across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
         part_of_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
@@ -383,7 +383,7 @@ class ArrayPrograms(Programs):
         )
         cos_q2_tried = along_q2_tried / length_q2_tried
         sin_q2_tried = across_q2_tried / length_q2_tried
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         cos_q2_tried, sin_q2_tried = elsewhere(
             (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried),
@@ -909,18 +909,16 @@ class ArrayPrograms(Programs):
             # wrist centre: the last joints do not move this point
             wrist_x_tried = wrist_x_closed + (r12_at_q6 * sin_q6 - r11_at_q6 * cos_q6) * k.j6_offset_x
             wrist_y_tried = wrist_y_closed + (r22_at_q6 * sin_q6 - r21_at_q6 * cos_q6) * k.j6_offset_x
-            margin_shoulder_tried = k.one_by_machine_scale * (wrist_x_tried * cos_q1 + wrist_y_tried * sin_q1)
-            branch_shoulder = margin_shoulder_tried
+            branch_shoulder = k.one_by_machine_scale * (wrist_x_tried * cos_q1 + wrist_y_tried * sin_q1)
             branch_wrist = select(k.size_of_j6_offset_x > 0.0, sin_q4, cos_q5) * k.one_by_machine_scale
             branch_crossing = (
-                -select(margin_elbow_closed >= 0.0, 1.0, -1.0)
-                * select(margin_shoulder_tried >= 0.0, 1.0, -1.0)
+                -select(branch_shoulder >= 0.0, 1.0, -1.0)
+                * select(margin_elbow_closed >= 0.0, 1.0, -1.0)
                 * determinant
                 * k.part_of_fits
             )
         else:
-            margin_shoulder_closed = k.one_by_machine_scale * (wrist_x_closed * cos_q1 + wrist_y_closed * sin_q1)
-            branch_shoulder = margin_shoulder_closed
+            branch_shoulder = k.one_by_machine_scale * (wrist_x_closed * cos_q1 + wrist_y_closed * sin_q1)
             branch_wrist = cos_q5
             branch_crossing = 1.0
         return (
@@ -1027,7 +1025,7 @@ class ArrayPrograms(Programs):
             cos_q1_closed = along_q1_closed / distance_q1_closed
             across_q1_closed = sigma_shoulder * wrist_y_closed
             sin_q1_closed = across_q1_closed / distance_q1_closed
-            # in the singularity: the angle of the reference
+            # if singular: that of the reference
             cos_q1_closed, sin_q1_closed = elsewhere(
                 distance_q1_closed > k.machine_scale_times_free_angle,
                 (cos_q1_closed, sin_q1_closed),
@@ -1046,7 +1044,7 @@ class ArrayPrograms(Programs):
 
             arm_along_q2_closed = k.effective_q3_tried * sin_swing_q3_closed
             arm_across_q2_closed = k.a2 + k.effective_q3_tried * cos_swing_q3_closed
-            # rotation by q2 that takes the arm to the point that it must reach
+            # rotation by q2 that takes the arm to its target point
             along_q2_closed = (
                 arm_across_q2_closed * wrist_z_from_q1_closed + arm_along_q2_closed * wrist_x_from_q1_closed
             )
@@ -1057,7 +1055,7 @@ class ArrayPrograms(Programs):
             length_q2_closed = select(part_of_length_q2_closed > 0.0, root(part_of_length_q2_closed), 1.0)
             cos_q2_closed = along_q2_closed / length_q2_closed
             sin_q2_closed = across_q2_closed / length_q2_closed
-            # in the singularity: the angle of the reference
+            # if singular: that of the reference
             cos_q2_closed, sin_q2_closed = elsewhere(
                 reach_closed > k.machine_scale_times_free_angle,
                 (cos_q2_closed, sin_q2_closed),
@@ -1091,8 +1089,7 @@ class ArrayPrograms(Programs):
 
             direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
             direction_y_q4_closed = -sigma_wrist * r23_from_q1_closed
-            # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the
-            # reference
+            # polar coordinates: angle q4 from the r33 and r23 equations; if singular: that of the reference
             direction_x_q4_closed, direction_y_q4_closed = elsewhere(
                 radius_q4_closed > 1e-11,
                 (direction_x_q4_closed, direction_y_q4_closed),

@@ -138,7 +138,7 @@ class ArrayPrograms(Programs):
 
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - k.d4 * wrist_y) / distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + k.d4 * wrist_x) / distance_q1_squared
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > k.machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -207,18 +207,18 @@ class ArrayPrograms(Programs):
 
             along_q6_before_q1_for_q3 = -sigma_wrist * r21_from_q1_before_q1_for_q3
             one_by_radius_q6_before_q1_for_q3 = 1.0 / radius_q6_before_q1_for_q3
-            part_of_cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
+            cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
             across_q6_before_q1_for_q3 = sigma_wrist * r22_from_q1_before_q1_for_q3
-            part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
+            sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
             radius_q6_rate_q1_for_q3 = (
                 r21_from_q1_before_q1_for_q3 * r21_from_q1_rate_q1_for_q3
                 + r22_from_q1_before_q1_for_q3 * r22_from_q1_rate_q1_for_q3
             ) / radius_q6_before_q1_for_q3
             cos_q6_rate_q1_for_q3 = (
-                along_q6_rate_q1_for_q3 - part_of_cos_q6_before_q1_for_q3 * radius_q6_rate_q1_for_q3
+                along_q6_rate_q1_for_q3 - radius_q6_rate_q1_for_q3 * cos_q6_before_q1_for_q3
             ) * one_by_radius_q6_before_q1_for_q3
             sin_q6_rate_q1_for_q3 = (
-                across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3 * radius_q6_rate_q1_for_q3
+                across_q6_rate_q1_for_q3 - radius_q6_rate_q1_for_q3 * sin_q6_before_q1_for_q3
             ) * one_by_radius_q6_before_q1_for_q3
             (
                 cos_q6_before_q1_for_q3,
@@ -229,8 +229,8 @@ class ArrayPrograms(Programs):
             ) = elsewhere(
                 radius_q6_before_q1_for_q3 > 1e-11,
                 (
-                    part_of_cos_q6_before_q1_for_q3,
-                    part_of_sin_q6_before_q1_for_q3,
+                    cos_q6_before_q1_for_q3,
+                    sin_q6_before_q1_for_q3,
                     radius_q6_rate_q1_for_q3,
                     cos_q6_rate_q1_for_q3,
                     sin_q6_rate_q1_for_q3,
@@ -314,7 +314,7 @@ class ArrayPrograms(Programs):
                 excess_q1_for_q3 = select(
                     value_q1_for_q3 > 0.0, value_q1_for_q3 - k.size_q1_for_q3, k.size_q1_for_q3 + value_q1_for_q3
                 )
-                # turn of q1 to the bound, to first order
+                # turn of q1 to first order
                 turn_q1_for_q3 = select(
                     absolute(rate_q1_for_q3) > k.size_q1_for_q3_times_rounding, -excess_q1_for_q3 / rate_q1_for_q3, 1.0
                 )
@@ -340,20 +340,17 @@ class ArrayPrograms(Programs):
                 ) -> Reals:
                     turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3_squared)
                     one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
-                    turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                    best_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
                         cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
                     )
-                    turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                    best_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
                         sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
                     )
-                    # residual of the equation of q1
-                    turned_cost_q1_for_q3 = absolute(
-                        k.d4 + turned_cos_q1_for_q3 * wrist_y - turned_sin_q1_for_q3 * wrist_x
-                    )
-                    turned_ahead_q1_for_q3 = (
+                    best_cost_q1_for_q3 = absolute(k.d4 + best_cos_q1_for_q3 * wrist_y - best_sin_q1_for_q3 * wrist_x)
+                    best_ahead_q1_for_q3 = (
                         ahead_q1_before_q1_for_q3 - k.d4 * turn_q1_for_q3
                     ) * one_by_turned_length_q1_for_q3
-                    return (turned_cost_q1_for_q3, turned_ahead_q1_for_q3, turned_cos_q1_for_q3, turned_sin_q1_for_q3)
+                    return (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
 
                 part_of_across_q6_q1_for_q3 = k.d1_times_d5_times_2 - k.twice_d5 * wrist_z
                 part_of_across_q6_q1_for_q3_2 = ahead_q1_before_q1_for_q3 * k.twice_d5 * cos_q5_before_q1_for_q3
@@ -423,12 +420,12 @@ class ArrayPrograms(Programs):
                 near_cos_q1_for_q3 = -near_q_q1_for_q3 * part_of_near_cos_q1_for_q3
                 near_sin_q1_for_q3 = near_p_q1_for_q3 * part_of_near_cos_q1_for_q3
                 holds = near_radius_q1_for_q3 > 1e-12
-                # the earlier angle follows the later one
-                # it stays where every angle gives this later one
+                # the earlier angle follows
+                # it stays where it has no effect
                 near_cos_q1_for_q3 = select(holds, near_cos_q1_for_q3, cos_q1_before_q1_for_q3)
                 near_sin_q1_for_q3 = select(holds, near_sin_q1_for_q3, sin_q1_before_q1_for_q3)
                 near_cost_q1_for_q3 = absolute(k.d4 + near_cos_q1_for_q3 * wrist_y - near_sin_q1_for_q3 * wrist_x)
-                mirrored_q6_q1_for_q3 = 2.0 * centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # mirror image: on the other arc
+                mirrored_q6_q1_for_q3 = 2.0 * centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # mirror image on the other arc
                 mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
                 mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
                 mirrored_q_q1_for_q3 = sigma_wrist * (mirrored_cos_q6_q1_for_q3 * r12 + mirrored_sin_q6_q1_for_q3 * r11)
@@ -457,25 +454,25 @@ class ArrayPrograms(Programs):
                 mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3 * part_of_mirrored_cos_q1_for_q3
                 mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3 * part_of_mirrored_cos_q1_for_q3
                 holds = mirrored_radius_q1_for_q3 > 1e-12
-                # the earlier angle follows the later one
-                # it stays where every angle gives this later one
+                # the earlier angle follows
+                # it stays where it has no effect
                 mirrored_cos_q1_for_q3 = select(holds, mirrored_cos_q1_for_q3, cos_q1_before_q1_for_q3)
                 mirrored_sin_q1_for_q3 = select(holds, mirrored_sin_q1_for_q3, sin_q1_before_q1_for_q3)
                 mirrored_cost_q1_for_q3 = absolute(
                     k.d4 + mirrored_cos_q1_for_q3 * wrist_y - mirrored_sin_q1_for_q3 * wrist_x
                 )
                 holds = near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3
-                swept_cost_q1_for_q3 = select(holds, near_cost_q1_for_q3, mirrored_cost_q1_for_q3)
-                swept_cos_q1_for_q3 = select(holds, near_cos_q1_for_q3, mirrored_cos_q1_for_q3)
-                swept_sin_q1_for_q3 = select(holds, near_sin_q1_for_q3, mirrored_sin_q1_for_q3)
+                best_cost_q1_for_q3 = select(holds, near_cost_q1_for_q3, mirrored_cost_q1_for_q3)
+                best_cos_q1_for_q3 = select(holds, near_cos_q1_for_q3, mirrored_cos_q1_for_q3)
+                best_sin_q1_for_q3 = select(holds, near_sin_q1_for_q3, mirrored_sin_q1_for_q3)
                 holds = distance_q1 > k.machine_scale_times_free_angle
-                swept_cost_q1_for_q3 = select(holds, swept_cost_q1_for_q3, 0.0)
-                swept_cos_q1_for_q3 = select(holds, swept_cos_q1_for_q3, near_cos_q1_for_q3)
-                swept_sin_q1_for_q3 = select(holds, swept_sin_q1_for_q3, near_sin_q1_for_q3)
-                swept_ahead_q1_for_q3 = swept_cos_q1_for_q3 * wrist_x + swept_sin_q1_for_q3 * wrist_y
+                best_cost_q1_for_q3 = select(holds, best_cost_q1_for_q3, 0.0)
+                best_cos_q1_for_q3 = select(holds, best_cos_q1_for_q3, near_cos_q1_for_q3)
+                best_sin_q1_for_q3 = select(holds, best_sin_q1_for_q3, near_sin_q1_for_q3)
+                best_ahead_q1_for_q3 = best_cos_q1_for_q3 * wrist_x + best_sin_q1_for_q3 * wrist_y
                 best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3 = elsewhere(
                     follows_q1_for_q3,
-                    (swept_cost_q1_for_q3, swept_ahead_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3),
+                    (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
                     elsewhere_best_cost_q1_for_q3,
                     (
                         ahead_q1_before_q1_for_q3,
@@ -488,13 +485,13 @@ class ArrayPrograms(Programs):
                     ),
                 )
                 holds = best_cost_q1_for_q3 > k.machine_scale_times_rounding
-                # turned, within rounding, to where q3 has a solution
+                # turned so that q3 has a solution
                 ahead_q1 = select(holds, ahead_q1_before_q1_for_q3, best_ahead_q1_for_q3)
                 cos_q1 = select(holds, cos_q1_before_q1_for_q3, best_cos_q1_for_q3)
                 sin_q1 = select(holds, sin_q1_before_q1_for_q3, best_sin_q1_for_q3)
                 return (ahead_q1, cos_q1, sin_q1)
 
-            # turned, within rounding, to where q3 has a solution
+            # turned so that q3 has a solution
             ahead_q1, cos_q1, sin_q1 = elsewhere(
                 absolute(value_q1_for_q3) <= k.size_q1_for_q3,
                 (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -534,7 +531,7 @@ class ArrayPrograms(Programs):
             )
             return (ahead_q1, cos_q1, sin_q1)
 
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         ahead_q1, cos_q1, sin_q1 = elsewhere(
             ahead_squared_q1 > k.machine_scale_squared_times_plane,
             (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -579,7 +576,7 @@ class ArrayPrograms(Programs):
         cos_q6_before_q6_of_q3 = along_q6 / radius_q6
         across_q6 = sigma_wrist * r22_from_q1
         sin_q6_before_q6_of_q3 = across_q6 / radius_q6
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3 = elsewhere(
             radius_q6 > 1e-11,
             (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
@@ -599,7 +596,6 @@ class ArrayPrograms(Programs):
             + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
             - k.a2_squared_plus_a3_squared
         )
-        size_of_value_q6_of_q3 = absolute(value_q6_of_q3)
 
         def elsewhere_cos_q6(
             ahead_q1: Real,
@@ -610,7 +606,6 @@ class ArrayPrograms(Programs):
             r32: Real,
             radius_q6: Real,
             sin_q6_before_q6_of_q3: Real,
-            size_of_value_q6_of_q3: Real,
             value_q6_of_q3: Real,
             wrist_y_from_q1_fixed: Real,
         ) -> Reals:
@@ -684,14 +679,14 @@ class ArrayPrograms(Programs):
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11)
                 holds = stays_q6_of_q3
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 cos_q6 = select(holds, cos_q6_before_q6_of_q3, cos_q6_after_q6_of_q3)
                 sin_q6 = select(holds, sin_q6_before_q6_of_q3, sin_q6_after_q6_of_q3)
                 return (cos_q6, sin_q6)
 
-            # moved to where q3 has a solution, if that changes the pose by rounding only
+            # moved so that q3 has a solution
             cos_q6, sin_q6 = elsewhere(
-                (radius_q6 > 0.1) & (size_of_value_q6_of_q3 > k.part_of_cos_q6),
+                (radius_q6 > 0.1) & (absolute(value_q6_of_q3) > k.part_of_cos_q6),
                 (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
                 elsewhere_cos_q6,
                 (
@@ -709,9 +704,9 @@ class ArrayPrograms(Programs):
             )
             return (cos_q6, sin_q6)
 
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         cos_q6, sin_q6 = elsewhere(
-            size_of_value_q6_of_q3 <= k.size_q1_for_q3,
+            absolute(value_q6_of_q3) <= k.size_q1_for_q3,
             (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
             elsewhere_cos_q6,
             (
@@ -723,7 +718,6 @@ class ArrayPrograms(Programs):
                 r32,
                 radius_q6,
                 sin_q6_before_q6_of_q3,
-                size_of_value_q6_of_q3,
                 value_q6_of_q3,
                 wrist_y_from_q1_fixed,
             ),
@@ -760,8 +754,7 @@ class ArrayPrograms(Programs):
         arm_across_q2 = k.a3 * sin_q3
         direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
         direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2, direction_y_q2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_q2, direction_y_q2),

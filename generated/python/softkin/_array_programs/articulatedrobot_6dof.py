@@ -144,7 +144,7 @@ class ArrayPrograms(Programs):
 
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - k.d3 * wrist_y) / distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + k.d3 * wrist_x) / distance_q1_squared
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > k.machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -181,7 +181,7 @@ class ArrayPrograms(Programs):
                 excess_q1_for_q3 = select(
                     value_q1_for_q3 > 0.0, value_q1_for_q3 - k.size_q1_for_q3, k.size_q1_for_q3 + value_q1_for_q3
                 )
-                # turn of q1 to the bound, to first order
+                # turn of q1 to first order
                 turn_q1_for_q3 = select(
                     absolute(rate_q1_for_q3) > k.size_q1_for_q3_times_rounding, -excess_q1_for_q3 / rate_q1_for_q3, 0.0
                 )
@@ -203,12 +203,10 @@ class ArrayPrograms(Programs):
                     turned_cos_q1_for_q3: Real,
                     turned_sin_q1_for_q3: Real,
                 ) -> Reals:
-                    turned_ahead_q1_for_q3 = (
-                        ahead_q1_before_q1_for_q3 - k.d3 * turn_q1_for_q3
-                    ) * one_by_turned_length_q1_for_q3
-                    return (turned_ahead_q1_for_q3, turned_cos_q1_for_q3, turned_sin_q1_for_q3)
+                    ahead_q1 = (ahead_q1_before_q1_for_q3 - k.d3 * turn_q1_for_q3) * one_by_turned_length_q1_for_q3
+                    return (ahead_q1, turned_cos_q1_for_q3, turned_sin_q1_for_q3)
 
-                # turned, within rounding, to where q3 has a solution
+                # turned so that q3 has a solution
                 ahead_q1, cos_q1, sin_q1 = elsewhere(
                     turned_cost_q1_for_q3 > k.machine_scale_times_rounding,
                     (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -223,7 +221,7 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1, cos_q1, sin_q1)
 
-            # turned, within rounding, to where q3 has a solution
+            # turned so that q3 has a solution
             ahead_q1, cos_q1, sin_q1 = elsewhere(
                 absolute(value_q1_for_q3) <= k.size_q1_for_q3,
                 (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -240,7 +238,7 @@ class ArrayPrograms(Programs):
             )
             return (ahead_q1, cos_q1, sin_q1)
 
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         ahead_q1, cos_q1, sin_q1 = elsewhere(
             ahead_squared_q1 > k.machine_scale_squared_times_plane,
             (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -279,7 +277,7 @@ class ArrayPrograms(Programs):
 
         arm_along_q2 = -k.effective_q3 * sin_swing_q3
         arm_across_q2 = k.a2 + k.effective_q3 * cos_swing_q3
-        # rotation by q2 that takes the arm to the point that it must reach
+        # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
         across_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
         across_q2_squared_plus_along_q2_squared = across_q2 * across_q2 + along_q2 * along_q2
@@ -288,7 +286,7 @@ class ArrayPrograms(Programs):
         )
         cos_q2 = along_q2 / length_q2
         sin_q2 = across_q2 / length_q2
-        # in the singularity: the angle of the reference
+        # if singular: that of the reference
         cos_q2, sin_q2 = elsewhere(
             reach > k.machine_scale_times_free_angle, (cos_q2, sin_q2), elsewhere_cos_q2, (ref_a2,)
         )
@@ -317,8 +315,7 @@ class ArrayPrograms(Programs):
 
         direction_x_q4 = -sigma_hand * r13_from_q123
         direction_y_q4 = sigma_hand * r23_from_q1
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
-        # reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         direction_x_q4, direction_y_q4 = elsewhere(
             radius_q4 > 1e-11, (direction_x_q4, direction_y_q4), elsewhere_direction_x_q4, (ref_a4,)
         )

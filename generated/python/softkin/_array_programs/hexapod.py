@@ -85,7 +85,7 @@ class ArrayPrograms(StartedPrograms):
         start_arm_6_z = k.platform_6_x * start_r31 + k.platform_6_y * start_r32 + k.platform_6_z * start_r33
         # the mirror that the machine does not have
         require(status, (l1 > 0.0) & (l2 > 0.0) & (l3 > 0.0) & (l4 > 0.0) & (l5 > 0.0) & (l6 > 0.0), Status.IMPOSSIBLE)
-        # Newton's method: every pass improves the pose until all legs have their lengths
+        # Newton's method: every pass improves the pose until all legs fit
         x, y, z, roll, pitch, yaw, fitted = initial(start_x, start_y, start_z, 0.0, 0.0, 0.0, False)
         for _ in range(20):
             cos_pitch = cos(pitch)

@@ -92,8 +92,7 @@ class ArrayPrograms(Programs):
         arm_across_a1 = k.link_length_2 * sin_a2_from_a1
         direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
         direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),
@@ -124,7 +123,7 @@ class ArrayPrograms(Programs):
         require(status, (axis_a2 >= k.lowest_a2) & (axis_a2 <= k.highest_a2), Status.UNREACHABLE)
         a1 = DEGREE * (axis_a1 - k.offset_a1)
         a2 = DEGREE * (axis_a2 - k.offset_a2)
-        value_elbow = (a2 - a1) / DEGREE  # the angle between the arms
-        # limits of the angle between the arms
+        value_elbow = (a2 - a1) / DEGREE  # the outer arm relative to the inner arm
+        # limits of the outer arm relative to the inner arm
         require(status, (value_elbow >= k.lowest_elbow) & (value_elbow <= k.highest_elbow), Status.UNREACHABLE)
         return status

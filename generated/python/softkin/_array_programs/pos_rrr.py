@@ -103,7 +103,7 @@ class ArrayPrograms(Programs):
 
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - k.d3 * y) / distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + k.d3 * x) / distance_q1_squared
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > k.machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -140,7 +140,7 @@ class ArrayPrograms(Programs):
                 excess_q1_for_q3 = select(
                     value_q1_for_q3 > 0.0, value_q1_for_q3 - k.size_q1_for_q3_2, k.size_q1_for_q3_2 + value_q1_for_q3
                 )
-                # turn of q1 to the bound, to first order
+                # turn of q1 to first order
                 turn_q1_for_q3 = select(
                     absolute(rate_q1_for_q3) > k.size_q1_for_q3_2_times_rounding,
                     -excess_q1_for_q3 / rate_q1_for_q3,
@@ -164,12 +164,10 @@ class ArrayPrograms(Programs):
                     turned_cos_q1_for_q3: Real,
                     turned_sin_q1_for_q3: Real,
                 ) -> Reals:
-                    turned_ahead_q1_for_q3 = (
-                        ahead_q1_before_q1_for_q3 - k.d3 * turn_q1_for_q3
-                    ) * one_by_turned_length_q1_for_q3
-                    return (turned_ahead_q1_for_q3, turned_cos_q1_for_q3, turned_sin_q1_for_q3)
+                    ahead_q1 = (ahead_q1_before_q1_for_q3 - k.d3 * turn_q1_for_q3) * one_by_turned_length_q1_for_q3
+                    return (ahead_q1, turned_cos_q1_for_q3, turned_sin_q1_for_q3)
 
-                # turned, within rounding, to where q3 has a solution
+                # turned so that q3 has a solution
                 ahead_q1, cos_q1, sin_q1 = elsewhere(
                     turned_cost_q1_for_q3 > k.machine_scale_times_rounding,
                     (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -184,7 +182,7 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1, cos_q1, sin_q1)
 
-            # turned, within rounding, to where q3 has a solution
+            # turned so that q3 has a solution
             ahead_q1, cos_q1, sin_q1 = elsewhere(
                 absolute(value_q1_for_q3) <= k.size_q1_for_q3_2,
                 (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -201,7 +199,7 @@ class ArrayPrograms(Programs):
             )
             return (ahead_q1, cos_q1, sin_q1)
 
-        # turned, within rounding, to where q3 has a solution
+        # turned so that q3 has a solution
         ahead_q1, cos_q1, sin_q1 = elsewhere(
             ahead_squared_q1 > k.machine_scale_squared_times_plane,
             (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -242,8 +240,7 @@ class ArrayPrograms(Programs):
         arm_across_q2 = k.a2 + k.effective_q3_2 * cos_swing_q3
         direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
         direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
         direction_x_q2, direction_y_q2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_q2, direction_y_q2),

@@ -102,8 +102,7 @@ class ArrayPrograms(Programs):
         arm_across_a2 = k.link_length_2 * sin_a3
         direction_x_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
         direction_y_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
-        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a2 that takes the arm to its target point; if singular: that of the reference
         direction_x_a2, direction_y_a2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_a2, direction_y_a2),

@@ -106,8 +106,7 @@ class ArrayPrograms(Programs):
         arm_across_a1 = k.link_length_2 * sin_a2
         direction_x_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
         direction_y_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
-        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle
-        # of the reference
+        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),
@@ -126,9 +125,8 @@ class ArrayPrograms(Programs):
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
             ref_motor_a2 = (ref_a2 - k.offset_a2) * DEGREE
             reference_a2 = ref_motor_a2 + k.coupling_12 * reference_a1
-            # A2: without a commanded turn, the value nearest to this
-            open_a2 = select(k.single_a2, k.mid_a2, part_of_axis_a2 + reference_a2 / DEGREE)
-            return (open_a2,)
+            near_a2 = select(k.single_a2, k.mid_a2, part_of_axis_a2 + reference_a2 / DEGREE)
+            return (near_a2,)
 
         near_a2 = 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2)
         (near_a2,) = elsewhere(turn_a2 != 0, (near_a2,), elsewhere_near_a2, (part_of_axis_a2, ref_a1, ref_a2))
@@ -140,15 +138,15 @@ class ArrayPrograms(Programs):
         def elsewhere_near_a3(part_of_axis_a3: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
             ref_motor_a2 = (ref_a2 - k.offset_a2) * DEGREE
-            open_a3: Real
+            near_a3: Real
             if k.single_a3:
-                open_a3 = k.mid_a3  # A3: without a commanded turn, the value nearest to this
+                near_a3 = k.mid_a3  # A3: without a commanded turn, the value nearest to this
             else:
                 ref_motor_a3 = (ref_a3 - k.offset_a3) * DEGREE
                 reference_a3 = ref_motor_a3 + k.coupling_13 * reference_a1 + k.coupling_23 * ref_motor_a2
                 # A3: without a commanded turn, the value nearest to this
-                open_a3 = k.offset_a3 + (reference_a3 - part_of_axis_a3) / DEGREE
-            return (open_a3,)
+                near_a3 = k.offset_a3 + (reference_a3 - part_of_axis_a3) / DEGREE
+            return (near_a3,)
 
         near_a3 = 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3)
         (near_a3,) = elsewhere(turn_a3 != 0, (near_a3,), elsewhere_near_a3, (part_of_axis_a3, ref_a1, ref_a2, ref_a3))

@@ -161,10 +161,10 @@ class ArrayPrograms(Programs):
         rod_3_y = span_3_y - a3 * k.part_of_pivot_2_y
         pivot_3_z = -a3 * k.cos_rail_angle
         rod_3_z = z - pivot_3_z
-        type2_rods_coplanar = k.part_of_type2_rods_coplanar * (
-            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
-            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
-            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
+        type2_rods_coplanar = -k.part_of_type2_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+            + (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
         )
         part = k.root_of_3_times_half_by_arm_length * x
         half_by_arm_length_times_y = k.half_by_arm_length * y

@@ -205,10 +205,10 @@ class ArrayPrograms(Programs):
         rod_3_y = span_3_y - k.arm_length_1_times_root_of_3_times_half * cos_a3
         sin_a3 = (along_a3 * sin_swing_a3 - across_a2 * cos_swing_a3) / divisor_a3
         rod_3_z = span_1_z + k.arm_length_1 * sin_a3
-        type2_rods_coplanar = -k.part_of_type2_rods_coplanar * (
-            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
-            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
-            + (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
+        type2_rods_coplanar = k.part_of_type2_rods_coplanar * (
+            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
         )
         part = k.root_of_3_times_half_by_arm_length_2 * x
         half_by_arm_length_2_times_y = k.half_by_arm_length_2 * y

@@ -29,10 +29,10 @@ def unrolled(k: Constants) -> Unrolled:
     single_a6, size_q1_for_q3 = k.single_a6, k.size_q1_for_q3
     machine_scale_squared_times_plane_2 = 1e-6 * machine_scale * machine_scale
     machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    a2_squared_plus_a3_squared_2 = a2 * a2 + a3 * a3
     size_q1_for_q3_times_rounding_2 = 1e-12 * size_q1_for_q3
-    share_of_size_q1_for_q3 = 1.000000001 * size_q1_for_q3
-    offset_a5_times_2 = 2.0 * offset_a5
+    part_of_cos_q6_left_down = 1.000000001 * size_q1_for_q3
+    twice_offset_a5 = 2.0 * offset_a5
+    a2_squared_plus_a3_squared_2 = a2 * a2 + a3 * a3
     a2_plus_a3_2 = a2 + a3
     a2_minus_a3_2 = a2 - a3
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
@@ -59,42 +59,44 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return 8 * (refused[Status.UNREACHABLE],)
             ahead_q1_before_q1_for_q3 = 0.0
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
-            d4_times_wrist_y = d4 * wrist_y
-            ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3 * wrist_x
             divisor_q1 = distance_q1 * distance_q1
-            cos_q1_before_q1_for_q3_left = (-ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y) / divisor_q1
-            ahead_q1_before_q1_for_q3_times_wrist_y = ahead_q1_before_q1_for_q3 * wrist_y
+            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
+            d4_times_wrist_y = d4 * wrist_y
+            cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - part_of_cos_q1_before_q1_for_q3) / divisor_q1
             d4_times_wrist_x = d4 * wrist_x
-            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - ahead_q1_before_q1_for_q3_times_wrist_y) / divisor_q1
-            cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y) / divisor_q1
-            sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_y + d4_times_wrist_x) / divisor_q1
+            part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
+            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - part_of_sin_q1_before_q1_for_q3) / divisor_q1
+            cos_q1_before_q1_for_q3_right = (part_of_cos_q1_before_q1_for_q3 - d4_times_wrist_y) / divisor_q1
+            sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + part_of_sin_q1_before_q1_for_q3) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3_left = cos(reference_a1)
             sin_q1_before_q1_for_q3_left = sin(reference_a1)
             cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left
             sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
-        minus_r21_from_q1 = r11 * sin_q1_before_q1_for_q3_left - r21 * cos_q1_before_q1_for_q3_left
-        r22_from_q1 = r22 * cos_q1_before_q1_for_q3_left - r12 * sin_q1_before_q1_for_q3_left
-        # polar coordinates: the radius at angle q6
-        radius_q6 = sqrt(minus_r21_from_q1 * minus_r21_from_q1 + r22_from_q1 * r22_from_q1)
-        r33_times_radius_q6 = r33 * radius_q6
         # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13 * sin_q1_before_q1_for_q3_left - r23 * cos_q1_before_q1_for_q3_left
-        # in the singularity: the angle of the reference
+        r21_from_q1 = r21 * cos_q1_before_q1_for_q3_left - r11 * sin_q1_before_q1_for_q3_left
+        r22_from_q1 = r22 * cos_q1_before_q1_for_q3_left - r12 * sin_q1_before_q1_for_q3_left
+        # polar coordinates: the radius at angle q6
+        radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
+        # if singular: that of the reference
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = minus_r21_from_q1 / radius_q6
+            cos_q6_before_q6_of_q3_down = -(r21_from_q1 / radius_q6)
             sin_q6_before_q6_of_q3_down = r22_from_q1 / radius_q6
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             reference_a6 = (ref_a6 - offset_a6) * DEGREE
-            cos_q6_before_q6_of_q3_down = cos(reference_a6)
-            sin_q6_before_q6_of_q3_down = sin(reference_a6)
-            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
-            sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = sin(reference_a6)
+            cos_q6_before_q6_of_q3_down = cos_of_reference_a6
+            sin_q6_before_q6_of_q3_down = sin_of_reference_a6
+            cos_q6_before_q6_of_q3_up = cos_of_reference_a6
+            sin_q6_before_q6_of_q3_up = sin_of_reference_a6
+        r33_times_radius_q6 = r33 * radius_q6
         r21_from_q1_before_q56_before_q6_of_q3_down = (
             r31 * cos_q6_before_q6_of_q3_down - r32 * sin_q6_before_q6_of_q3_down
         ) * cos_q5 - r33_times_radius_q6
@@ -110,7 +112,7 @@ def unrolled(k: Constants) -> Unrolled:
             + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
             - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
@@ -120,56 +122,40 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            wrist_y_from_q1_along = d5 * r32
-            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = (
-                2.0 * wrist_y_from_q1_along * wrist_y_from_q1_fixed
-            )
-            d5_times_r33_times_radius_q6 = d5 * r33 * radius_q6
-            minus_wrist_x_from_q1_along = d5 * r31 * cos_q5
+            r33_times_radius_q6_left_times_d5 = d5 * r33_times_radius_q6
             wrist_y_from_q1_across = d5 * r31
-            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = (
-                2.0 * wrist_y_from_q1_across * wrist_y_from_q1_fixed
-            )
-            wrist_x_from_q1_across = d5 * r32 * cos_q5
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
+            wrist_y_from_q1_along = d5 * r32
+            part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
+            part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
+            # moved so that q3 has a solution
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 - ahead_q1_before_q1_for_q3
-                along_q6_of_q3 = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    - 2.0 * minus_wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
-                )
+                wrist_x_from_q1_fixed = r33_times_radius_q6_left_times_d5 - ahead_q1_before_q1_for_q3
+                along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3 * sin_q6_before_q6_of_q3_down
-                        + along_q6_of_q3 * cos_q6_before_q6_of_q3_down
-                        - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3
+                        - across_q6_of_q3 * sin_q6_before_q6_of_q3_down
+                        - along_q6_of_q3 * cos_q6_before_q6_of_q3_down
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -189,18 +175,18 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                part_of_cost_q6_of_q3_left_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down)
-                        * (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down)
-                        + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down)
-                        * (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down)
+                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_left_down_2 * part_of_cost_q6_of_q3_left_down_2
                     )
                     * radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
@@ -213,11 +199,9 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_minus_reach + a3) * (a2_plus_reach + a3)
-        one_plus_cos_q3 = (a3 - a2_minus_reach) * (a2_plus_reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
+        one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
@@ -258,61 +242,45 @@ def unrolled(k: Constants) -> Unrolled:
             + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
             - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
-            wrist_y_from_q1_along = d5 * r32
-            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = (
-                2.0 * wrist_y_from_q1_along * wrist_y_from_q1_fixed
-            )
-            d5_times_r33_times_radius_q6 = d5 * r33 * radius_q6
-            minus_wrist_x_from_q1_along = d5 * r31 * cos_q5
+            r33_times_radius_q6_left_times_d5 = d5 * r33_times_radius_q6
             wrist_y_from_q1_across = d5 * r31
-            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = (
-                2.0 * wrist_y_from_q1_across * wrist_y_from_q1_fixed
-            )
-            wrist_x_from_q1_across = d5 * r32 * cos_q5
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
+            wrist_y_from_q1_along = d5 * r32
+            part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
+            part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
+            # moved so that q3 has a solution
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - d5_times_r33_times_radius_q6
-                along_q6_of_q3 = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    - 2.0 * minus_wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
-                )
+                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - r33_times_radius_q6_left_times_d5
+                along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3 * sin_q6_before_q6_of_q3_up
-                        + along_q6_of_q3 * cos_q6_before_q6_of_q3_up
-                        - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3
+                        - across_q6_of_q3 * sin_q6_before_q6_of_q3_up
+                        - along_q6_of_q3 * cos_q6_before_q6_of_q3_up
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -331,18 +299,18 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                part_of_cost_q6_of_q3_left_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up)
-                        * (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up)
-                        + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up)
-                        * (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up)
+                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_left_up_2 * part_of_cost_q6_of_q3_left_up_2
                     )
                     * radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
@@ -357,11 +325,9 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_minus_reach + a3) * (a2_plus_reach + a3)
-        one_plus_cos_q3 = (a3 - a2_minus_reach) * (a2_plus_reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
+        one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
@@ -383,31 +349,33 @@ def unrolled(k: Constants) -> Unrolled:
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_left_up_up - angle_q3_up) * RADIAN
-        axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down
+        axis_a5_left_up = twice_offset_a5 - axis_a5_left_down
         axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_left_down_down) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_left_down_up) * RADIAN
-        minus_r21_from_q1 = r11 * sin_q1_before_q1_for_q3_right - r21 * cos_q1_before_q1_for_q3_right
-        r22_from_q1 = r22 * cos_q1_before_q1_for_q3_right - r12 * sin_q1_before_q1_for_q3_right
-        # polar coordinates: the radius at angle q6
-        radius_q6 = sqrt(minus_r21_from_q1 * minus_r21_from_q1 + r22_from_q1 * r22_from_q1)
-        r33_times_radius_q6 = r33 * radius_q6
         # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13 * sin_q1_before_q1_for_q3_right - r23 * cos_q1_before_q1_for_q3_right
-        # in the singularity: the angle of the reference
+        r21_from_q1 = r21 * cos_q1_before_q1_for_q3_right - r11 * sin_q1_before_q1_for_q3_right
+        r22_from_q1 = r22 * cos_q1_before_q1_for_q3_right - r12 * sin_q1_before_q1_for_q3_right
+        # polar coordinates: the radius at angle q6
+        radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
+        # if singular: that of the reference
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = minus_r21_from_q1 / radius_q6
+            cos_q6_before_q6_of_q3_down = -(r21_from_q1 / radius_q6)
             sin_q6_before_q6_of_q3_down = r22_from_q1 / radius_q6
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             reference_a6 = (ref_a6 - offset_a6) * DEGREE
-            cos_q6_before_q6_of_q3_down = cos(reference_a6)
-            sin_q6_before_q6_of_q3_down = sin(reference_a6)
-            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
-            sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
+            cos_of_reference_a6 = cos(reference_a6)
+            sin_of_reference_a6 = sin(reference_a6)
+            cos_q6_before_q6_of_q3_down = cos_of_reference_a6
+            sin_q6_before_q6_of_q3_down = sin_of_reference_a6
+            cos_q6_before_q6_of_q3_up = cos_of_reference_a6
+            sin_q6_before_q6_of_q3_up = sin_of_reference_a6
+        r33_times_radius_q6 = r33 * radius_q6
         r21_from_q1_before_q56_before_q6_of_q3_down = (
             r31 * cos_q6_before_q6_of_q3_down - r32 * sin_q6_before_q6_of_q3_down
         ) * cos_q5 - r33_times_radius_q6
@@ -422,7 +390,7 @@ def unrolled(k: Constants) -> Unrolled:
             + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
             - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
@@ -432,56 +400,40 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            wrist_y_from_q1_along = d5 * r32
-            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = (
-                2.0 * wrist_y_from_q1_along * wrist_y_from_q1_fixed
-            )
             wrist_y_from_q1_across = d5 * r31
-            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = (
-                2.0 * wrist_y_from_q1_across * wrist_y_from_q1_fixed
-            )
-            d5_times_r33_times_radius_q6 = d5 * r33 * radius_q6
-            minus_wrist_x_from_q1_along = d5 * r31 * cos_q5
-            wrist_x_from_q1_across = d5 * r32 * cos_q5
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            wrist_y_from_q1_along = d5 * r32
+            part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
+            r33_times_radius_q6_right_times_d5 = d5 * r33_times_radius_q6
+            wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
+            wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
+            # moved so that q3 has a solution
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + d5_times_r33_times_radius_q6
-                along_q6_of_q3 = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    - 2.0 * minus_wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
-                )
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + r33_times_radius_q6_right_times_d5
+                along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3 * sin_q6_before_q6_of_q3_down
-                        + along_q6_of_q3 * cos_q6_before_q6_of_q3_down
-                        - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3
+                        - across_q6_of_q3 * sin_q6_before_q6_of_q3_down
+                        - along_q6_of_q3 * cos_q6_before_q6_of_q3_down
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -501,18 +453,18 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                part_of_cost_q6_of_q3_right_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down)
-                        * (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down)
-                        + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down)
-                        * (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down)
+                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_right_down_2 * part_of_cost_q6_of_q3_right_down_2
                     )
                     * radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
@@ -525,11 +477,9 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_minus_reach + a3) * (a2_plus_reach + a3)
-        one_plus_cos_q3 = (a3 - a2_minus_reach) * (a2_plus_reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
+        one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
@@ -570,61 +520,45 @@ def unrolled(k: Constants) -> Unrolled:
             + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
             - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
-            wrist_y_from_q1_along = d5 * r32
-            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = (
-                2.0 * wrist_y_from_q1_along * wrist_y_from_q1_fixed
-            )
             wrist_y_from_q1_across = d5 * r31
-            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = (
-                2.0 * wrist_y_from_q1_across * wrist_y_from_q1_fixed
-            )
-            d5_times_r33_times_radius_q6 = d5 * r33 * radius_q6
-            minus_wrist_x_from_q1_along = d5 * r31 * cos_q5
-            wrist_x_from_q1_across = d5 * r32 * cos_q5
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            wrist_y_from_q1_along = d5 * r32
+            part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
+            r33_times_radius_q6_right_times_d5 = d5 * r33_times_radius_q6
+            wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
+            wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
+            # moved so that q3 has a solution
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - d5_times_r33_times_radius_q6
-                along_q6_of_q3 = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    - 2.0 * minus_wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
-                )
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - r33_times_radius_q6_right_times_d5
+                along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3 * sin_q6_before_q6_of_q3_up
-                        + along_q6_of_q3 * cos_q6_before_q6_of_q3_up
-                        - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3
+                        - across_q6_of_q3 * sin_q6_before_q6_of_q3_up
+                        - along_q6_of_q3 * cos_q6_before_q6_of_q3_up
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -643,18 +577,18 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                part_of_cost_q6_of_q3_right_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up)
-                        * (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up)
-                        + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up)
-                        * (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up)
+                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_right_up_2 * part_of_cost_q6_of_q3_right_up_2
                     )
                     * radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
@@ -669,11 +603,9 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_minus_reach + a3) * (a2_plus_reach + a3)
-        one_plus_cos_q3 = (a3 - a2_minus_reach) * (a2_plus_reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
+        one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
@@ -695,7 +627,7 @@ def unrolled(k: Constants) -> Unrolled:
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_right_up_up - angle_q3_up) * RADIAN
-        axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down
+        axis_a5_right_up = twice_offset_a5 - axis_a5_right_down
         axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_right_down_down) * RADIAN
@@ -805,7 +737,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return None
             ahead_q1_before_q1_for_q3 = 0.0
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d4 * wrist_y) / divisor_q1
@@ -816,34 +748,35 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q1_before_q1_for_q3 = sin(reference_a1)
         # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13 * sin_q1_before_q1_for_q3 - r23 * cos_q1_before_q1_for_q3
-        minus_r21_from_q1 = r11 * sin_q1_before_q1_for_q3 - r21 * cos_q1_before_q1_for_q3
+        r21_from_q1 = r21 * cos_q1_before_q1_for_q3 - r11 * sin_q1_before_q1_for_q3
         r22_from_q1 = r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3
         # polar coordinates: the radius at angle q6
-        radius_q6 = sqrt(minus_r21_from_q1 * minus_r21_from_q1 + r22_from_q1 * r22_from_q1)
-        q6_radius_of_q5 = sigma_wrist * radius_q6
-        # in the singularity: the angle of the reference
+        radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
+        # if singular: that of the reference
         if radius_q6 > 1e-11:
-            along_q6 = sigma_wrist * minus_r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
+            along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6 / radius_q6
             sin_q6_before_q6_of_q3 = (sigma_wrist * r22_from_q1) / radius_q6
         else:
             reference_a6 = (ref_a6 - offset_a6) * DEGREE
             cos_q6_before_q6_of_q3 = cos(reference_a6)
             sin_q6_before_q6_of_q3 = sin(reference_a6)
+        q6_radius_of_q5 = sigma_wrist * radius_q6
+        q6_radius_of_q5_times_r33 = q6_radius_of_q5 * r33
         r21_from_q1_before_q56_before_q6_of_q3 = (
             r31 * cos_q6_before_q6_of_q3 - r32 * sin_q6_before_q6_of_q3
-        ) * cos_q5 - q6_radius_of_q5 * r33
+        ) * cos_q5 - q6_radius_of_q5_times_r33
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3
-        wrist_z = z - d6 * r33
         r22_from_q1_before_q6_before_q6_of_q3 = r32 * cos_q6_before_q6_of_q3 + r31 * sin_q6_before_q6_of_q3
-        wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5 * r22_from_q1_before_q6_before_q6_of_q3 - d1
+        wrist_y_from_q1_fixed = z - d6 * r33 - d1
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q6_of_q3
         # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
             - a2_squared_plus_a3_squared_2
         )
-        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3
@@ -853,44 +786,41 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            # moved to where q3 has a solution, if that changes the pose by rounding only
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
+            # moved so that q3 has a solution
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + d5 * q6_radius_of_q5 * r33
-                wrist_y_from_q1_fixed = wrist_z - d1
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + d5 * q6_radius_of_q5_times_r33
+                wrist_y_from_q1_across = d5 * r31
+                wrist_y_from_q1_along = d5 * r32
                 along_q6_of_q3 = (
-                    2.0 * (d5 * r32) * wrist_y_from_q1_fixed - 2.0 * (d5 * r31 * cos_q5) * wrist_x_from_q1_fixed
+                    2.0 * (-wrist_y_from_q1_across * cos_q5) * wrist_x_from_q1_fixed
+                    + 2.0 * wrist_y_from_q1_along * wrist_y_from_q1_fixed
                 )
                 across_q6_of_q3 = (
-                    2.0 * (d5 * r32 * cos_q5) * wrist_x_from_q1_fixed + 2.0 * (d5 * r31) * wrist_y_from_q1_fixed
+                    2.0 * (wrist_y_from_q1_along * cos_q5) * wrist_x_from_q1_fixed
+                    + 2.0 * wrist_y_from_q1_across * wrist_y_from_q1_fixed
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
-                    minus_level_q6_of_q3 = (
-                        across_q6_of_q3 * sin_q6_before_q6_of_q3
-                        + along_q6_of_q3 * cos_q6_before_q6_of_q3
-                        - value_q6_of_q3
+                    level_q6_of_q3 = (
+                        value_q6_of_q3
+                        - across_q6_of_q3 * sin_q6_before_q6_of_q3
+                        - along_q6_of_q3 * cos_q6_before_q6_of_q3
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q1_for_q3) / swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -905,32 +835,32 @@ def unrolled(k: Constants) -> Unrolled:
                 moved_q6_of_q3 = nearest_on_arc(
                     arctan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3),
                     arctan2(across_q6_of_q3, along_q6_of_q3) + 0.5 * (far_q6_of_q3 + near_q6_of_q3) * side_q6_of_q3,
-                    0.5 * far_q6_of_q3 - 0.5 * near_q6_of_q3,
+                    0.5 * (far_q6_of_q3 - near_q6_of_q3),
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
+                part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
-                        * (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
-                        + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
-                        * (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
+                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_2 * part_of_cost_q6_of_q3_2
                     )
                     * radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved to where q3 has a solution, if that changes the pose by rounding only
+                # moved so that q3 has a solution
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3
                     sin_q6 = sin_q6_before_q6_of_q3
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q56 = (r31 * cos_q6 - r32 * sin_q6) * cos_q5 - q6_radius_of_q5 * r33
+            r21_from_q1_before_q56 = (r31 * cos_q6 - r32 * sin_q6) * cos_q5 - q6_radius_of_q5_times_r33
             wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
-            wrist_y_from_q1 = wrist_z + d5 * r22_from_q1_before_q6 - d1
+            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale

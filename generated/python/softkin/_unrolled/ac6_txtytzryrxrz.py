@@ -40,8 +40,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
         axis_a3 = offset_a3 + wrist_z
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
-        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the
-        # reference
+        # polar coordinates: angle a4 from the r33 and r13 equations; if singular: that of the reference
         if radius_a4 > 1e-11:
             direction_x_a4_upright = r33
             direction_y_a4_upright = r13
@@ -70,13 +69,13 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped, direction_x_a4_flipped) * RADIAN
             direction_of_axis_a6 = offset_a6 + arctan2(direction_y_a6_flipped, scaled_r11_from_a4_flipped) * RADIAN
         return (
-            (axis_a1, axis_a2, axis_a3, axis_a4, offset_a5 + arctan2(-r23, radius_a4) * RADIAN, axis_a6),
+            (axis_a1, axis_a2, axis_a3, axis_a4, offset_a5 - arctan2(r23, radius_a4) * RADIAN, axis_a6),
             (
                 axis_a1,
                 axis_a2,
                 axis_a3,
                 direction_of_axis_a4,
-                offset_a5 + arctan2(-r23, -radius_a4) * RADIAN,
+                offset_a5 - arctan2(r23, -radius_a4) * RADIAN,
                 direction_of_axis_a6,
             ),
         )
@@ -91,8 +90,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - flange_x * r21 - flange_y * r22 - flange_z * r23
         wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
-        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the
-        # reference
+        # polar coordinates: angle a4 from the r33 and r13 equations; if singular: that of the reference
         if radius_a4 > 1e-11:
             direction_x_a4 = sigma_wrist * r33
             direction_y_a4 = sigma_wrist * r13
@@ -114,7 +112,7 @@ def unrolled(k: Constants) -> Unrolled:
                 wrist_y,
                 wrist_z,
                 arctan2(direction_y_a4, direction_x_a4) * RADIAN,
-                arctan2(-r23, sigma_wrist * radius_a4) * RADIAN,
+                (-arctan2(r23, sigma_wrist * radius_a4)) * RADIAN,
                 arctan2(direction_y_a6, scaled_r11_from_a4) * RADIAN,
             )
         return (
@@ -122,7 +120,7 @@ def unrolled(k: Constants) -> Unrolled:
             offset_a2 + wrist_y,
             offset_a3 + wrist_z,
             offset_a4 + arctan2(direction_y_a4, direction_x_a4) * RADIAN,
-            offset_a5 + arctan2(-r23, sigma_wrist * radius_a4) * RADIAN,
+            offset_a5 - arctan2(r23, sigma_wrist * radius_a4) * RADIAN,
             offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4) * RADIAN,
         )
 

@@ -29,11 +29,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a5, single_a6 = k.single_a5, k.single_a6
     machine_scale_squared_times_plane_2 = 1e-6 * machine_scale * machine_scale
     machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    angle_of_a3_by_effective_q3 = arctan2(d4 / effective_q3 + 0.0, a3 / effective_q3 + 0.0)
-    offset_a6_plus_180 = 180.0 + offset_a6
-    offset_a5_times_2 = 2.0 * offset_a5
+    part_of_angle_q3_front_down = arctan2(d4 / effective_q3 + 0.0, a3 / effective_q3 + 0.0)
+    twice_offset_a5 = 2.0 * offset_a5
     a2_plus_effective_q3_2 = a2 + effective_q3
     a2_minus_effective_q3_2 = a2 - effective_q3
+    offset_a6_plus_180 = 180.0 + offset_a6
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
     def branches(
@@ -58,33 +58,31 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return 8 * (refused[Status.UNREACHABLE],)
             ahead_q1_before_q1_for_q3 = 0.0
-        wrist_y_from_q1 = z - d6 * r33 - d1  # coordinate of the point that the remaining links must reach
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
+        wrist_y_from_q1 = z - d6 * r33 - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_minus_reach + effective_q3) * (a2_plus_reach + effective_q3)
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (effective_q3 - a2_minus_reach) * (a2_plus_reach - effective_q3)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
-            d3_times_wrist_y = d3 * wrist_y
-            ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3 * wrist_x
             divisor_q1 = distance_q1 * distance_q1
-            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_wrist_x - d3_times_wrist_y) / divisor_q1
+            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
+            d3_times_wrist_y = d3 * wrist_y
+            cos_q1_before_q1_for_q3_front = (part_of_cos_q1_before_q1_for_q3 - d3_times_wrist_y) / divisor_q1
+            part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
             d3_times_wrist_x = d3 * wrist_x
-            ahead_q1_before_q1_for_q3_times_wrist_y = ahead_q1_before_q1_for_q3 * wrist_y
-            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_wrist_y + d3_times_wrist_x) / divisor_q1
-            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_wrist_x - d3_times_wrist_y) / divisor_q1
-            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - ahead_q1_before_q1_for_q3_times_wrist_y) / divisor_q1
+            sin_q1_before_q1_for_q3_front = (d3_times_wrist_x + part_of_sin_q1_before_q1_for_q3) / divisor_q1
+            cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - part_of_cos_q1_before_q1_for_q3) / divisor_q1
+            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - part_of_sin_q1_before_q1_for_q3) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3_front = cos(reference_a1)
@@ -104,42 +102,42 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_down = reference_a2
             angle_q2_up = reference_a2
         axis_a2_front_down = offset_a2 + angle_q2_down * RADIAN
-        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_swing_q3 + part_of_angle_q3_front_down
         axis_a3_front_down = offset_a3 + angle_q3 * RADIAN
         r13_from_q1 = r13 * cos_q1_before_q1_for_q3_front + r23 * sin_q1_before_q1_for_q3_front
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1 * sin_q23 - r33 * cos_q23
+        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         r23_from_q1 = r23 * cos_q1_before_q1_for_q3_front - r13 * sin_q1_before_q1_for_q3_front
         # polar coordinates: the radius at angle q4
-        radius_q4 = sqrt(minus_r13_from_q123 * minus_r13_from_q123 + r23_from_q1 * r23_from_q1)
-        r12_from_q1 = r12 * cos_q1_before_q1_for_q3_front + r22 * sin_q1_before_q1_for_q3_front
+        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
         r11_from_q1 = r11 * cos_q1_before_q1_for_q3_front + r21 * sin_q1_before_q1_for_q3_front
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
-        # reference
+        r12_from_q1 = r12 * cos_q1_before_q1_for_q3_front + r22 * sin_q1_before_q1_for_q3_front
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 0.1:
-            direction_x_q4_down = minus_r13_from_q123
+            direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
             minus_scaled_r21_from_q1234_down = r12_from_q1 * cos_q23 + r32 * sin_q23
-            minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23) - r31 * sin_q23
+            minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23 + r31 * sin_q23)
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
+            cos_of_reference_a4 = cos(reference_a4)
+            sin_of_reference_a4 = sin(reference_a4)
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_front - r11 * sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_front - r12 * sin_q1_before_q1_for_q3_front
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
-            # reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             if radius_q4 > 1e-11:
-                direction_x_q4_down = minus_r13_from_q123
+                direction_x_q4_down = -r13_from_q123
                 direction_y_q4_down = r23_from_q1
-                direction_x_q4_up = -minus_r13_from_q123
+                direction_x_q4_up = -direction_x_q4_down
                 direction_y_q4_up = -r23_from_q1
             else:
-                direction_x_q4_down = cos(reference_a4)
-                direction_y_q4_down = sin(reference_a4)
-                direction_x_q4_up = direction_x_q4_down
-                direction_y_q4_up = direction_y_q4_down
+                direction_x_q4_down = cos_of_reference_a4
+                direction_y_q4_down = sin_of_reference_a4
+                direction_x_q4_up = cos_of_reference_a4
+                direction_y_q4_up = sin_of_reference_a4
             r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
             minus_scaled_r21_from_q1234_down = direction_x_q4_down * r21_from_q1 + direction_y_q4_down * r11_from_q123
             r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
@@ -165,37 +163,37 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
             )
         axis_a2_front_up = offset_a2 + angle_q2_up * RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q3 = part_of_angle_q3_front_down - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3 * RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1 * sin_q23 - r33 * cos_q23
+        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         # polar coordinates: the radius at angle q4
-        radius_q4 = sqrt(minus_r13_from_q123 * minus_r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
-        # reference
+        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 0.1:
-            direction_x_q4_down = minus_r13_from_q123
+            direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
             minus_scaled_r21_from_q1234_down = r12_from_q1 * cos_q23 + r32 * sin_q23
-            minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23) - r31 * sin_q23
+            minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23 + r31 * sin_q23)
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
+            cos_of_reference_a4 = cos(reference_a4)
+            sin_of_reference_a4 = sin(reference_a4)
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_front - r11 * sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_front - r12 * sin_q1_before_q1_for_q3_front
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
-            # reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             if radius_q4 > 1e-11:
-                direction_x_q4_down = minus_r13_from_q123
+                direction_x_q4_down = -r13_from_q123
                 direction_y_q4_down = r23_from_q1
-                direction_x_q4_up = -minus_r13_from_q123
+                direction_x_q4_up = -direction_x_q4_down
                 direction_y_q4_up = -r23_from_q1
             else:
-                direction_x_q4_down = cos(reference_a4)
-                direction_y_q4_down = sin(reference_a4)
-                direction_x_q4_up = direction_x_q4_down
-                direction_y_q4_up = direction_y_q4_down
+                direction_x_q4_down = cos_of_reference_a4
+                direction_y_q4_down = sin_of_reference_a4
+                direction_x_q4_up = cos_of_reference_a4
+                direction_y_q4_up = sin_of_reference_a4
             r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
             minus_scaled_r21_from_q1234_down = direction_x_q4_down * r21_from_q1 + direction_y_q4_down * r11_from_q123
             r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
@@ -224,12 +222,10 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_minus_reach + effective_q3) * (a2_plus_reach + effective_q3)
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (effective_q3 - a2_minus_reach) * (a2_plus_reach - effective_q3)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
@@ -248,42 +244,42 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_down = reference_a2
             angle_q2_up = reference_a2
         axis_a2_back_down = offset_a2 + angle_q2_down * RADIAN
-        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_swing_q3 + part_of_angle_q3_front_down
         axis_a3_back_down = offset_a3 + angle_q3 * RADIAN
         r13_from_q1 = r13 * cos_q1_before_q1_for_q3_back + r23 * sin_q1_before_q1_for_q3_back
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1 * sin_q23 - r33 * cos_q23
+        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         r23_from_q1 = r23 * cos_q1_before_q1_for_q3_back - r13 * sin_q1_before_q1_for_q3_back
         # polar coordinates: the radius at angle q4
-        radius_q4 = sqrt(minus_r13_from_q123 * minus_r13_from_q123 + r23_from_q1 * r23_from_q1)
-        r12_from_q1 = r12 * cos_q1_before_q1_for_q3_back + r22 * sin_q1_before_q1_for_q3_back
+        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
         r11_from_q1 = r11 * cos_q1_before_q1_for_q3_back + r21 * sin_q1_before_q1_for_q3_back
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
-        # reference
+        r12_from_q1 = r12 * cos_q1_before_q1_for_q3_back + r22 * sin_q1_before_q1_for_q3_back
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 0.1:
-            direction_x_q4_down = minus_r13_from_q123
+            direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
             minus_scaled_r21_from_q1234_down = r12_from_q1 * cos_q23 + r32 * sin_q23
-            minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23) - r31 * sin_q23
+            minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23 + r31 * sin_q23)
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
+            cos_of_reference_a4 = cos(reference_a4)
+            sin_of_reference_a4 = sin(reference_a4)
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_back - r11 * sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_back - r12 * sin_q1_before_q1_for_q3_back
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
-            # reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             if radius_q4 > 1e-11:
-                direction_x_q4_down = minus_r13_from_q123
+                direction_x_q4_down = -r13_from_q123
                 direction_y_q4_down = r23_from_q1
-                direction_x_q4_up = -minus_r13_from_q123
+                direction_x_q4_up = -direction_x_q4_down
                 direction_y_q4_up = -r23_from_q1
             else:
-                direction_x_q4_down = cos(reference_a4)
-                direction_y_q4_down = sin(reference_a4)
-                direction_x_q4_up = direction_x_q4_down
-                direction_y_q4_up = direction_y_q4_down
+                direction_x_q4_down = cos_of_reference_a4
+                direction_y_q4_down = sin_of_reference_a4
+                direction_x_q4_up = cos_of_reference_a4
+                direction_y_q4_up = sin_of_reference_a4
             r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
             minus_scaled_r21_from_q1234_down = direction_x_q4_down * r21_from_q1 + direction_y_q4_down * r11_from_q123
             r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
@@ -309,37 +305,37 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
             )
         axis_a2_back_up = offset_a2 + angle_q2_up * RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q3 = part_of_angle_q3_front_down - angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3 * RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1 * sin_q23 - r33 * cos_q23
+        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         # polar coordinates: the radius at angle q4
-        radius_q4 = sqrt(minus_r13_from_q123 * minus_r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
-        # reference
+        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 0.1:
-            direction_x_q4_down = minus_r13_from_q123
+            direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
             minus_scaled_r21_from_q1234_down = r12_from_q1 * cos_q23 + r32 * sin_q23
-            minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23) - r31 * sin_q23
+            minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23 + r31 * sin_q23)
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
+            cos_of_reference_a4 = cos(reference_a4)
+            sin_of_reference_a4 = sin(reference_a4)
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_back - r11 * sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_back - r12 * sin_q1_before_q1_for_q3_back
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
-            # reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             if radius_q4 > 1e-11:
-                direction_x_q4_down = minus_r13_from_q123
+                direction_x_q4_down = -r13_from_q123
                 direction_y_q4_down = r23_from_q1
-                direction_x_q4_up = -minus_r13_from_q123
+                direction_x_q4_up = -direction_x_q4_down
                 direction_y_q4_up = -r23_from_q1
             else:
-                direction_x_q4_down = cos(reference_a4)
-                direction_y_q4_down = sin(reference_a4)
-                direction_x_q4_up = direction_x_q4_down
-                direction_y_q4_up = direction_y_q4_down
+                direction_x_q4_down = cos_of_reference_a4
+                direction_y_q4_down = sin_of_reference_a4
+                direction_x_q4_up = cos_of_reference_a4
+                direction_y_q4_up = sin_of_reference_a4
             r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
             minus_scaled_r21_from_q1234_down = direction_x_q4_down * r21_from_q1 + direction_y_q4_down * r11_from_q123
             r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
@@ -410,7 +406,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_front_down,
                 axis_a3_front_down,
                 direction_of_axis_a4_front_down_up,
-                offset_a5_times_2 - axis_a5_front_down_down,
+                twice_offset_a5 - axis_a5_front_down_down,
                 direction_of_axis_a6_front_down_up,
             )
             if refusal_front == 0
@@ -420,7 +416,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_back_down,
                 axis_a3_back_down,
                 direction_of_axis_a4_back_down_up,
-                offset_a5_times_2 - axis_a5_back_down_down,
+                twice_offset_a5 - axis_a5_back_down_down,
                 direction_of_axis_a6_back_down_up,
             )
             if refusal_back == 0
@@ -430,7 +426,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_front_up,
                 axis_a3_front_up,
                 direction_of_axis_a4_front_up_up,
-                offset_a5_times_2 - axis_a5_front_up_down,
+                twice_offset_a5 - axis_a5_front_up_down,
                 direction_of_axis_a6_front_up_up,
             )
             if refusal_front == 0
@@ -440,7 +436,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_back_up,
                 axis_a3_back_up,
                 direction_of_axis_a4_back_up_up,
-                offset_a5_times_2 - axis_a5_back_up_down,
+                twice_offset_a5 - axis_a5_back_up_down,
                 direction_of_axis_a6_back_up_up,
             )
             if refusal_back == 0
@@ -484,7 +480,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d3 * wrist_y) / divisor_q1
@@ -501,19 +497,18 @@ def unrolled(k: Constants) -> Unrolled:
             )
         else:
             angle_q2 = (ref_a2 - offset_a2) * DEGREE
-        angle_q3 = angle_of_a3_by_effective_q3 + arctan2(sin_swing_q3, cos_swing_q3)
+        angle_q3 = part_of_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)
         r13_from_q1 = r13 * cos_q1_before_q1_for_q3 + r23 * sin_q1_before_q1_for_q3
         angle_q23 = angle_q2 + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        minus_r13_from_q123 = r13_from_q1 * sin_q23 - r33 * cos_q23
+        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         r23_from_q1 = r23 * cos_q1_before_q1_for_q3 - r13 * sin_q1_before_q1_for_q3
         # polar coordinates: the radius at angle q4
-        radius_q4 = sqrt(minus_r13_from_q123 * minus_r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
-        # reference
+        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
+        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
         if radius_q4 > 0.1:
-            direction_x_q4 = sigma_hand * minus_r13_from_q123
+            direction_x_q4 = -sigma_hand * r13_from_q123
             direction_y_q4 = sigma_hand * r23_from_q1
             minus_scaled_r21_from_q1234 = sigma_hand * (
                 (r12 * cos_q1_before_q1_for_q3 + r22 * sin_q1_before_q1_for_q3) * cos_q23 + r32 * sin_q23
@@ -522,10 +517,9 @@ def unrolled(k: Constants) -> Unrolled:
                 (r11 * cos_q1_before_q1_for_q3 + r21 * sin_q1_before_q1_for_q3) * cos_q23 + r31 * sin_q23
             )
         else:
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
-            # reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
             if radius_q4 > 1e-11:
-                direction_x_q4 = sigma_hand * minus_r13_from_q123
+                direction_x_q4 = -sigma_hand * r13_from_q123
                 direction_y_q4 = sigma_hand * r23_from_q1
             else:
                 reference_a4 = (ref_a4 - offset_a4) * DEGREE

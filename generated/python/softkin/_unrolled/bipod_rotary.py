@@ -24,11 +24,11 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a1, offset_a2, outer_arm, single_a1 = k.offset_a1, k.offset_a2, k.outer_arm, k.single_a1
     single_a2, tcp_displacement = k.single_a2, k.tcp_displacement
     machine_scale_times_plane_2 = 1e-6 * machine_scale
-    displacement_minus_tcp_displacement = displacement - tcp_displacement
     inner_arm_times_shortest_link_2 = 1e-9 * inner_arm
-    assembly_sign_by_outer_arm_squared_2 = assembly_sign / (outer_arm * outer_arm)
-    inner_arm_plus_outer_arm_2 = inner_arm + outer_arm
+    displacement_minus_tcp_displacement = displacement - tcp_displacement
     inner_arm_minus_outer_arm_2 = inner_arm - outer_arm
+    inner_arm_plus_outer_arm_2 = inner_arm + outer_arm
+    assembly_sign_by_outer_arm_squared_2 = assembly_sign / (outer_arm * outer_arm)
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -45,12 +45,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > inner_arm_times_shortest_link_2):
             return 4 * (refused[Status.UNREACHABLE],)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
-        divisor_a1_minus_outer_arm = divisor_a1 - outer_arm
-        divisor_a1_plus_outer_arm = divisor_a1 + outer_arm
         # law of cosines for a1: rod 1: 1 - cosine, times a scale
-        one_less_cos_a1 = (divisor_a1_minus_outer_arm + inner_arm) * (divisor_a1_plus_outer_arm + inner_arm)
+        one_less_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm_2) * (divisor_a1 + inner_arm_plus_outer_arm_2)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (inner_arm - divisor_a1_minus_outer_arm) * (divisor_a1_plus_outer_arm - inner_arm)
+        one_plus_cos_a1 = (inner_arm_plus_outer_arm_2 - divisor_a1) * (divisor_a1 - inner_arm_minus_outer_arm_2)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
@@ -64,12 +62,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a2 > inner_arm_times_shortest_link_2):
             return 4 * (refused[Status.UNREACHABLE],)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
-        divisor_a2_minus_outer_arm = divisor_a2 - outer_arm
-        divisor_a2_plus_outer_arm = divisor_a2 + outer_arm
         # law of cosines for a2: rod 2: 1 - cosine, times a scale
-        one_less_cos_a2 = (inner_arm - divisor_a2_minus_outer_arm) * (divisor_a2_plus_outer_arm - inner_arm)
+        one_less_cos_a2 = (inner_arm_plus_outer_arm_2 - divisor_a2) * (divisor_a2 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2_minus_outer_arm + inner_arm) * (divisor_a2_plus_outer_arm + inner_arm)
+        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm_2) * (divisor_a2 + inner_arm_plus_outer_arm_2)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -77,30 +73,28 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 4 * (refused[Status.UNREACHABLE],)
+        cos_swing_a1_times_span_1_x = span_1_x * cos_swing_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) / divisor_of_cos_a1
-        sin_swing_a1_times_y_by_divisor_a1 = y * sin_swing_a1 / divisor_a1
-        cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x * cos_swing_a1 / divisor_a1
+        sin_swing_a1_outward_times_y = y * sin_swing_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
-        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
-        rod_1_x = x - pivot_1_x
-        sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x * sin_swing_a1 / divisor_a1
-        cos_swing_a1_times_y_by_divisor_a1 = y * cos_swing_a1 / divisor_a1
-        sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        rod_1_y = y + inner_arm * sin_a1
+        cos_a1 = (cos_swing_a1_times_span_1_x - sin_swing_a1_outward_times_y) / divisor_a1
+        rod_1_x = span_1_x + inner_arm * cos_a1
+        cos_swing_a1_times_y = y * cos_swing_a1
+        sin_swing_a1_outward_times_span_1_x = span_1_x * sin_swing_a1
+        sin_a1 = (cos_swing_a1_times_y + sin_swing_a1_outward_times_span_1_x) / divisor_a1
+        rod_1_y = y - (-inner_arm * sin_a1)
+        cos_swing_a2_times_span_2_x = span_2_x * cos_swing_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
-        sin_swing_a2_times_y_by_divisor_a2 = y * sin_swing_a2 / divisor_a2
-        cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x * cos_swing_a2 / divisor_a2
+        sin_swing_a2_inward_times_y = y * sin_swing_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = displacement_minus_tcp_displacement + inner_arm * cos_a2  # rod 2: centre about which it swings
-        rod_2_x_outward = x - pivot_2_x
-        sin_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x * sin_swing_a2 / divisor_a2
-        cos_swing_a2_times_y_by_divisor_a2 = y * cos_swing_a2 / divisor_a2
-        sin_a2 = -cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
-        rod_2_y_outward = y + inner_arm * sin_a2
+        cos_a2 = (cos_swing_a2_times_span_2_x - sin_swing_a2_inward_times_y) / divisor_a2
+        rod_2_x_outward = span_2_x - inner_arm * cos_a2
+        cos_swing_a2_times_y = y * cos_swing_a2
+        sin_swing_a2_inward_times_span_2_x = span_2_x * sin_swing_a2
+        sin_a2 = (-cos_swing_a2_times_y - sin_swing_a2_inward_times_span_2_x) / divisor_a2
+        rod_2_y_outward = y - (-inner_arm * sin_a2)
         type2_arms_aligned = assembly_sign_by_outer_arm_squared_2 * (
             rod_1_x * rod_2_y_outward - rod_1_y * rod_2_x_outward
         )
@@ -109,11 +103,10 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = displacement_minus_tcp_displacement + inner_arm * cos_a2  # rod 2: centre about which it swings
-        rod_2_x_inward = x - pivot_2_x
-        sin_a2 = sin_swing_a2_times_span_2_x_by_divisor_a2 - cos_swing_a2_times_y_by_divisor_a2
-        rod_2_y_inward = y + inner_arm * sin_a2
+        cos_a2 = (cos_swing_a2_times_span_2_x + sin_swing_a2_inward_times_y) / divisor_a2
+        rod_2_x_inward = span_2_x - inner_arm * cos_a2
+        sin_a2 = (sin_swing_a2_inward_times_span_2_x - cos_swing_a2_times_y) / divisor_a2
+        rod_2_y_inward = y - (-inner_arm * sin_a2)
         type2_arms_aligned = assembly_sign_by_outer_arm_squared_2 * (
             rod_1_x * rod_2_y_inward - rod_1_y * rod_2_x_inward
         )
@@ -121,11 +114,10 @@ def unrolled(k: Constants) -> Unrolled:
         refusal_outward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
-        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
-        rod_1_x = x - pivot_1_x
-        sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
-        rod_1_y = y + inner_arm * sin_a1
+        cos_a1 = (cos_swing_a1_times_span_1_x + sin_swing_a1_outward_times_y) / divisor_a1
+        rod_1_x = span_1_x + inner_arm * cos_a1
+        sin_a1 = (cos_swing_a1_times_y - sin_swing_a1_outward_times_span_1_x) / divisor_a1
+        rod_1_y = y - (-inner_arm * sin_a1)
         type2_arms_aligned = assembly_sign_by_outer_arm_squared_2 * (
             rod_1_x * rod_2_y_outward - rod_1_y * rod_2_x_outward
         )
@@ -188,17 +180,16 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1 = span_1_x * cos_swing_a1 / divisor_a1 - y * sin_swing_a1 / divisor_a1
-        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
-        sin_a1 = y * cos_swing_a1 / divisor_a1 + span_1_x * sin_swing_a1 / divisor_a1
+        cos_a1 = (span_1_x * cos_swing_a1 - y * sin_swing_a1) / divisor_a1
+        sin_a1 = (y * cos_swing_a1 + span_1_x * sin_swing_a1) / divisor_a1
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2 = span_2_x * cos_swing_a2 / divisor_a2 + y * sin_swing_a2 / divisor_a2
-        pivot_2_x = displacement_minus_tcp_displacement + inner_arm * cos_a2  # rod 2: centre about which it swings
-        sin_a2 = span_2_x * sin_swing_a2 / divisor_a2 - y * cos_swing_a2 / divisor_a2
+        cos_a2 = (span_2_x * cos_swing_a2 + y * sin_swing_a2) / divisor_a2
+        sin_a2 = (span_2_x * sin_swing_a2 - y * cos_swing_a2) / divisor_a2
         type2_arms_aligned = (
-            (x - pivot_1_x) * (y + inner_arm * sin_a2) - (x - pivot_2_x) * (y + inner_arm * sin_a1)
+            (span_1_x + inner_arm * cos_a1) * (y - (-inner_arm * sin_a2))
+            - (span_2_x - inner_arm * cos_a2) * (y - (-inner_arm * sin_a1))
         ) * assembly_sign_by_outer_arm_squared_2
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):

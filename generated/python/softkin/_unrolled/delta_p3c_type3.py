@@ -28,22 +28,22 @@ def unrolled(k: Constants) -> Unrolled:
     sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
     single_a1, single_a2, single_a3, tcp_radius_1 = k.single_a1, k.single_a2, k.single_a3, k.tcp_radius_1
     tcp_radius_2, tcp_radius_3 = k.tcp_radius_2, k.tcp_radius_3
-    constant_part = base_radius_1 * cos_azimuth_1 - tcp_radius_1 * cos_azimuth_1
-    constant_part_2 = base_radius_1 * sin_azimuth_1 - tcp_radius_1 * sin_azimuth_1
     inner_arm_1_times_shortest_link_2 = 1e-9 * inner_arm_1
-    constant_part_3 = base_radius_2 * cos_azimuth_2 - tcp_radius_2 * cos_azimuth_2
-    constant_part_4 = base_radius_2 * sin_azimuth_2 - tcp_radius_2 * sin_azimuth_2
     inner_arm_2_times_shortest_link_2 = 1e-9 * inner_arm_2
-    constant_part_5 = base_radius_3 * cos_azimuth_3 - tcp_radius_3 * cos_azimuth_3
-    constant_part_6 = base_radius_3 * sin_azimuth_3 - tcp_radius_3 * sin_azimuth_3
     inner_arm_3_times_shortest_link_2 = 1e-9 * inner_arm_3
+    part_of_span_1_x = tcp_radius_1 * cos_azimuth_1 - base_radius_1 * cos_azimuth_1
+    part_of_span_1_y = tcp_radius_1 * sin_azimuth_1 - base_radius_1 * sin_azimuth_1
+    part_of_span_2_x = tcp_radius_2 * cos_azimuth_2 - base_radius_2 * cos_azimuth_2
+    part_of_span_2_y = tcp_radius_2 * sin_azimuth_2 - base_radius_2 * sin_azimuth_2
+    part_of_span_3_x = tcp_radius_3 * cos_azimuth_3 - base_radius_3 * cos_azimuth_3
+    part_of_span_3_y = tcp_radius_3 * sin_azimuth_3 - base_radius_3 * sin_azimuth_3
     cos_azimuth_1_times_inner_arm_1_2 = inner_arm_1 * cos_azimuth_1
     inner_arm_1_times_sin_azimuth_1_2 = inner_arm_1 * sin_azimuth_1
     cos_azimuth_2_times_inner_arm_2_2 = inner_arm_2 * cos_azimuth_2
     inner_arm_2_times_sin_azimuth_2_2 = inner_arm_2 * sin_azimuth_2
     cos_azimuth_3_times_inner_arm_3_2 = inner_arm_3 * cos_azimuth_3
     inner_arm_3_times_sin_azimuth_3_2 = inner_arm_3 * sin_azimuth_3
-    constant_part_7 = assembly_sign / (outer_arm_1 * outer_arm_2 * outer_arm_3)
+    part_of_type2_rods_coplanar_outward_outward_outward = assembly_sign / (outer_arm_1 * outer_arm_2 * outer_arm_3)
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -51,22 +51,23 @@ def unrolled(k: Constants) -> Unrolled:
     ) -> tuple[Any, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = x - constant_part  # rod 1: known part of its vector
-        span_1_y = y - constant_part_2
+        span_1_x = part_of_span_1_x + x  # rod 1: known part of its vector
+        span_1_y = part_of_span_1_y + y
         along_a1 = span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1
         effective_a1 = sqrt(along_a1 * along_a1 + z * z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link_2):
             return 8 * (refused[Status.UNREACHABLE],)
+        part_of_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
         # square of the third side of the triangle
-        third_square_a1 = (outer_arm_1 + span_1_x * sin_azimuth_1 - span_1_y * cos_azimuth_1) * (
-            outer_arm_1 + span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
-        )
+        third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
+        effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
         # law of cosines for a1: rod 1: 1 - cosine, times a scale
-        one_less_cos_a1 = third_square_a1 - (divisor_a1 - inner_arm_1) * (divisor_a1 - inner_arm_1)
+        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
+        effective_a1_plus_inner_arm_1 = divisor_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (divisor_a1 + inner_arm_1) * (divisor_a1 + inner_arm_1) - third_square_a1
+        one_plus_cos_a1 = effective_a1_plus_inner_arm_1 * effective_a1_plus_inner_arm_1 - third_square_a1
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
@@ -74,22 +75,23 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 8 * (refused[Status.UNREACHABLE],)
-        span_2_x = x - constant_part_3  # rod 2: known part of its vector
-        span_2_y = y - constant_part_4
+        span_2_x = part_of_span_2_x + x  # rod 2: known part of its vector
+        span_2_y = part_of_span_2_y + y
         along_a2 = span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2
         effective_a2 = sqrt(along_a2 * along_a2 + z * z)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link_2):
             return 8 * (refused[Status.UNREACHABLE],)
+        part_of_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
         # square of the third side of the triangle
-        third_square_a2 = (outer_arm_2 + span_2_x * sin_azimuth_2 - span_2_y * cos_azimuth_2) * (
-            outer_arm_2 + span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
-        )
+        third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
+        effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
         # law of cosines for a2: rod 2: 1 - cosine, times a scale
-        one_less_cos_a2 = third_square_a2 - (divisor_a2 - inner_arm_2) * (divisor_a2 - inner_arm_2)
+        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
+        effective_a2_plus_inner_arm_2 = divisor_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm_2) * (divisor_a2 + inner_arm_2) - third_square_a2
+        one_plus_cos_a2 = effective_a2_plus_inner_arm_2 * effective_a2_plus_inner_arm_2 - third_square_a2
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -97,22 +99,23 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 8 * (refused[Status.UNREACHABLE],)
-        span_3_x = x - constant_part_5  # rod 3: known part of its vector
-        span_3_y = y - constant_part_6
+        span_3_x = part_of_span_3_x + x  # rod 3: known part of its vector
+        span_3_y = part_of_span_3_y + y
         along_a3 = span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3
         effective_a3 = sqrt(along_a3 * along_a3 + z * z)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link_2):
             return 8 * (refused[Status.UNREACHABLE],)
+        part_of_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
         # square of the third side of the triangle
-        third_square_a3 = (outer_arm_3 + span_3_x * sin_azimuth_3 - span_3_y * cos_azimuth_3) * (
-            outer_arm_3 + span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
-        )
+        third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
+        effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
         # law of cosines for a3: rod 3: 1 - cosine, times a scale
-        one_less_cos_a3 = third_square_a3 - (divisor_a3 - inner_arm_3) * (divisor_a3 - inner_arm_3)
+        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
+        effective_a3_plus_inner_arm_3 = divisor_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (divisor_a3 + inner_arm_3) * (divisor_a3 + inner_arm_3) - third_square_a3
+        one_plus_cos_a3 = effective_a3_plus_inner_arm_3 * effective_a3_plus_inner_arm_3 - third_square_a3
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a3 = one_less_cos_a3 + one_plus_cos_a3
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
@@ -122,53 +125,44 @@ def unrolled(k: Constants) -> Unrolled:
             return 8 * (refused[Status.UNREACHABLE],)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) / divisor_of_cos_a1
-        sin_swing_a1_times_z_by_divisor_a1 = z * sin_swing_a1 / divisor_a1
-        along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1 * cos_swing_a1 / divisor_a1
+        sin_swing_a1_inward_times_z = z * sin_swing_a1
+        along_a1_times_cos_swing_a1 = along_a1 * cos_swing_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
-        # rod 1: centre about which it swings
-        pivot_1_x = constant_part + cos_a1 * cos_azimuth_1_times_inner_arm_1_2
-        rod_1_x = x - pivot_1_x
-        rod_1_y = y - (constant_part_2 + inner_arm_1_times_sin_azimuth_1_2 * cos_a1)
-        cos_swing_a1_times_z_by_divisor_a1 = z * cos_swing_a1 / divisor_a1
-        along_a1_times_sin_swing_a1_by_divisor_a1 = along_a1 * sin_swing_a1 / divisor_a1
-        sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
-        rod_1_z = z + inner_arm_1 * sin_a1
+        cos_a1 = (along_a1_times_cos_swing_a1 - sin_swing_a1_inward_times_z) / divisor_a1
+        rod_1_x = span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1_2
+        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1_2 * cos_a1
+        cos_swing_a1_times_z = z * cos_swing_a1
+        along_a1_times_sin_swing_a1 = along_a1 * sin_swing_a1
+        sin_a1 = (-along_a1_times_sin_swing_a1 - cos_swing_a1_times_z) / divisor_a1
+        rod_1_z = z - (-inner_arm_1 * sin_a1)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
-        sin_swing_a2_times_z_by_divisor_a2 = z * sin_swing_a2 / divisor_a2
-        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2 * cos_swing_a2 / divisor_a2
+        sin_swing_a2_inward_times_z = z * sin_swing_a2
+        along_a2_times_cos_swing_a2 = along_a2 * cos_swing_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
-        # rod 2: centre about which it swings
-        pivot_2_x = constant_part_3 + cos_a2 * cos_azimuth_2_times_inner_arm_2_2
-        rod_2_x_outward = x - pivot_2_x
-        rod_2_y_outward = y - (constant_part_4 + inner_arm_2_times_sin_azimuth_2_2 * cos_a2)
-        cos_swing_a2_times_z_by_divisor_a2 = z * cos_swing_a2 / divisor_a2
-        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2 * sin_swing_a2 / divisor_a2
-        sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
-        rod_2_z_outward = z + inner_arm_2 * sin_a2
+        cos_a2 = (along_a2_times_cos_swing_a2 - sin_swing_a2_inward_times_z) / divisor_a2
+        rod_2_x_outward = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2_2
+        rod_2_y_outward = span_2_y - inner_arm_2_times_sin_azimuth_2_2 * cos_a2
+        cos_swing_a2_times_z = z * cos_swing_a2
+        along_a2_times_sin_swing_a2 = along_a2 * sin_swing_a2
+        sin_a2 = (-along_a2_times_sin_swing_a2 - cos_swing_a2_times_z) / divisor_a2
+        rod_2_z_outward = z - (-inner_arm_2 * sin_a2)
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) / divisor_of_cos_a3
-        sin_swing_a3_times_z_by_divisor_a3 = z * sin_swing_a3 / divisor_a3
-        along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3 * cos_swing_a3 / divisor_a3
+        sin_swing_a3_inward_times_z = z * sin_swing_a3
+        along_a3_times_cos_swing_a3 = along_a3 * cos_swing_a3
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
-        # rod 3: centre about which it swings
-        pivot_3_x = constant_part_5 + cos_a3 * cos_azimuth_3_times_inner_arm_3_2
-        rod_3_x_outward = x - pivot_3_x
-        rod_3_y_outward = y - (constant_part_6 + inner_arm_3_times_sin_azimuth_3_2 * cos_a3)
-        cos_swing_a3_times_z_by_divisor_a3 = z * cos_swing_a3 / divisor_a3
-        along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3 * sin_swing_a3 / divisor_a3
-        sin_a3 = -along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
-        rod_3_z_outward = z + inner_arm_3 * sin_a3
-        type2_rods_coplanar = constant_part_7 * (
-            rod_1_x * rod_2_y_outward * rod_3_z_outward
-            + rod_1_y * rod_2_z_outward * rod_3_x_outward
-            + rod_1_z * rod_2_x_outward * rod_3_y_outward
-            - rod_1_x * rod_2_z_outward * rod_3_y_outward
-            - rod_1_y * rod_2_x_outward * rod_3_z_outward
-            - rod_1_z * rod_2_y_outward * rod_3_x_outward
+        cos_a3 = (along_a3_times_cos_swing_a3 - sin_swing_a3_inward_times_z) / divisor_a3
+        rod_3_x_outward = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3_2
+        rod_3_y_outward = span_3_y - inner_arm_3_times_sin_azimuth_3_2 * cos_a3
+        cos_swing_a3_times_z = z * cos_swing_a3
+        along_a3_times_sin_swing_a3 = along_a3 * sin_swing_a3
+        sin_a3 = (-along_a3_times_sin_swing_a3 - cos_swing_a3_times_z) / divisor_a3
+        rod_3_z_outward = z - (-inner_arm_3 * sin_a3)
+        type2_rods_coplanar = -part_of_type2_rods_coplanar_outward_outward_outward * (
+            (rod_2_z_outward * rod_3_y_outward - rod_2_y_outward * rod_3_z_outward) * rod_1_x
+            + rod_1_y * (rod_2_x_outward * rod_3_z_outward - rod_2_z_outward * rod_3_x_outward)
+            + (rod_2_y_outward * rod_3_x_outward - rod_2_x_outward * rod_3_y_outward) * rod_1_z
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -176,100 +170,76 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 + sin_swing_a3_times_z_by_divisor_a3
-        # rod 3: centre about which it swings
-        pivot_3_x = constant_part_5 + cos_a3 * cos_azimuth_3_times_inner_arm_3_2
-        rod_3_x_inward = x - pivot_3_x
-        rod_3_y_inward = y - (constant_part_6 + inner_arm_3_times_sin_azimuth_3_2 * cos_a3)
-        sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
-        rod_3_z_inward = z + inner_arm_3 * sin_a3
-        type2_rods_coplanar = constant_part_7 * (
-            rod_1_x * rod_2_y_outward * rod_3_z_inward
-            + rod_1_y * rod_2_z_outward * rod_3_x_inward
-            + rod_1_z * rod_2_x_outward * rod_3_y_inward
-            - rod_1_x * rod_2_z_outward * rod_3_y_inward
-            - rod_1_y * rod_2_x_outward * rod_3_z_inward
-            - rod_1_z * rod_2_y_outward * rod_3_x_inward
+        cos_a3 = (along_a3_times_cos_swing_a3 + sin_swing_a3_inward_times_z) / divisor_a3
+        rod_3_x_inward = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3_2
+        rod_3_y_inward = span_3_y - inner_arm_3_times_sin_azimuth_3_2 * cos_a3
+        sin_a3 = (along_a3_times_sin_swing_a3 - cos_swing_a3_times_z) / divisor_a3
+        rod_3_z_inward = z - (-inner_arm_3 * sin_a3)
+        type2_rods_coplanar = -part_of_type2_rods_coplanar_outward_outward_outward * (
+            (rod_2_z_outward * rod_3_y_inward - rod_2_y_outward * rod_3_z_inward) * rod_1_x
+            + rod_1_y * (rod_2_x_outward * rod_3_z_inward - rod_2_z_outward * rod_3_x_inward)
+            + (rod_2_y_outward * rod_3_x_inward - rod_2_x_outward * rod_3_y_inward) * rod_1_z
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 + sin_swing_a2_times_z_by_divisor_a2
-        # rod 2: centre about which it swings
-        pivot_2_x = constant_part_3 + cos_a2 * cos_azimuth_2_times_inner_arm_2_2
-        rod_2_x_inward = x - pivot_2_x
-        rod_2_y_inward = y - (constant_part_4 + inner_arm_2_times_sin_azimuth_2_2 * cos_a2)
-        sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
-        rod_2_z_inward = z + inner_arm_2 * sin_a2
-        type2_rods_coplanar = constant_part_7 * (
-            rod_1_x * rod_2_y_inward * rod_3_z_outward
-            + rod_1_y * rod_2_z_inward * rod_3_x_outward
-            + rod_1_z * rod_2_x_inward * rod_3_y_outward
-            - rod_1_x * rod_2_z_inward * rod_3_y_outward
-            - rod_1_y * rod_2_x_inward * rod_3_z_outward
-            - rod_1_z * rod_2_y_inward * rod_3_x_outward
+        cos_a2 = (along_a2_times_cos_swing_a2 + sin_swing_a2_inward_times_z) / divisor_a2
+        rod_2_x_inward = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2_2
+        rod_2_y_inward = span_2_y - inner_arm_2_times_sin_azimuth_2_2 * cos_a2
+        sin_a2 = (along_a2_times_sin_swing_a2 - cos_swing_a2_times_z) / divisor_a2
+        rod_2_z_inward = z - (-inner_arm_2 * sin_a2)
+        type2_rods_coplanar = -part_of_type2_rods_coplanar_outward_outward_outward * (
+            (rod_2_z_inward * rod_3_y_outward - rod_2_y_inward * rod_3_z_outward) * rod_1_x
+            + rod_1_y * (rod_2_x_inward * rod_3_z_outward - rod_2_z_inward * rod_3_x_outward)
+            + (rod_2_y_inward * rod_3_x_outward - rod_2_x_inward * rod_3_y_outward) * rod_1_z
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
-        type2_rods_coplanar = constant_part_7 * (
-            rod_1_x * rod_2_y_inward * rod_3_z_inward
-            + rod_1_y * rod_2_z_inward * rod_3_x_inward
-            + rod_1_z * rod_2_x_inward * rod_3_y_inward
-            - rod_1_x * rod_2_z_inward * rod_3_y_inward
-            - rod_1_y * rod_2_x_inward * rod_3_z_inward
-            - rod_1_z * rod_2_y_inward * rod_3_x_inward
+        type2_rods_coplanar = -part_of_type2_rods_coplanar_outward_outward_outward * (
+            (rod_2_z_inward * rod_3_y_inward - rod_2_y_inward * rod_3_z_inward) * rod_1_x
+            + rod_1_y * (rod_2_x_inward * rod_3_z_inward - rod_2_z_inward * rod_3_x_inward)
+            + (rod_2_y_inward * rod_3_x_inward - rod_2_x_inward * rod_3_y_inward) * rod_1_z
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 + sin_swing_a1_times_z_by_divisor_a1
-        # rod 1: centre about which it swings
-        pivot_1_x = constant_part + cos_a1 * cos_azimuth_1_times_inner_arm_1_2
-        rod_1_x = x - pivot_1_x
-        rod_1_y = y - (constant_part_2 + inner_arm_1_times_sin_azimuth_1_2 * cos_a1)
-        sin_a1 = along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
-        rod_1_z = z + inner_arm_1 * sin_a1
-        type2_rods_coplanar = constant_part_7 * (
-            rod_1_x * rod_2_y_outward * rod_3_z_outward
-            + rod_1_y * rod_2_z_outward * rod_3_x_outward
-            + rod_1_z * rod_2_x_outward * rod_3_y_outward
-            - rod_1_x * rod_2_z_outward * rod_3_y_outward
-            - rod_1_y * rod_2_x_outward * rod_3_z_outward
-            - rod_1_z * rod_2_y_outward * rod_3_x_outward
+        cos_a1 = (along_a1_times_cos_swing_a1 + sin_swing_a1_inward_times_z) / divisor_a1
+        rod_1_x = span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1_2
+        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1_2 * cos_a1
+        sin_a1 = (along_a1_times_sin_swing_a1 - cos_swing_a1_times_z) / divisor_a1
+        rod_1_z = z - (-inner_arm_1 * sin_a1)
+        type2_rods_coplanar = -part_of_type2_rods_coplanar_outward_outward_outward * (
+            (rod_1_y * rod_3_z_outward - rod_1_z * rod_3_y_outward) * rod_2_x_outward
+            + (rod_1_z * rod_3_x_outward - rod_1_x * rod_3_z_outward) * rod_2_y_outward
+            + (rod_1_x * rod_3_y_outward - rod_1_y * rod_3_x_outward) * rod_2_z_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
-        type2_rods_coplanar = constant_part_7 * (
-            rod_1_x * rod_2_y_outward * rod_3_z_inward
-            + rod_1_y * rod_2_z_outward * rod_3_x_inward
-            + rod_1_z * rod_2_x_outward * rod_3_y_inward
-            - rod_1_x * rod_2_z_outward * rod_3_y_inward
-            - rod_1_y * rod_2_x_outward * rod_3_z_inward
-            - rod_1_z * rod_2_y_outward * rod_3_x_inward
+        type2_rods_coplanar = -part_of_type2_rods_coplanar_outward_outward_outward * (
+            (rod_1_y * rod_3_z_inward - rod_1_z * rod_3_y_inward) * rod_2_x_outward
+            + (rod_1_z * rod_3_x_inward - rod_1_x * rod_3_z_inward) * rod_2_y_outward
+            + (rod_1_x * rod_3_y_inward - rod_1_y * rod_3_x_inward) * rod_2_z_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        type2_rods_coplanar = constant_part_7 * (
-            rod_1_x * rod_2_y_inward * rod_3_z_outward
-            + rod_1_y * rod_2_z_inward * rod_3_x_outward
-            + rod_1_z * rod_2_x_inward * rod_3_y_outward
-            - rod_1_x * rod_2_z_inward * rod_3_y_outward
-            - rod_1_y * rod_2_x_inward * rod_3_z_outward
-            - rod_1_z * rod_2_y_inward * rod_3_x_outward
-        )
+        part_of_type2_rods_coplanar = rod_1_y * rod_2_z_inward - rod_1_z * rod_2_y_inward
+        part_of_type2_rods_coplanar_inward_inward_outward_2 = rod_1_z * rod_2_x_inward - rod_1_x * rod_2_z_inward
+        part_of_type2_rods_coplanar_inward_inward_outward_3 = rod_1_x * rod_2_y_inward - rod_1_y * rod_2_x_inward
+        type2_rods_coplanar = (
+            part_of_type2_rods_coplanar * rod_3_x_outward
+            + part_of_type2_rods_coplanar_inward_inward_outward_2 * rod_3_y_outward
+            + part_of_type2_rods_coplanar_inward_inward_outward_3 * rod_3_z_outward
+        ) * part_of_type2_rods_coplanar_outward_outward_outward
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        type2_rods_coplanar = constant_part_7 * (
-            rod_1_x * rod_2_y_inward * rod_3_z_inward
-            + rod_1_y * rod_2_z_inward * rod_3_x_inward
-            + rod_1_z * rod_2_x_inward * rod_3_y_inward
-            - rod_1_x * rod_2_z_inward * rod_3_y_inward
-            - rod_1_y * rod_2_x_inward * rod_3_z_inward
-            - rod_1_z * rod_2_y_inward * rod_3_x_inward
-        )
+        type2_rods_coplanar = (
+            part_of_type2_rods_coplanar * rod_3_x_inward
+            + part_of_type2_rods_coplanar_inward_inward_outward_2 * rod_3_y_inward
+            + part_of_type2_rods_coplanar_inward_inward_outward_3 * rod_3_z_inward
+        ) * part_of_type2_rods_coplanar_outward_outward_outward
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
@@ -303,22 +273,23 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
-        span_1_x = x - constant_part  # rod 1: known part of its vector
-        span_1_y = y - constant_part_2
+        span_1_x = part_of_span_1_x + x  # rod 1: known part of its vector
+        span_1_y = part_of_span_1_y + y
         along_a1 = span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1
         effective_a1 = sqrt(along_a1 * along_a1 + z * z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link_2):
             return None
+        part_of_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
         # square of the third side of the triangle
-        third_square_a1 = (outer_arm_1 + span_1_x * sin_azimuth_1 - span_1_y * cos_azimuth_1) * (
-            outer_arm_1 + span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
-        )
+        third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
+        effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
         # law of cosines for a1: rod 1: 1 - cosine, times a scale
-        one_less_cos_a1 = third_square_a1 - (divisor_a1 - inner_arm_1) * (divisor_a1 - inner_arm_1)
+        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
+        effective_a1_plus_inner_arm_1 = divisor_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (divisor_a1 + inner_arm_1) * (divisor_a1 + inner_arm_1) - third_square_a1
+        one_plus_cos_a1 = effective_a1_plus_inner_arm_1 * effective_a1_plus_inner_arm_1 - third_square_a1
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
@@ -326,22 +297,23 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
-        span_2_x = x - constant_part_3  # rod 2: known part of its vector
-        span_2_y = y - constant_part_4
+        span_2_x = part_of_span_2_x + x  # rod 2: known part of its vector
+        span_2_y = part_of_span_2_y + y
         along_a2 = span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2
         effective_a2 = sqrt(along_a2 * along_a2 + z * z)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link_2):
             return None
+        part_of_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
         # square of the third side of the triangle
-        third_square_a2 = (outer_arm_2 + span_2_x * sin_azimuth_2 - span_2_y * cos_azimuth_2) * (
-            outer_arm_2 + span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
-        )
+        third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
+        effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
         # law of cosines for a2: rod 2: 1 - cosine, times a scale
-        one_less_cos_a2 = third_square_a2 - (divisor_a2 - inner_arm_2) * (divisor_a2 - inner_arm_2)
+        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
+        effective_a2_plus_inner_arm_2 = divisor_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm_2) * (divisor_a2 + inner_arm_2) - third_square_a2
+        one_plus_cos_a2 = effective_a2_plus_inner_arm_2 * effective_a2_plus_inner_arm_2 - third_square_a2
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -349,22 +321,23 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
-        span_3_x = x - constant_part_5  # rod 3: known part of its vector
-        span_3_y = y - constant_part_6
+        span_3_x = part_of_span_3_x + x  # rod 3: known part of its vector
+        span_3_y = part_of_span_3_y + y
         along_a3 = span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3
         effective_a3 = sqrt(along_a3 * along_a3 + z * z)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link_2):
             return None
+        part_of_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
         # square of the third side of the triangle
-        third_square_a3 = (outer_arm_3 + span_3_x * sin_azimuth_3 - span_3_y * cos_azimuth_3) * (
-            outer_arm_3 + span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
-        )
+        third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
+        effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
         # law of cosines for a3: rod 3: 1 - cosine, times a scale
-        one_less_cos_a3 = third_square_a3 - (divisor_a3 - inner_arm_3) * (divisor_a3 - inner_arm_3)
+        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
+        effective_a3_plus_inner_arm_3 = divisor_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (divisor_a3 + inner_arm_3) * (divisor_a3 + inner_arm_3) - third_square_a3
+        one_plus_cos_a3 = effective_a3_plus_inner_arm_3 * effective_a3_plus_inner_arm_3 - third_square_a3
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a3 = one_less_cos_a3 + one_plus_cos_a3
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
@@ -375,40 +348,31 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1 = along_a1 * cos_swing_a1 / divisor_a1 + z * sin_swing_a1 / divisor_a1
-        # rod 1: centre about which it swings
-        pivot_1_x = constant_part + cos_a1 * cos_azimuth_1_times_inner_arm_1_2
-        rod_1_x = x - pivot_1_x
-        rod_1_y = y - (constant_part_2 + inner_arm_1_times_sin_azimuth_1_2 * cos_a1)
-        sin_a1 = along_a1 * sin_swing_a1 / divisor_a1 - z * cos_swing_a1 / divisor_a1
-        rod_1_z = z + inner_arm_1 * sin_a1
+        cos_a1 = (along_a1 * cos_swing_a1 + z * sin_swing_a1) / divisor_a1
+        sin_a1 = (along_a1 * sin_swing_a1 - z * cos_swing_a1) / divisor_a1
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2 = along_a2 * cos_swing_a2 / divisor_a2 + z * sin_swing_a2 / divisor_a2
-        # rod 2: centre about which it swings
-        pivot_2_x = constant_part_3 + cos_a2 * cos_azimuth_2_times_inner_arm_2_2
-        rod_2_x = x - pivot_2_x
-        rod_2_y = y - (constant_part_4 + inner_arm_2_times_sin_azimuth_2_2 * cos_a2)
-        sin_a2 = along_a2 * sin_swing_a2 / divisor_a2 - z * cos_swing_a2 / divisor_a2
-        rod_2_z = z + inner_arm_2 * sin_a2
+        cos_a2 = (along_a2 * cos_swing_a2 + z * sin_swing_a2) / divisor_a2
+        rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2_2
+        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2_2 * cos_a2
+        sin_a2 = (along_a2 * sin_swing_a2 - z * cos_swing_a2) / divisor_a2
+        rod_2_z = z - (-inner_arm_2 * sin_a2)
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_knee_3 / divisor_of_cos_a3
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a3 = along_a3 * cos_swing_a3 / divisor_a3 + z * sin_swing_a3 / divisor_a3
-        # rod 3: centre about which it swings
-        pivot_3_x = constant_part_5 + cos_a3 * cos_azimuth_3_times_inner_arm_3_2
-        rod_3_x = x - pivot_3_x
-        rod_3_y = y - (constant_part_6 + inner_arm_3_times_sin_azimuth_3_2 * cos_a3)
-        sin_a3 = along_a3 * sin_swing_a3 / divisor_a3 - z * cos_swing_a3 / divisor_a3
-        rod_3_z = z + inner_arm_3 * sin_a3
-        type2_rods_coplanar = constant_part_7 * (
-            rod_1_x * rod_2_y * rod_3_z
-            + rod_1_y * rod_2_z * rod_3_x
-            + rod_1_z * rod_2_x * rod_3_y
-            - rod_1_x * rod_2_z * rod_3_y
-            - rod_1_y * rod_2_x * rod_3_z
-            - rod_1_z * rod_2_y * rod_3_x
+        cos_a3 = (along_a3 * cos_swing_a3 + z * sin_swing_a3) / divisor_a3
+        rod_3_x = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3_2
+        rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3_2 * cos_a3
+        sin_a3 = (along_a3 * sin_swing_a3 - z * cos_swing_a3) / divisor_a3
+        rod_3_z = z - (-inner_arm_3 * sin_a3)
+        type2_rods_coplanar = (
+            -(
+                (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * (z - (-inner_arm_1 * sin_a1))
+                + (span_1_y - inner_arm_1_times_sin_azimuth_1_2 * cos_a1) * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
+                + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * (span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1_2)
+            )
+            * part_of_type2_rods_coplanar_outward_outward_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):

@@ -22,8 +22,8 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_z, mid_a, mid_b, offset_a, offset_b = k.lowest_z, k.mid_a, k.mid_b, k.offset_a, k.offset_b
     offset_x, offset_y, offset_z, single_a, single_b = k.offset_x, k.offset_y, k.offset_z, k.single_a, k.single_b
     tool_length, tool_side = k.tool_length, k.tool_side
+    twice_offset_b = 2.0 * offset_b
     tool_length_times_tool_side_2 = tool_length * tool_side
-    offset_b_times_2 = 2.0 * offset_b
     no_offsets = not any((offset_a, offset_b, offset_x, offset_y, offset_z))
 
     def branches(
@@ -39,8 +39,7 @@ def unrolled(k: Constants) -> Unrolled:
         r13_of_a = r13 / tool_side
         r23_of_a = r23 / tool_side
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
-        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the
-        # reference
+        # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
         if radius_a > 1e-11:
             direction_x_a_positive = r13_of_a
             direction_y_a_positive = r23_of_a
@@ -61,7 +60,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         return (
             (axis_x, axis_y, axis_z, axis_a, axis_b),
-            (axis_x, axis_y, axis_z, direction_of_axis_a, offset_b_times_2 - axis_b),
+            (axis_x, axis_y, axis_z, direction_of_axis_a, twice_offset_b - axis_b),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
@@ -73,8 +72,7 @@ def unrolled(k: Constants) -> Unrolled:
         r13_of_a = r13 / tool_side
         r23_of_a = r23 / tool_side
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
-        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the
-        # reference
+        # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
         if radius_a > 1e-11:
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a

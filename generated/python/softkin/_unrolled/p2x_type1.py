@@ -26,7 +26,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_plane_2 = 1e-6 * machine_scale
     arm_length_1_squared_times_rounding_2 = 1e-12 * arm_length_1 * arm_length_1
     arm_length_2_squared_times_rounding_2 = 1e-12 * arm_length_2 * arm_length_2
-    assembly_sign_by_arm_length_1_by_arm_length_2 = assembly_sign / (arm_length_1 * arm_length_2)
+    part_of_type2_arms_aligned_left_right = assembly_sign / (arm_length_1 * arm_length_2)
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -39,49 +39,53 @@ def unrolled(k: Constants) -> Unrolled:
             return 4 * (refused[Status.UNREACHABLE],)
         span_1_y = y - rail_y_1
         radicand_a1 = (arm_length_1 + span_1_y) * (arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
-        # rod 1 cannot reach
-        if not (radicand_a1 >= -arm_length_1_squared_times_rounding_2):
-            return 4 * (refused[Status.UNREACHABLE],)
+        if radicand_a1 > 0.0:
+            root_of_radicand_a1 = sqrt(radicand_a1)
+        else:
+            # rod 1 cannot reach
+            if not (radicand_a1 >= -arm_length_1_squared_times_rounding_2):
+                return 4 * (refused[Status.UNREACHABLE],)
+            root_of_radicand_a1 = 0.0
         span_2_y = y - rail_y_2
         radicand_a2 = (arm_length_2 + span_2_y) * (arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
-        # rod 2 cannot reach
-        if not (radicand_a2 >= -arm_length_2_squared_times_rounding_2):
-            return 4 * (refused[Status.UNREACHABLE],)
+        if radicand_a2 > 0.0:
+            root_of_radicand_a2 = sqrt(radicand_a2)
+        else:
+            # rod 2 cannot reach
+            if not (radicand_a2 >= -arm_length_2_squared_times_rounding_2):
+                return 4 * (refused[Status.UNREACHABLE],)
+            root_of_radicand_a2 = 0.0
         span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
-        a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
-        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
-        rod_2_x_times_span_1_y_right = (x - pivot_2_x) * span_1_y
+        a2 = root_of_radicand_a2 + span_2_x
+        rod_2_x_right_times_span_1_y = (span_2_x - a2) * span_1_y
         span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
-        a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
-        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
-        rod_1_x_times_span_2_y = (x - pivot_1_x) * span_2_y
-        type2_arms_aligned = assembly_sign_by_arm_length_1_by_arm_length_2 * (
-            rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right
+        a1 = span_1_x - root_of_radicand_a1
+        rod_1_x_left_times_span_2_y = (span_1_x - a1) * span_2_y
+        type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
+            rod_1_x_left_times_span_2_y - rod_2_x_right_times_span_1_y
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_left = a1 + offset_a1
         axis_a2_right = a2 + offset_a2
-        a2 = span_2_x - (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
-        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
-        rod_2_x_times_span_1_y_left = (x - pivot_2_x) * span_1_y
-        type2_arms_aligned = assembly_sign_by_arm_length_1_by_arm_length_2 * (
-            rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left
+        a2 = span_2_x - root_of_radicand_a2
+        rod_2_x_left_times_span_1_y = (span_2_x - a2) * span_1_y
+        type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
+            rod_1_x_left_times_span_2_y - rod_2_x_left_times_span_1_y
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_left = a2 + offset_a2
-        a1 = span_1_x + (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
-        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
-        rod_1_x_times_span_2_y = (x - pivot_1_x) * span_2_y
-        type2_arms_aligned = assembly_sign_by_arm_length_1_by_arm_length_2 * (
-            rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right
+        a1 = root_of_radicand_a1 + span_1_x
+        rod_1_x_right_times_span_2_y = (span_1_x - a1) * span_2_y
+        type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
+            rod_1_x_right_times_span_2_y - rod_2_x_right_times_span_1_y
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_right = a1 + offset_a1
-        type2_arms_aligned = assembly_sign_by_arm_length_1_by_arm_length_2 * (
-            rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left
+        type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
+            rod_1_x_right_times_span_2_y - rod_2_x_left_times_span_1_y
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_left = 0 if type2_arms_aligned >= min_type2_margin else 3
@@ -111,13 +115,11 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
         a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1
-        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
         span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
         a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
-        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
         type2_arms_aligned = (
-            (x - pivot_1_x) * (y - rail_y_2) - (x - pivot_2_x) * (y - rail_y_1)
-        ) * assembly_sign_by_arm_length_1_by_arm_length_2
+            (span_1_x - a1) * span_2_y - (span_2_x - a2) * span_1_y
+        ) * part_of_type2_arms_aligned_left_right
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None

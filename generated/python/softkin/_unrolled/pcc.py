@@ -35,15 +35,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane_2):
             return 2 * (refused[Status.UNREACHABLE],)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        link_length_1_minus_reach = link_length_1 - reach
-        link_length_1_plus_reach = link_length_1 + reach
         # law of cosines for a2_from_a1: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a2_from_a1 = (link_length_1_minus_reach + link_length_2) * (
-            link_length_1_plus_reach + link_length_2
+        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2_2 + reach) * (
+            link_length_1_plus_link_length_2_2 - reach
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_from_a1 = (link_length_2 - link_length_1_minus_reach) * (
-            link_length_1_plus_reach - link_length_2
+        one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2_2) * (
+            link_length_1_minus_link_length_2_2 + reach
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
@@ -65,9 +63,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            angle_a1_right = reference_a1
-            angle_a1_left = reference_a1
+            angle_a1_right = (ref_a1 - offset_a1) * DEGREE
+            angle_a1_left = angle_a1_right
         angle_a2_from_a1 = arctan2(sin_a2_from_a1, cos_a2_from_a1)
         # a2 from the sum a2_from_a1 of angles about parallel axes
         axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1) * RADIAN

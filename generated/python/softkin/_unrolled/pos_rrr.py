@@ -25,7 +25,7 @@ def unrolled(k: Constants) -> Unrolled:
     rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
     machine_scale_squared_times_plane_2 = 1e-6 * machine_scale * machine_scale
     machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    angle_of_a3_by_effective_q3_2 = arctan2(d4 / effective_q3_2 + 0.0, a3 / effective_q3_2 + 0.0)
+    part_of_angle_q3_front_down = arctan2(d4 / effective_q3_2 + 0.0, a3 / effective_q3_2 + 0.0)
     a2_plus_effective_q3_2_2 = a2 + effective_q3_2
     a2_minus_effective_q3_2_2 = a2 - effective_q3_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
@@ -50,33 +50,31 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return 4 * (refused[Status.UNREACHABLE],)
             ahead_q1_before_q1_for_q3 = 0.0
-        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
+        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_minus_reach + effective_q3_2) * (a2_plus_reach + effective_q3_2)
+        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach) * (a2_plus_reach - effective_q3_2)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
-            d3_times_y = d3 * y
-            ahead_q1_before_q1_for_q3_times_x = ahead_q1_before_q1_for_q3 * x
             divisor_q1 = distance_q1 * distance_q1
-            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_x - d3_times_y) / divisor_q1
+            ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3 * x
+            d3_times_y = d3 * y
+            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_x - d3_times_y) / divisor_q1
+            ahead_q1_before_q1_for_q3_front_times_y = ahead_q1_before_q1_for_q3 * y
             d3_times_x = d3 * x
-            ahead_q1_before_q1_for_q3_times_y = ahead_q1_before_q1_for_q3 * y
-            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_y + d3_times_x) / divisor_q1
-            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_x - d3_times_y) / divisor_q1
-            sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_times_y) / divisor_q1
+            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_y + d3_times_x) / divisor_q1
+            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front_times_x - d3_times_y) / divisor_q1
+            sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_front_times_y) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3_front = cos(reference_a1)
@@ -95,17 +93,15 @@ def unrolled(k: Constants) -> Unrolled:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             angle_q2_front_down = reference_a2
             angle_q2_front_up = reference_a2
-        angle_of_swing_q3_front_down = arctan2(-sin_swing_q3, cos_swing_q3)
+        angle_of_swing_q3_front_down = -arctan2(sin_swing_q3, cos_swing_q3)
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        a2_minus_reach = a2 - reach
-        a2_plus_reach = a2 + reach
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_minus_reach + effective_q3_2) * (a2_plus_reach + effective_q3_2)
+        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach) * (a2_plus_reach - effective_q3_2)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
@@ -123,33 +119,33 @@ def unrolled(k: Constants) -> Unrolled:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             angle_q2_back_down = reference_a2
             angle_q2_back_up = reference_a2
-        angle_of_swing_q3_back_down = arctan2(-sin_swing_q3, cos_swing_q3)
+        angle_of_swing_q3_back_down = -arctan2(sin_swing_q3, cos_swing_q3)
         return (
             (
                 axis_a1_front,
                 offset_a2 + angle_q2_front_down * RADIAN,
-                offset_a3 + (angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_front_down) * RADIAN,
+                offset_a3 + (angle_of_swing_q3_front_down + part_of_angle_q3_front_down) * RADIAN,
             )
             if refusal_front == 0
             else refused[refusal_front],
             (
                 axis_a1_back,
                 offset_a2 + angle_q2_back_down * RADIAN,
-                offset_a3 + (angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_back_down) * RADIAN,
+                offset_a3 + (angle_of_swing_q3_back_down + part_of_angle_q3_front_down) * RADIAN,
             )
             if refusal_back == 0
             else refused[refusal_back],
             (
                 axis_a1_front,
                 offset_a2 + angle_q2_front_up * RADIAN,
-                offset_a3 + (angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_front_down) * RADIAN,
+                offset_a3 + (part_of_angle_q3_front_down - angle_of_swing_q3_front_down) * RADIAN,
             )
             if refusal_front == 0
             else refused[refusal_front],
             (
                 axis_a1_back,
                 offset_a2 + angle_q2_back_up * RADIAN,
-                offset_a3 + (angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_back_down) * RADIAN,
+                offset_a3 + (part_of_angle_q3_front_down - angle_of_swing_q3_back_down) * RADIAN,
             )
             if refusal_back == 0
             else refused[refusal_back],
@@ -190,7 +186,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
-        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+        # rotation by q1 that points the arm at the point; if singular: that of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - d3 * y) / divisor_q1
@@ -211,12 +207,12 @@ def unrolled(k: Constants) -> Unrolled:
             return (
                 arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
                 angle_q2 * RADIAN,
-                (angle_of_a3_by_effective_q3_2 + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
+                (part_of_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
             )
         return (
             offset_a1 + arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
             offset_a2 + angle_q2 * RADIAN,
-            offset_a3 + (angle_of_a3_by_effective_q3_2 + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
+            offset_a3 + (part_of_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
         )
 
     def finish(found: tuple[Reals | int, ...], reference: Reals) -> tuple[Reals | int, ...]:

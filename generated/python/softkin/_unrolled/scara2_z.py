@@ -23,7 +23,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale, mid_a1, mid_a2, offset_a1 = k.machine_scale, k.mid_a1, k.mid_a2, k.offset_a1
     offset_a2, offset_z, single_a1, single_a2 = k.offset_a2, k.offset_z, k.single_a1, k.single_a2
     machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    offset_a2_times_2 = 2.0 * offset_a2
+    twice_offset_a2 = 2.0 * offset_a2
     arm_length_1_plus_arm_length_2_2 = arm_length_1 + arm_length_2
     arm_length_1_minus_arm_length_2_2 = arm_length_1 - arm_length_2
     no_offsets = not any((offset_a1, offset_a2, offset_z))
@@ -35,12 +35,10 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_a1, _, _ = 3 * (0.0,) if reference is None else reference
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        arm_length_1_minus_reach = arm_length_1 - reach
-        arm_length_1_plus_reach = arm_length_1 + reach
         # law of cosines for a2: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a2 = (arm_length_1_minus_reach + arm_length_2) * (arm_length_1_plus_reach + arm_length_2)
+        one_less_cos_a2 = (arm_length_1_plus_arm_length_2_2 + reach) * (arm_length_1_plus_arm_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_2 - arm_length_1_minus_reach) * (arm_length_1_plus_reach - arm_length_2)
+        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2_2) * (arm_length_1_minus_arm_length_2_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -56,14 +54,13 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            angle_a1_right = reference_a1
-            angle_a1_left = reference_a1
+            angle_a1_right = (ref_a1 - offset_a1) * DEGREE
+            angle_a1_left = angle_a1_right
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
         axis_z = offset_z + z
         return (
             (offset_a1 + angle_a1_right * RADIAN, axis_a2, axis_z),
-            (offset_a1 + angle_a1_left * RADIAN, offset_a2_times_2 - axis_a2, axis_z),
+            (offset_a1 + angle_a1_left * RADIAN, twice_offset_a2 - axis_a2, axis_z),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

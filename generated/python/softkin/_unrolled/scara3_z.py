@@ -48,12 +48,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across / heading_divisor
         wrist_y = y - arm_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
-        arm_length_1_minus_reach = arm_length_1 - reach
-        arm_length_1_plus_reach = arm_length_1 + reach
         # law of cosines for a2: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a2 = (arm_length_1_minus_reach + arm_length_2) * (arm_length_1_plus_reach + arm_length_2)
+        one_less_cos_a2 = (arm_length_1_plus_arm_length_2_2 + reach) * (arm_length_1_plus_arm_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_2 - arm_length_1_minus_reach) * (arm_length_1_plus_reach - arm_length_2)
+        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2_2) * (arm_length_1_minus_arm_length_2_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -69,9 +67,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
         else:
-            reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            angle_a1_right = reference_a1
-            angle_a1_left = reference_a1
+            angle_a1_right = (ref_a1 - offset_a1) * DEGREE
+            angle_a1_left = angle_a1_right
         angle_a2 = arctan2(sin_a2, cos_a2)
         part_of_axis_a2 = angle_a2 * RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)

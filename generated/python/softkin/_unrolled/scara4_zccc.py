@@ -48,12 +48,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across / heading_divisor
         wrist_y = y - link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
-        link_length_1_minus_reach = link_length_1 - reach
-        link_length_1_plus_reach = link_length_1 + reach
         # law of cosines for a3: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a3 = (link_length_1_minus_reach + link_length_2) * (link_length_1_plus_reach + link_length_2)
+        one_less_cos_a3 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (link_length_2 - link_length_1_minus_reach) * (link_length_1_plus_reach - link_length_2)
+        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a3 = one_less_cos_a3 + one_plus_cos_a3
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
@@ -70,9 +68,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
             angle_a2_left = angle_of_arm_along_a2 + angle_of_wrist_x
         else:
-            reference_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_a2_right = reference_a2
-            angle_a2_left = reference_a2
+            angle_a2_right = (ref_a2 - offset_a2) * DEGREE
+            angle_a2_left = angle_a2_right
         angle_a3 = arctan2(sin_a3, cos_a3)
         part_of_axis_a3 = angle_a3 * RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)

@@ -25,9 +25,9 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a4, pitch_zc, single_a1, single_a2 = k.offset_a4, k.pitch_zc, k.single_a1, k.single_a2
     single_a4 = k.single_a4
     machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    pitch_zc_by_360 = pitch_zc / 360.0
     link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
+    part_of_a3_right = pitch_zc / (360.0 * DEGREE)
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4))
 
     def branches(
@@ -44,12 +44,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 2 * (refused[Status.UNREACHABLE],)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        link_length_1_minus_reach = link_length_1 - reach
-        link_length_1_plus_reach = link_length_1 + reach
         # law of cosines for a2: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_minus_reach + link_length_2) * (link_length_1_plus_reach + link_length_2)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach) * (link_length_1_plus_reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -65,9 +63,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
-            reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            angle_a1_right = reference_a1
-            angle_a1_left = reference_a1
+            angle_a1_right = (ref_a1 - offset_a1) * DEGREE
+            angle_a1_left = angle_a1_right
         angle_a2 = arctan2(sin_a2, cos_a2)
         part_of_axis_a2 = angle_a2 * RADIAN
         angle_heading = arctan2(heading_across, heading_along)
@@ -77,13 +74,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
         a4 = DEGREE * (axis_a4_right - offset_a4)  # A4: joint value with its whole turns
-        a3_right = z + a4 * pitch_zc_by_360 * RADIAN  # a3 from the z equation, which is linear in it
+        a3_right = z + a4 * part_of_a3_right  # a3 from the z equation, which is linear in it
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left) / DEGREE
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
         a4 = DEGREE * (axis_a4_left - offset_a4)  # A4: joint value with its whole turns
-        a3_left = z + a4 * pitch_zc_by_360 * RADIAN  # a3 from the z equation, which is linear in it
+        a3_left = z + a4 * part_of_a3_right  # a3 from the z equation, which is linear in it
         return (
             (offset_a1 + angle_a1_right * RADIAN, offset_a2 + part_of_axis_a2, a3_right + offset_a3, axis_a4_right),
             (offset_a1 + angle_a1_left * RADIAN, offset_a2 - part_of_axis_a2, a3_left + offset_a3, axis_a4_left),
@@ -127,7 +124,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4 - open_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, open_a4)
         a4 = DEGREE * (axis_a4 - offset_a4)  # A4: joint value with its whole turns
-        a3 = z + a4 * pitch_zc_by_360 * RADIAN  # a3 from the z equation, which is linear in it
+        a3 = z + a4 * part_of_a3_right  # a3 from the z equation, which is linear in it
         if no_offsets:
             return (angle_a1 * RADIAN, angle_a2 * RADIAN, a3, axis_a4)
         return (offset_a1 + angle_a1 * RADIAN, offset_a2 + angle_a2 * RADIAN, a3 + offset_a3, axis_a4)

@@ -25,6 +25,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_free_angle_2 = 1e-11 * machine_scale
     link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
+    part_of_open_a2_right = coupling_12 / DEGREE
 
     def branches(
         frame: PlainFrame, reference: Reals | None = None, refused: Sequence[Any] = NOTHING
@@ -48,12 +49,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across / heading_divisor
         wrist_y = y - link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
-        link_length_1_minus_reach = link_length_1 - reach
-        link_length_1_plus_reach = link_length_1 + reach
         # law of cosines for a2: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_minus_reach + link_length_2) * (link_length_1_plus_reach + link_length_2)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach) * (link_length_1_plus_reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -76,40 +75,54 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_right = offset_a1 + angle_a1_right / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        angle_a2 = arctan2(sin_a2, cos_a2)
         motor_a1_right = DEGREE * (axis_a1_right - offset_a1)
+        part_of_axis_a2_right = motor_a1_right * part_of_open_a2_right
         axis_a1_left = offset_a1 + angle_a1_left / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         motor_a1_left = DEGREE * (axis_a1_left - offset_a1)
+        part_of_axis_a2_left = motor_a1_left * part_of_open_a2_right
         # A2: without a commanded turn, the value nearest to this
         if single_a2:
             open_a2_right = mid_a2
             open_a2_left = mid_a2
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            part_of_open_a2 = offset_a2 + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
-            open_a2_right = part_of_open_a2 - coupling_12 * motor_a1_right * RADIAN
-            open_a2_left = part_of_open_a2 - coupling_12 * motor_a1_left * RADIAN
-        # A2: whole turns added
-        axis_a2_right = offset_a2 + angle_a2 / DEGREE - coupling_12 * motor_a1_right / DEGREE
+            part_of_open_a2_right_2 = offset_a2 + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
+            open_a2_right = part_of_open_a2_right_2 - part_of_axis_a2_right
+            open_a2_left = part_of_open_a2_right_2 - part_of_axis_a2_left
+        angle_a2 = arctan2(sin_a2, cos_a2)
+        part_of_axis_a2_right_2 = angle_a2 * RADIAN
+        axis_a2_right = offset_a2 + part_of_axis_a2_right_2 - part_of_axis_a2_right  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right - open_a2_right < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2_right)
         angle_heading = arctan2(sin_heading, cos_heading)
         # a3 from the sum a123 of angles about parallel axes
         axis_a3_right = (
             offset_a3
-            + (angle_heading - angle_a1_right - angle_a2) * RADIAN
-            - (coupling_13 * motor_a1_right + (DEGREE * (axis_a2_right - offset_a2)) * coupling_23) * RADIAN
+            + (
+                angle_heading
+                - angle_a1_right
+                - angle_a2
+                - coupling_13 * motor_a1_right
+                - (DEGREE * (axis_a2_right - offset_a2)) * coupling_23
+            )
+            * RADIAN
         )
-        axis_a2_left = offset_a2 - angle_a2 / DEGREE - coupling_12 * motor_a1_left / DEGREE  # A2: whole turns added
+        axis_a2_left = offset_a2 - part_of_axis_a2_left - part_of_axis_a2_right_2  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left - open_a2_left < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
         # a3 from the sum a123 of angles about parallel axes
         axis_a3_left = (
             offset_a3
-            + (angle_a2 + angle_heading - angle_a1_left) * RADIAN
-            - (coupling_13 * motor_a1_left + (DEGREE * (axis_a2_left - offset_a2)) * coupling_23) * RADIAN
+            + (
+                angle_a2
+                + angle_heading
+                - angle_a1_left
+                - coupling_13 * motor_a1_left
+                - (DEGREE * (axis_a2_left - offset_a2)) * coupling_23
+            )
+            * RADIAN
         )
         return ((axis_a1_right, axis_a2_right, axis_a3_right), (axis_a1_left, axis_a2_left, axis_a3_left))
 
@@ -160,24 +173,27 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a1 = nearest_period(axis_a1, open_a1)
         angle_a2 = arctan2(sin_a2, cos_a2)
         motor_a1 = DEGREE * (axis_a1 - offset_a1)
+        part_of_axis_a2 = offset_a2 - motor_a1 * part_of_open_a2_right
         # A2: without a commanded turn, the value nearest to this
         if single_a2:
             open_a2 = mid_a2
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            open_a2 = (
-                offset_a2
-                + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
-                - coupling_12 * motor_a1 * RADIAN
-            )
-        axis_a2 = offset_a2 + angle_a2 / DEGREE - coupling_12 * motor_a1 / DEGREE  # A2: whole turns added
+            open_a2 = part_of_axis_a2 + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
+        axis_a2 = part_of_axis_a2 + angle_a2 / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - open_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, open_a2)
         # a3 from the sum a123 of angles about parallel axes
         axis_a3 = (
             offset_a3
-            + (arctan2(sin_heading, cos_heading) - angle_a1 - angle_a2) * RADIAN
-            - (coupling_13 * motor_a1 + (DEGREE * (axis_a2 - offset_a2)) * coupling_23) * RADIAN
+            + (
+                arctan2(sin_heading, cos_heading)
+                - angle_a1
+                - angle_a2
+                - coupling_13 * motor_a1
+                - (DEGREE * (axis_a2 - offset_a2)) * coupling_23
+            )
+            * RADIAN
         )
         return (axis_a1, axis_a2, axis_a3)
 

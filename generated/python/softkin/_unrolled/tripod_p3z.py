@@ -25,15 +25,18 @@ def unrolled(k: Constants) -> Unrolled:
     pivot_3_x, pivot_3_y, rail_x_1, rail_x_2 = k.pivot_3_x, k.pivot_3_y, k.rail_x_1, k.rail_x_2
     rail_x_3, rail_y_1, rail_y_2, rail_y_3 = k.rail_x_3, k.rail_y_1, k.rail_y_2, k.rail_y_3
     tcp_displacement = k.tcp_displacement
-    constant_part = rail_x_1 * tcp_displacement / sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1) - rail_x_1
-    constant_part_2 = rail_y_1 * tcp_displacement / sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1) - rail_y_1
     arm_length_squared_2 = arm_length * arm_length
     arm_length_squared_times_rounding_2 = 1e-12 * arm_length * arm_length
-    constant_part_3 = rail_x_2 * tcp_displacement / sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2) - rail_x_2
-    constant_part_4 = rail_y_2 * tcp_displacement / sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2) - rail_y_2
-    constant_part_5 = rail_x_3 * tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3) - rail_x_3
-    constant_part_6 = rail_y_3 * tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3) - rail_y_3
-    assembly_sign_by_constant_part = assembly_sign / (arm_length * arm_length * arm_length)
+    part_of_span_1_x_2_2 = sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1)
+    part_of_span_1_x_2 = rail_x_1 - rail_x_1 * tcp_displacement / part_of_span_1_x_2_2
+    part_of_span_1_y_2 = rail_y_1 - rail_y_1 * tcp_displacement / part_of_span_1_x_2_2
+    part_of_span_2_x_2_2 = sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2)
+    part_of_span_2_x_2 = rail_x_2 - rail_x_2 * tcp_displacement / part_of_span_2_x_2_2
+    part_of_span_2_y_2 = rail_y_2 - rail_y_2 * tcp_displacement / part_of_span_2_x_2_2
+    part_of_span_3_x_2_2 = sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3)
+    part_of_span_3_x_2 = rail_x_3 - rail_x_3 * tcp_displacement / part_of_span_3_x_2_2
+    part_of_span_3_y_2 = rail_y_3 - rail_y_3 * tcp_displacement / part_of_span_3_x_2_2
+    part_of_type2_rods_coplanar_above_above_above = assembly_sign / (arm_length * arm_length * arm_length)
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -41,128 +44,125 @@ def unrolled(k: Constants) -> Unrolled:
     ) -> tuple[Any, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = constant_part + x  # rod 1: known part of its vector
-        span_1_y = constant_part_2 + y
+        span_1_x = x - part_of_span_1_x_2  # rod 1: known part of its vector
+        span_1_y = y - part_of_span_1_y_2
         # quadratic equation for a1: rod 1
         radicand_a1 = arm_length_squared_2 - span_1_x * span_1_x - span_1_y * span_1_y
         if radicand_a1 > 0.0:
-            a1 = z + sqrt(radicand_a1)
+            root_of_radicand_a1 = sqrt(radicand_a1)
         else:
             # rod 1 cannot reach
             if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
                 return 8 * (refused[Status.UNREACHABLE],)
-            a1 = z
-        span_2_x = constant_part_3 + x  # rod 2: known part of its vector
-        span_2_y = constant_part_4 + y
+            root_of_radicand_a1 = 0.0
+        span_2_x = x - part_of_span_2_x_2  # rod 2: known part of its vector
+        span_2_y = y - part_of_span_2_y_2
         # quadratic equation for a2: rod 2
         radicand_a2 = arm_length_squared_2 - span_2_x * span_2_x - span_2_y * span_2_y
         if radicand_a2 > 0.0:
-            a2 = z + sqrt(radicand_a2)
+            root_of_radicand_a2 = sqrt(radicand_a2)
         else:
             # rod 2 cannot reach
             if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
                 return 8 * (refused[Status.UNREACHABLE],)
-            a2 = z
-        span_3_x = constant_part_5 + x  # rod 3: known part of its vector
-        span_3_y = constant_part_6 + y
+            root_of_radicand_a2 = 0.0
+        span_3_x = x - part_of_span_3_x_2  # rod 3: known part of its vector
+        span_3_y = y - part_of_span_3_y_2
         # quadratic equation for a3: rod 3
         radicand_a3 = arm_length_squared_2 - span_3_x * span_3_x - span_3_y * span_3_y
         if radicand_a3 > 0.0:
-            a3 = z + sqrt(radicand_a3)
+            root_of_radicand_a3 = sqrt(radicand_a3)
         else:
             # rod 3 cannot reach
             if not (radicand_a3 >= -arm_length_squared_times_rounding_2):
                 return 8 * (refused[Status.UNREACHABLE],)
-            a3 = z
-        rod_3_x = x - pivot_3_x
-        rod_3_y = y - pivot_3_y
+            root_of_radicand_a3 = 0.0
+        a1 = root_of_radicand_a1 + z
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        rod_1_z = z - a1
-        part_of_type2_rods_coplanar_above_above_above_3 = rod_1_z * rod_2_x * rod_3_y - rod_1_z * rod_2_y * rod_3_x
+        rod_3_x = x - pivot_3_x
+        rod_3_y = y - pivot_3_y
+        part_of_type2_rods_coplanar_above_above_above_2 = rod_2_x * rod_3_y - rod_2_y * rod_3_x
+        part_of_type2_rods_coplanar_above_above_above_3 = (z - a1) * part_of_type2_rods_coplanar_above_above_above_2
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
+        a3 = root_of_radicand_a3 + z
         rod_3_z = z - a3
-        part_of_type2_rods_coplanar = rod_1_x * rod_2_y * rod_3_z - rod_1_y * rod_2_x * rod_3_z
-        part_of_type2_rods_coplanar_above_above_above_4 = (
-            part_of_type2_rods_coplanar + part_of_type2_rods_coplanar_above_above_above_3
-        )
+        rod_2_y_times_rod_3_z_above = rod_2_y * rod_3_z
+        a2 = root_of_radicand_a2 + z
         rod_2_z = z - a2
-        part_of_type2_rods_coplanar_above_above_above_2 = rod_1_x * rod_2_z * rod_3_y - rod_1_y * rod_2_z * rod_3_x
-        type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_above_above_4 - part_of_type2_rods_coplanar_above_above_above_2
-        ) * assembly_sign_by_constant_part
+        rod_2_z_above_times_rod_3_y = rod_2_z * rod_3_y
+        rod_2_z_above_times_rod_3_x = rod_2_z * rod_3_x
+        rod_2_x_times_rod_3_z_above = rod_2_x * rod_3_z
+        part_of_type2_rods_coplanar_above_above_above_4 = (
+            rod_1_x * (rod_2_y_times_rod_3_z_above - rod_2_z_above_times_rod_3_y)
+            + (rod_2_z_above_times_rod_3_x - rod_2_x_times_rod_3_z_above) * rod_1_y
+        )
+        type2_rods_coplanar = part_of_type2_rods_coplanar_above_above_above * (
+            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_above_above_above_4
+        )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_above = a1 + offset_a1
         axis_a2_above = a2 + offset_a2
         axis_a3_above = a3 + offset_a3
-        a3 = z - (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)
+        a3 = z - root_of_radicand_a3
         rod_3_z = z - a3
-        part_of_type2_rods_coplanar_above_below_above = rod_1_x * rod_2_y * rod_3_z - rod_1_y * rod_2_x * rod_3_z
-        part_of_type2_rods_coplanar_above_below_above_below_above_below_4 = (
-            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_above_below_above
+        rod_2_y_times_rod_3_z_below = rod_2_y * rod_3_z
+        rod_2_x_times_rod_3_z_below = rod_2_x * rod_3_z
+        part_of_type2_rods_coplanar_above_below = (
+            rod_2_z_above_times_rod_3_y - rod_2_y_times_rod_3_z_below
+        ) * rod_1_x + rod_1_y * (rod_2_x_times_rod_3_z_below - rod_2_z_above_times_rod_3_x)
+        type2_rods_coplanar = part_of_type2_rods_coplanar_above_above_above * (
+            part_of_type2_rods_coplanar_above_above_above_3 - part_of_type2_rods_coplanar_above_below
         )
-        type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_below_above_below_above_below_4
-            - part_of_type2_rods_coplanar_above_above_above_2
-        ) * assembly_sign_by_constant_part
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_below = a3 + offset_a3
-        a2 = z - (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        a2 = z - root_of_radicand_a2
         rod_2_z = z - a2
-        part_of_type2_rods_coplanar_above_below_above_below_above_below_2 = (
-            rod_1_x * rod_2_z * rod_3_y - rod_1_y * rod_2_z * rod_3_x
+        rod_2_z_below_times_rod_3_y = rod_2_z * rod_3_y
+        rod_2_z_below_times_rod_3_x = rod_2_z * rod_3_x
+        part_of_type2_rods_coplanar_below_above = (
+            rod_1_x * (rod_2_y_times_rod_3_z_above - rod_2_z_below_times_rod_3_y)
+            + (rod_2_z_below_times_rod_3_x - rod_2_x_times_rod_3_z_above) * rod_1_y
         )
-        type2_rods_coplanar = assembly_sign_by_constant_part * (
-            part_of_type2_rods_coplanar_above_above_above_4
-            - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
+        type2_rods_coplanar = part_of_type2_rods_coplanar_above_above_above * (
+            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_below_above
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_below = a2 + offset_a2
-        type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_below_above_below_above_below_4
-            - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
-        ) * assembly_sign_by_constant_part
+        part_of_type2_rods_coplanar_below_below = (
+            rod_1_x * (rod_2_y_times_rod_3_z_below - rod_2_z_below_times_rod_3_y)
+            + (rod_2_z_below_times_rod_3_x - rod_2_x_times_rod_3_z_below) * rod_1_y
+        )
+        type2_rods_coplanar = part_of_type2_rods_coplanar_above_above_above * (
+            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_below_below
+        )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        a1 = z - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
-        rod_1_z = z - a1
-        part_of_type2_rods_coplanar_above_below_above_below_above_below_3 = (
-            rod_1_z * rod_2_x * rod_3_y - rod_1_z * rod_2_y * rod_3_x
-        )
-        part_of_type2_rods_coplanar_above_below_above_below_above_below_5 = (
-            part_of_type2_rods_coplanar + part_of_type2_rods_coplanar_above_below_above_below_above_below_3
-        )
+        a1 = z - root_of_radicand_a1
+        part_of_type2_rods_coplanar_above_above = (z - a1) * part_of_type2_rods_coplanar_above_above_above_2
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_below_above_below_above_below_5
-            - part_of_type2_rods_coplanar_above_above_above_2
-        ) * assembly_sign_by_constant_part
+            part_of_type2_rods_coplanar_above_above + part_of_type2_rods_coplanar_above_above_above_4
+        ) * part_of_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_below = a1 + offset_a1
-        part_of_type2_rods_coplanar_above_below_above_below_above_below_6 = (
-            part_of_type2_rods_coplanar_above_below_above
-            + part_of_type2_rods_coplanar_above_below_above_below_above_below_3
-        )
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_below_above_below_above_below_6
-            - part_of_type2_rods_coplanar_above_above_above_2
-        ) * assembly_sign_by_constant_part
+            part_of_type2_rods_coplanar_above_above - part_of_type2_rods_coplanar_above_below
+        ) * part_of_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_below_above_below_above_below_5
-            - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
-        ) * assembly_sign_by_constant_part
+            part_of_type2_rods_coplanar_above_above + part_of_type2_rods_coplanar_below_above
+        ) * part_of_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_below_above_below_above_below_6
-            - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
-        ) * assembly_sign_by_constant_part
+            part_of_type2_rods_coplanar_above_above + part_of_type2_rods_coplanar_below_below
+        ) * part_of_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
@@ -196,8 +196,8 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
-        span_1_x = constant_part + x  # rod 1: known part of its vector
-        span_1_y = constant_part_2 + y
+        span_1_x = x - part_of_span_1_x_2  # rod 1: known part of its vector
+        span_1_y = y - part_of_span_1_y_2
         # quadratic equation for a1: rod 1
         radicand_a1 = arm_length_squared_2 - span_1_x * span_1_x - span_1_y * span_1_y
         if radicand_a1 > 0.0:
@@ -207,8 +207,8 @@ def unrolled(k: Constants) -> Unrolled:
             if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
                 return None
             a1 = z
-        span_2_x = constant_part_3 + x  # rod 2: known part of its vector
-        span_2_y = constant_part_4 + y
+        span_2_x = x - part_of_span_2_x_2  # rod 2: known part of its vector
+        span_2_y = y - part_of_span_2_y_2
         # quadratic equation for a2: rod 2
         radicand_a2 = arm_length_squared_2 - span_2_x * span_2_x - span_2_y * span_2_y
         if radicand_a2 > 0.0:
@@ -218,8 +218,8 @@ def unrolled(k: Constants) -> Unrolled:
             if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
                 return None
             a2 = z
-        span_3_x = constant_part_5 + x  # rod 3: known part of its vector
-        span_3_y = constant_part_6 + y
+        span_3_x = x - part_of_span_3_x_2  # rod 3: known part of its vector
+        span_3_y = y - part_of_span_3_y_2
         # quadratic equation for a3: rod 3
         radicand_a3 = arm_length_squared_2 - span_3_x * span_3_x - span_3_y * span_3_y
         if radicand_a3 > 0.0:
@@ -229,23 +229,17 @@ def unrolled(k: Constants) -> Unrolled:
             if not (radicand_a3 >= -arm_length_squared_times_rounding_2):
                 return None
             a3 = z
-        rod_1_x = x - pivot_1_x
-        rod_1_y = y - pivot_1_y
-        rod_1_z = z - a1
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
         rod_2_z = z - a2
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
         rod_3_z = z - a3
-        type2_rods_coplanar = assembly_sign_by_constant_part * (
-            rod_1_x * rod_2_y * rod_3_z
-            + rod_1_y * rod_2_z * rod_3_x
-            + rod_1_z * rod_2_x * rod_3_y
-            - rod_1_x * rod_2_z * rod_3_y
-            - rod_1_y * rod_2_x * rod_3_z
-            - rod_1_z * rod_2_y * rod_3_x
-        )
+        type2_rods_coplanar = (
+            (z - a1) * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * (y - pivot_1_y)
+            + (x - pivot_1_x) * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+        ) * part_of_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             return None

@@ -20,7 +20,7 @@ def unrolled(k: Constants) -> Unrolled:
     highest_a, highest_b, lowest_a, lowest_b, mid_a = k.highest_a, k.highest_b, k.lowest_a, k.lowest_b, k.mid_a
     mid_b, offset_a, offset_b, single_a, single_b = k.mid_b, k.offset_a, k.offset_b, k.single_a, k.single_b
     tool_side = k.tool_side
-    offset_b_times_2 = 2.0 * offset_b
+    twice_offset_b = 2.0 * offset_b
     no_offsets = not any((offset_a, offset_b))
 
     def branches(
@@ -32,8 +32,7 @@ def unrolled(k: Constants) -> Unrolled:
         r13_of_a = r13 / tool_side
         r23_of_a = r23 / tool_side
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
-        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the
-        # reference
+        # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
         if radius_a > 1e-11:
             direction_x_a_positive = r13_of_a
             direction_y_a_positive = r23_of_a
@@ -52,7 +51,7 @@ def unrolled(k: Constants) -> Unrolled:
             if radius_a > 1e-11
             else offset_a + arctan2(direction_y_a_negative, direction_x_a_negative) * RADIAN
         )
-        return ((axis_a, axis_b), (direction_of_axis_a, offset_b_times_2 - axis_b))
+        return ((axis_a, axis_b), (direction_of_axis_a, twice_offset_b - axis_b))
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
@@ -62,8 +61,7 @@ def unrolled(k: Constants) -> Unrolled:
         r13_of_a = r13 / tool_side
         r23_of_a = r23 / tool_side
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
-        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the
-        # reference
+        # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
         if radius_a > 1e-11:
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a

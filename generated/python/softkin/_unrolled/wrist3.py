@@ -21,7 +21,7 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_b, lowest_c, mid_a, mid_b, mid_c = k.lowest_b, k.lowest_c, k.mid_a, k.mid_b, k.mid_c
     offset_a, offset_b, offset_c, single_a, single_b = k.offset_a, k.offset_b, k.offset_c, k.single_a, k.single_b
     single_c = k.single_c
-    offset_b_times_2 = 2.0 * offset_b
+    twice_offset_b = 2.0 * offset_b
     no_offsets = not any((offset_a, offset_b, offset_c))
 
     def branches(
@@ -31,8 +31,7 @@ def unrolled(k: Constants) -> Unrolled:
         _, ((r11, r12, _), (r21, r22, _), (r31, r32, r33)) = frame
         _, _, ref_c = 3 * (0.0,) if reference is None else reference
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
-        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the
-        # reference
+        # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
         if radius_c > 1e-11:
             direction_x_c_down = r31
             direction_y_c_down = -r32
@@ -64,7 +63,7 @@ def unrolled(k: Constants) -> Unrolled:
                 * RADIAN
             )
             direction_of_axis_c = offset_c + arctan2(direction_y_c_up, direction_x_c_up) * RADIAN
-        return ((axis_a, axis_b, axis_c), (direction_of_axis_a, offset_b_times_2 - axis_b, direction_of_axis_c))
+        return ((axis_a, axis_b, axis_c), (direction_of_axis_a, twice_offset_b - axis_b, direction_of_axis_c))
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
@@ -72,8 +71,7 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_hand,) = signs
         _, _, ref_c = 3 * (0.0,) if reference is None else reference
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
-        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the
-        # reference
+        # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
         if radius_c > 1e-11:
             direction_x_c = sigma_hand * r31
             direction_y_c = -sigma_hand * r32

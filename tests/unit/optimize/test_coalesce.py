@@ -1,4 +1,4 @@
-"""What branches share, and what they need not both hold: common parts, names used again, and the order of branches."""
+"""Unrolled branches: one after the other, with the names of the one before, and what both sides of a choice bind."""
 
 from __future__ import annotations
 
@@ -21,9 +21,8 @@ from derive.ir.symbols import (
 from derive.ir.tree import If
 from derive.lowering.scheduling import scheduled, spared
 from derive.optimize.coalesce import reused_names
-from derive.optimize.common_parts import common_parts
 from derive.optimize.unroll import Sign, unroll, without_words
-from tests.unit.optimize.test_twins import same, values
+from tests.unit.optimize.test_twins import values
 
 ARM, ELBOW = Sign(real("sigma_arm"), ("front", "back")), Sign(real("sigma_elbow"), ("down", "up"))
 SIGNS = (ARM, ELBOW)
@@ -32,57 +31,6 @@ A, B, C, P, Q, R, X, Y = (real(n) for n in "abcpqrxy")
 
 def unrolled(*body: Statement, outputs: dict[str, sp.Expr]) -> Program:
     return unroll(assemble("p", body, [Output(name, value) for name, value in outputs.items()]), SIGNS)
-
-
-def shared(program: Program, constants: str = "") -> Program:
-    return common_parts(program, SIGNS, frozenset(constants))
-
-
-def test_products_of_both_branches_are_computed_once() -> None:
-    swing = Let(R, ELBOW.symbol * Root(X))
-    turned = (Let(real("c"), P * Y - Q * R), Let(real("s"), Q * Y + P * R))
-    program = unrolled(swing, *turned, outputs={"c": C, "s": real("s")})
-    found = values(shared(program))
-    assert found["p_times_y"] == P * Y and found["q_times_r_down"] == Q * real("r_down")
-    assert {found["c_down"], found["c_up"]} == {
-        real("p_times_y") - real("q_times_r_down"),
-        real("p_times_y") + real("q_times_r_down"),
-    }
-    same(program, shared(program))
-
-
-def test_a_sum_within_sums_is_computed_once() -> None:
-    first = Let(A, X * P + Y * Q - R * ELBOW.symbol)
-    program = unrolled(first, Let(B, X * P + Y * Q + C), outputs={"a": A, "b": B})
-    found = shared(program)
-    assert sum(let.value.has(P) for let in found.lets()) == 1
-    same(program, found)
-
-
-def test_a_part_that_has_a_name_keeps_it() -> None:
-    lets = (Let(A, X - Y), Let(B, X - Y + P), Let(C, Y - X + Q))
-    program = assemble("p", lets, [Output("o", A * B * C)])
-    assert values(shared(program)) == {"a": X - Y, "b": A + P, "c": Q - A}
-
-
-def test_parts_are_found_on_sides_of_choices_and_in_quotients() -> None:
-    regular = sp.Gt(R, 1)
-    lets = (Let(A, Select(regular, (X * P + Y * Q) / R, C)), Let(B, Select(regular, (X * P - Y * Q) / R, C)))
-    program = assemble("p", lets, [Output("a", A), Output("b", B)])
-    assert values(shared(program))["p_times_x"] == P * X
-    same(program, shared(program))
-
-
-def test_parts_of_constants_alone_are_not_touched() -> None:
-    program = assemble("p", [Let(A, X + P * Q), Let(B, Y + P * Q)], [Output("o", A * B)])
-    assert shared(program, "pq") == program
-    assert "p_times_q" in values(shared(program))
-
-
-def test_what_is_too_long_to_say_is_a_part_of_its_first_reader() -> None:
-    product = real("a_name_that_is_itself_already_quite_long") * real("another_name_that_is_not_short_either")
-    program = assemble("p", [Let(A, X + product), Let(B, Y + product)], [Output("o", A * B)])
-    assert values(shared(program))["part_of_a"] == product
 
 
 def test_squares_that_differ_with_equal_sums_have_one_name() -> None:
