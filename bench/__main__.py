@@ -39,8 +39,14 @@ class Quality:
 
 def main() -> None:
     """Measure and print."""
-    print(f"Python {sys.version.split()[0]}, NumPy {np.__version__}; least of {ROUNDS} rounds ({BATCH_ROUNDS} of batches).")
-    print(f"Poses: {SCALAR} random, a call each behind {WARMING} others; {ROWS} random, one call; 4096 of a grid for quality.")
+    print(
+        f"Python {sys.version.split()[0]}, NumPy {np.__version__}; least of {ROUNDS} rounds ({BATCH_ROUNDS} of "
+        f"batches)."
+    )
+    print(
+        f"Poses: {SCALAR} random, a call each behind {WARMING} others; {ROWS} random, one call; 4096 of a grid for "
+        f"quality."
+    )
     for table in (KR6_R900, UR5):
         report(table)
 

@@ -1,7 +1,8 @@
 """The wrist-partitioned arm written down by hand, for comparison: what straight-line Python and NumPy reach.
 
-The closed form of ortho-parallel arms with a spherical wrist (Brandstötter, Angerer, Hofbaur 2014). Nothing is checked but reach,
-and nothing is done for singular poses: with the wrist straight or on axis 1 the answers are wrong, or there is an error.
+The closed form of ortho-parallel arms with a spherical wrist (Brandstötter, Angerer, Hofbaur 2014). Nothing is checked
+but reach, and nothing is done for singular poses: with the wrist straight or on axis 1 the answers are wrong, or there
+is an error.
 """
 
 from __future__ import annotations
@@ -85,16 +86,16 @@ def one_solution(arm: Arm) -> Callable[[Any, Any], Axes | None]:
         straight = r33 * k + height * s
         fourth = atan2(wrist * (r23 * k1 - r13 * s1), wrist * (height * k - r33 * s))
         fifth = atan2(wrist * (sqrt(1.0 - straight * straight) if straight * straight < 1.0 else 0.0), straight)
-        sixth = atan2(
-            wrist * ((r12 * k1 + r22 * s1) * s + r32 * k), -wrist * ((r11 * k1 + r21 * s1) * s + r31 * k)
-        )
+        sixth = atan2(wrist * ((r12 * k1 + r22 * s1) * s + r32 * k), -wrist * ((r11 * k1 + r21 * s1) * s + r31 * k))
         return first * DEGREES, second * DEGREES, third * DEGREES, fourth * DEGREES, fifth * DEGREES, sixth * DEGREES
 
     return inverse
 
 
 def batch(arm: Arm) -> Callable[[tuple[Array, Array, Array]], Array]:
-    """A function from positions (N, 3), rotations (N, 9) and signs (N, 3) to axes (N, 6), NaN where it does not reach."""
+    """A function from positions (N, 3), rotations (N, 9) and signs (N, 3) to axes (N, 6), NaN where
+    it does not reach.
+    """
     a1, a2, c1, c2, c3, c4 = arm
     square, fold, twice = a2 * a2 + c3 * c3, atan2(a2, c3), 2.0 * c2 * sqrt(a2 * a2 + c3 * c3)
 
@@ -112,7 +113,9 @@ def batch(arm: Arm) -> Callable[[tuple[Array, Array, Array]], Array]:
         straight = r33 * k + height * s
         fourth = np.arctan2(wrist * (r23 * k1 - r13 * s1), wrist * (height * k - r33 * s))
         fifth = np.arctan2(wrist * np.sqrt(np.maximum(1.0 - straight * straight, 0.0)), straight)
-        sixth = np.arctan2(wrist * ((r12 * k1 + r22 * s1) * s + r32 * k), -wrist * ((r11 * k1 + r21 * s1) * s + r31 * k))
+        sixth = np.arctan2(
+            wrist * ((r12 * k1 + r22 * s1) * s + r32 * k), -wrist * ((r11 * k1 + r21 * s1) * s + r31 * k)
+        )
         return np.array([first, second, third, fourth, fifth, sixth]).T * DEGREES
 
     def inverse(given: tuple[Array, Array, Array]) -> Array:

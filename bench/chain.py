@@ -12,7 +12,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Table:
-    """A standard Denavit-Hartenberg table: lengths in metres, angles in degrees. `zero` is added to the joint values."""
+    """A standard Denavit-Hartenberg table: lengths in metres, angles in degrees. `zero` is added to
+    the joint values.
+    """
 
     name: str
     alpha: tuple[float, ...]

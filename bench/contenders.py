@@ -1,7 +1,7 @@
 """Who takes part: for one task each, how the poses are put in, the call that is timed, and what came out.
 
-Every contender gets the poses in the form that suits it best, made before the clock runs. Answers are rows of axes with the
-index of their pose, in degrees of the Denavit-Hartenberg table, and are read when the clock has stopped.
+Every contender gets the poses in the form that suits it best, made before the clock runs. Answers are rows of axes with
+the index of their pose, in degrees of the Denavit-Hartenberg table, and are read when the clock has stopped.
 """
 
 from __future__ import annotations
@@ -58,7 +58,9 @@ def _ours(table: Table) -> list[Contender]:
     robot = robot_of(table)
 
     def frames(poses: Array) -> list[Any]:
-        return [softkin.Frame(*f) for f in zip(_tuples(1000.0 * poses[:, :3, 3]), _tuples(poses[:, :3, :3]), strict=True)]
+        return [
+            softkin.Frame(*f) for f in zip(_tuples(1000.0 * poses[:, :3, 3]), _tuples(poses[:, :3, :3]), strict=True)
+        ]
 
     def plain(poses: Array) -> list[Any]:
         return [tuple(frame) for frame in frames(poses)]
@@ -70,10 +72,15 @@ def _ours(table: Table) -> list[Contender]:
         """Frames with the first branch that reaches them."""
         signs = [s for _, s in softkin._configuration.slots((0, 0, 0))]
         found = ((f, robot.branches(f)) for f in frames(poses))
-        return [(tuple(f), next((s for s, a in zip(signs, axes, strict=True) if a is not None), signs[0])) for f, axes in found]
+        return [
+            (tuple(f), next((s for s, a in zip(signs, axes, strict=True) if a is not None), signs[0]))
+            for f, axes in found
+        ]
 
     def named(poses: Array) -> list[Any]:
-        return [(softkin.Frame(*f), (*(1 if s > 0 else 2 for s in signs), 0, 0, 0, 0, 0, 0)) for f, signs in chosen(poses)]
+        return [
+            (softkin.Frame(*f), (*(1 if s > 0 else 2 for s in signs), 0, 0, 0, 0, 0, 0)) for f, signs in chosen(poses)
+        ]
 
     def configured(poses: Array) -> tuple[Array, Array, Array]:
         bytes_ = [[1 if s > 0 else 2 for s in signs] + [0] * 6 for _, signs in chosen(poses)]
@@ -94,7 +101,9 @@ def _ours(table: Table) -> list[Contender]:
         Contender("softkin branch(frame, signs)", ONE, chosen, robot.branch, _single),
         Contender("softkin inverse(frame, configuration), checked", ONE, named, robot.inverse, _single),
         Contender("softkin inverse_batch, one solution", BATCH, configured, lambda p: robot.inverse_batch(*p), _batch),
-        Contender("softkin inverse_all_batch, all solutions", BATCH, arrays, lambda p: robot.inverse_all_batch(*p), every),
+        Contender(
+            "softkin inverse_all_batch, all solutions", BATCH, arrays, lambda p: robot.inverse_all_batch(*p), every
+        ),
     ]
 
 
@@ -156,10 +165,15 @@ def _by_hand(arm: Arm, axes: Callable[[Array], Array]) -> list[Contender]:
     def chosen(poses: Array) -> list[Any]:
         """Frames with the first branch that reaches them: arm, then elbow, then wrist."""
         signs = list(product((1.0, -1.0), repeat=3))
-        return [(f, next(s for s, found in zip(signs, every(f), strict=True) if found is not None)) for f in frames(poses)]
+        return [
+            (f, next(s for s, found in zip(signs, every(f), strict=True) if found is not None)) for f in frames(poses)
+        ]
 
     def rows(poses: Array) -> tuple[Array, Array, Array]:
-        positions, rotations = np.ascontiguousarray(poses[:, :3, 3]), np.ascontiguousarray(poses[:, :3, :3]).reshape(-1, 9)
+        positions, rotations = (
+            np.ascontiguousarray(poses[:, :3, 3]),
+            np.ascontiguousarray(poses[:, :3, :3]).reshape(-1, 9),
+        )
         return positions, rotations, np.array([signs for _, signs in chosen(poses)])
 
     def turned(answers: Answers) -> Answers:
@@ -171,7 +185,13 @@ def _by_hand(arm: Arm, axes: Callable[[Array], Array]) -> list[Contender]:
 
     return [
         Contender("by hand, without singular poses", ALL, frames, every, lambda a: turned(_slots(a))),
-        Contender("by hand, without singular poses, one solution", ONE, chosen, one_solution(arm), lambda a: turned(_single(a))),
+        Contender(
+            "by hand, without singular poses, one solution",
+            ONE,
+            chosen,
+            one_solution(arm),
+            lambda a: turned(_single(a)),
+        ),
         Contender("by hand in NumPy, one solution", BATCH, rows, batch(arm), solved),
     ]
 

@@ -1,7 +1,7 @@
 """The command line: `python -m derive generate` writes `generated/`, `python -m derive check` compares it.
 
-`generate` keeps what it derived beside the output folder, and derives again only what depends on something that changed;
-`--fresh` neither reads nor writes that cache, and `check` never does.
+`generate` keeps what it derived beside the output folder, and derives again only what depends on something that
+changed; `--fresh` neither reads nor writes that cache, and `check` never does.
 """
 
 from __future__ import annotations
@@ -42,11 +42,17 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
         command = commands.add_parser(name, help=text, description=text)
         command.add_argument("--output", type=Path, default=OUTPUT, metavar="DIR", help="the output folder")
         command.add_argument("--mechanisms", type=Path, default=MECHANISMS, metavar="DIR", help="the descriptions")
-        command.add_argument("--profile", metavar="NAME", help="a profile of templates/st/softmotion.toml, for an older library")
+        command.add_argument(
+            "--profile", metavar="NAME", help="a profile of templates/st/softmotion.toml, for an older library"
+        )
         command.set_defaults(only=[], fresh=True)
         if name == "generate":
-            command.add_argument("--only", nargs="+", metavar="NAME", help="these mechanisms alone, into another folder")
-            command.add_argument("--fresh", action="store_true", default=False, help="derive everything, without the cache")
+            command.add_argument(
+                "--only", nargs="+", metavar="NAME", help="these mechanisms alone, into another folder"
+            )
+            command.add_argument(
+                "--fresh", action="store_true", default=False, help="derive everything, without the cache"
+            )
     return parser.parse_args(arguments)
 
 

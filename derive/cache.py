@@ -1,8 +1,9 @@
 """What earlier runs derived, kept by the content of everything that it depends on.
 
-A key is a hash of the compiler's sources and templates, of the interpreter, the platform and every library with its version,
-of the profile, and of a description: its text, and the mechanism that the text evaluates to, whatever it imports. An entry is
-believed only if its own hash is right, which covers its key and all of its bytes; any other is derived anew.
+A key is a hash of the compiler's sources and templates, of the interpreter, the platform and every library with its
+version, of the profile, and of a description: its text, and the mechanism that the text evaluates to, whatever it
+imports. An entry is believed only if its own hash is right, which covers its key and all of its bytes; any other is
+derived anew.
 """
 
 from __future__ import annotations
@@ -91,7 +92,9 @@ def entry_key(foundation: str, entry: Entry) -> str | None:
 
 
 def foundation(profile: str | None, root: Path = ROOT) -> str:
-    """The hash of everything that all mechanisms depend on: sources, templates, libraries, interpreter, platform, profile."""
+    """The hash of everything that all mechanisms depend on: sources, templates, libraries, interpreter, platform,
+    profile.
+    """
     found = sha256(key_of(_FORMAT, sys.version, platform.platform(), repr(profile), *_libraries()).encode())
     for path in sorted(_sources(root)):
         found.update(key_of(str(path.relative_to(root)), sha256(path.read_bytes()).hexdigest()).encode())
@@ -99,7 +102,9 @@ def foundation(profile: str | None, root: Path = ROOT) -> str:
 
 
 def canonical(value: object) -> str:
-    """A text that two values have in common only if they are equal in every part. Raises `TypeError` for what has none."""
+    """A text that two values have in common only if they are equal in every part. Raises
+    `TypeError` for what has none.
+    """
     if isinstance(value, sp.Basic | sp.MatrixBase):
         return str(sp.srepr(value))
     if isinstance(value, Enum) or value is None or isinstance(value, str | bool | int | float):
@@ -127,7 +132,9 @@ def _sources(root: Path) -> Iterator[Path]:
 def _libraries() -> tuple[str, ...]:
     """Every library that the compiler is built on, directly or not, with its version."""
     found: dict[str, str] = {}
-    open_names = list(_required(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"]))
+    open_names = list(
+        _required(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"])
+    )
     while open_names:
         name = open_names.pop()
         if name not in found:

@@ -88,7 +88,8 @@ def derive_all(work: Work, profile: str | None) -> Iterator[Built]:
     if not work.missing:
         yield from (kept for kept in work.kept if kept is not None)
         return
-    # What is derived lives as long as its process: looking for garbage among it finds nothing, and takes a tenth of the time.
+    # What is derived lives as long as its process: looking for garbage among it finds nothing, and takes a tenth of the
+    # time.
     with ProcessPoolExecutor(max_workers=min(PROCESSES, len(work.missing)), initializer=gc.disable) as pool:
         derived = pool.map(partial(_attempt, profile), work.missing)
         for (path, _), kept in zip(work.entries, work.kept, strict=True):
@@ -130,7 +131,9 @@ def languages(profile: str | None = None) -> tuple[Language, ...]:
 def files_of(
     built: Sequence[Built], outputs: Sequence[Language], cache: Cache | None = None, keys: Sequence[str | None] = ()
 ) -> dict[str, bytes]:
-    """All generated files: path below the output folder → bytes. The texts of a run with the same keys are kept as a whole."""
+    """All generated files: path below the output folder → bytes. The texts of a run with the same keys are kept as a
+    whole.
+    """
     known = [key for key in keys if key]
     whole = key_of("texts", *known) if cache and len(known) == len(built) else None
     texts: dict[str, str] | None = cache.read(whole) if cache and whole else None
@@ -138,7 +141,9 @@ def files_of(
         texts = _texts(built, outputs)
         if cache and whole:
             cache.write(whole, texts)
-    return {name: text.encode() for name, text in texts.items()} | {n: data for one in built for n, data in one.pictures.items()}
+    return {name: text.encode() for name, text in texts.items()} | {
+        n: data for one in built for n, data in one.pictures.items()
+    }
 
 
 def _texts(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, str]:

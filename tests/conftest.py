@@ -1,7 +1,7 @@
 """One profile for all property tests: the same examples on every machine, and no time limit on a shared one.
 
-Every test is given its mechanism, where it has one. Tests of one mechanism run in one process, so that what they share is
-made once; and `make quick` runs all units, and of the catalogue one mechanism for each path through the compiler.
+Every test is given its mechanism, where it has one. Tests of one mechanism run in one process, so that what they share
+is made once; and `make quick` runs all units, and of the catalogue one mechanism for each path through the compiler.
 """
 
 from __future__ import annotations
@@ -57,7 +57,8 @@ SHARED_BY_A_FILE = (
     "text/test_second_grammar.py",
     "unit/",
 )
-"""Tests that share more with those of their file than with those of their mechanism: all units compiled together, a grammar."""
+"""Tests that share more with those of their file than with those of their mechanism: all units compiled together, a
+grammar."""
 PATHS = {
     "Kin_Scara4_ZCcoupled_Type1": "a serial arm in a plane, with turns and a coupled axis",
     "Kin_Pos_RRR": "a serial arm in space",

@@ -14,7 +14,9 @@ from derive.pipeline import Built, Work
 
 
 def generate(output: str, evidence: str) -> int:
-    """Generate into a folder, and write what the witness found, by mechanism, into a file; the status of the command."""
+    """Generate into a folder, and write what the witness found, by mechanism, into a file; the
+    status of the command.
+    """
     found: dict[str, Evidence] = {}
     derive_all = command.derive_all
 

@@ -51,7 +51,9 @@ def mirrored(rotation: Array) -> Iterator[Array]:
 
 
 def _off(rotation: Array, size: float) -> Iterator[Array]:
-    """Longer and shorter columns, and columns that lean towards each other, so that the largest error is of that size."""
+    """Longer and shorter columns, and columns that lean towards each other, so that the largest
+    error is of that size.
+    """
     for k in range(3):
         for sign in (1.0, -1.0):
             factors = np.ones(3)

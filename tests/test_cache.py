@@ -1,4 +1,5 @@
-"""The cache of `generate`: what is kept is the same, what changed is derived anew, and what is damaged is never believed."""
+"""The cache of `generate`: what is kept is the same, what changed is derived anew, and what is damaged is never
+believed."""
 
 from __future__ import annotations
 
@@ -115,7 +116,9 @@ def test_sources_that_change_during_a_run_leave_nothing_behind(
     assert not Path(f"{folder.parent / 'generated'}.cache").exists()
 
 
-def test_check_and_fresh_never_look(folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_check_and_fresh_never_look(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     generated(folder, capsys)
 
     def refuse(*_: object) -> None:
@@ -140,7 +143,12 @@ def test_continuous_integration_derives_everything() -> None:
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
     """A project of a few files."""
-    for name in ("derive/solver/solve.py", "derive/mechanisms/kin_a.py", "derive/mechanisms/_shared.py", "templates/st/a.toml"):
+    for name in (
+        "derive/solver/solve.py",
+        "derive/mechanisms/kin_a.py",
+        "derive/mechanisms/_shared.py",
+        "templates/st/a.toml",
+    ):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("x = 1\n")
     (tmp_path / "pyproject.toml").write_text("")

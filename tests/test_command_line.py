@@ -166,7 +166,9 @@ def test_a_folder_with_other_files_is_never_replaced(folder: Path, capsys: pytes
 
 def test_only_never_shrinks_the_output_of_the_project(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "--only needs --output" in refusal(capsys, "generate", "--only", "Kin_PCC")
-    assert "no mechanism is called 'Kin_No'" in refusal(capsys, "generate", "--only", "Kin_No", "--output", tmp_path / "out")
+    assert "no mechanism is called 'Kin_No'" in refusal(
+        capsys, "generate", "--only", "Kin_No", "--output", tmp_path / "out"
+    )
 
 
 def test_only_writes_the_chosen_mechanisms(folder: Path, tmp_path: Path) -> None:

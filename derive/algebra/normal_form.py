@@ -70,7 +70,9 @@ def _reduction(angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> d
 
 
 def reduce_units(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence[sp.Symbol] = ()) -> sp.Expr:
-    """The normal form: squares of sines become 1 - cos^2, squares of signs 1, of flags the flag; everything expanded."""
+    """The normal form: squares of sines become 1 - cos^2, squares of signs 1, of flags the flag;
+    everything expanded.
+    """
     table = _reduction(tuple(angles), tuple(signs))
 
     def lower(power: sp.Pow) -> sp.Expr:
@@ -87,7 +89,9 @@ def reduce_units(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequen
 
 
 def linear_coefficients(expression: sp.Expr, atoms: Sequence[sp.Symbol]) -> tuple[list[sp.Expr], sp.Expr] | None:
-    """The coefficients of the atoms, and the rest, where the expression is linear in all of them together; else None."""
+    """The coefficients of the atoms, and the rest, where the expression is linear in all of them
+    together; else None.
+    """
     found = _linear(expression, tuple(atoms))
     return None if found is None else (list(found[:-1]), found[-1])
 

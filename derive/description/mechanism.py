@@ -158,7 +158,8 @@ class Assembly:
     signs: tuple[int, int]
     margin: str
     handedness: sp.Expr = sp.Integer(1)
-    """An expression of parameters. Where it is negative (legs numbered the other way round) the indicator changes its sign."""
+    """An expression of parameters. Where it is negative (legs numbered the other way round) the indicator changes its
+    sign."""
 
     @property
     def parameter(self) -> str:
@@ -219,7 +220,9 @@ class Turning(Enum):
 
 @dataclass(frozen=True)
 class Task:
-    """The commanded coordinates ("xyz", "xy" in a plane, "" behind a position kinematics), and the part of the rotation."""
+    """The commanded coordinates ("xyz", "xy" in a plane, "" behind a position kinematics), and the part of the
+    rotation.
+    """
 
     position: str
     turning: Turning = Turning.NONE
@@ -281,7 +284,9 @@ class Mechanism:
 
     @property
     def is_position(self) -> bool:
-        """Whether this is a position kinematics: an orientation kinematics can follow it, and it commands no tool direction."""
+        """Whether this is a position kinematics: an orientation kinematics can follow it, and it commands no tool
+        direction.
+        """
         return bool(self.task.position) and self.task.turning in (Turning.NONE, Turning.ABOUT_Z)
 
     @property
@@ -318,9 +323,13 @@ def search(joint: Joint, *, where: Parameter) -> Search:
 
 
 def assembly(name: str, indicator: object, *, margin: str, handedness: object = 1, **names: int) -> Assembly:
-    """Two assembly modes: `assembly("tcp", Y - KNEE_Y, margin="arms_aligned", below=-1, above=+1)`; the first is the default."""
+    """Two assembly modes: `assembly("tcp", Y - KNEE_Y, margin="arms_aligned", below=-1, above=+1)`; the first is the
+    default.
+    """
     first, second = _two_names(f"assembly {name!r}", names)
-    return Assembly(name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin, sp.sympify(handedness))
+    return Assembly(
+        name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin, sp.sympify(handedness)
+    )
 
 
 def rod(
@@ -332,7 +341,9 @@ def rod(
     plate_cone: sp.Expr | None = None,
 ) -> Rod:
     """A rigid rod between a point that joints move and a point of the plate."""
-    return Rod(name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length), base_cone, plate_cone)
+    return Rod(
+        name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length), base_cone, plate_cone
+    )
 
 
 def on_plate(x: object, y: object, z: object) -> tuple[sp.Expr, ...]:

@@ -21,9 +21,9 @@ _PAIRS = ((1, 2), (1, 3), (2, 3))
 def discs_meet(centres: Sequence[Vector], radii: Sequence[sp.Expr], message: str) -> tuple[Constraint, ...]:
     """The conditions that three discs in the plane, the ranges of three arms seen from above, have a point in common.
 
-    centres: x and y; radii: not negative; message: the condition in words. Every two discs must intersect. Then all three
-    do, unless the radical centre (the point with equal powers to the circles) lies in the triangle of the centres and outside
-    the discs. Where the centres lie on a line there is no radical centre, and the pairs decide.
+    centres: x and y; radii: not negative; message: the condition in words. Every two discs must intersect. Then all
+    three do, unless the radical centre (the point with equal powers to the circles) lies in the triangle of the centres
+    and outside the discs. Where the centres lie on a line there is no radical centre, and the pairs decide.
     """
     corners = tuple(vector(*(real(f"reach_{c}_{i}") for c in "xy")) for i in (1, 2, 3))
     reaches = tuple(real(f"reach_{i}") for i in (1, 2, 3))

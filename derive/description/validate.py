@@ -29,7 +29,9 @@ from derive.ir.constants import (
 _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _PARAMETER = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
-_RESERVED = re.compile(r"(axis|ref|turn|sigma|branch|offset|lower|upper|motor|unlimited)_|check_limits\Z|[xyz]\Z|r[123][123]\Z")
+_RESERVED = re.compile(
+    r"(axis|ref|turn|sigma|branch|offset|lower|upper|motor|unlimited)_|check_limits\Z|[xyz]\Z|r[123][123]\Z"
+)
 """Names that programs need for other values."""
 
 Expressions = tuple[tuple[str, sp.Basic], ...]
@@ -74,7 +76,9 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
         if not _AXIS.match(joint.name):
             yield f"{joint.name!r} cannot name a joint: a capital letter, then letters and digits"
     turning = [j.symbol for j in mechanism.joints if j.is_angle]
-    sums = {name_of(tuple((s, 1) for s in some)) for n in range(2, len(turning) + 1) for some in combinations(turning, n)}
+    sums = {
+        name_of(tuple((s, 1) for s in some)) for n in range(2, len(turning) + 1) for some in combinations(turning, n)
+    }
     for joint in mechanism.joints:
         if joint.symbol.name in sums:
             yield f"joint {joint.name!r} has the name of a sum of other joints: choose another"
@@ -174,7 +178,9 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _constraints(mechanism: Mechanism) -> Iterator[str]:
-    values: dict[str, sp.Expr] = {p.name: sp.Float(p.nominal) for p in mechanism.parameters} | {DEGREE.name: sp.pi / 180}
+    values: dict[str, sp.Expr] = {p.name: sp.Float(p.nominal) for p in mechanism.parameters} | {
+        DEGREE.name: sp.pi / 180
+    }
 
     def at_nominal(expression: sp.Basic) -> sp.Basic:
         return expression.subs({s: values.get(s.name, sp.Integer(0)) for s in expression.free_symbols})

@@ -96,7 +96,9 @@ class _Walker:
         self._last_axis = direction
 
     def finish_body(self, axis: Array | None) -> None:
-        """Draw the body that ends here: first along the joint in front, last along the next joint, as machines are built."""
+        """Draw the body that ends here: first along the joint in front, last along the next joint, as machines are
+        built.
+        """
         at = self._start
         self._point_turns()
         for shift, label in sorted(self._shifts, key=lambda s: _place(s[0], self._last_axis, axis)):

@@ -48,7 +48,9 @@ class Drawing:
 
 
 def drawing_of(kinematics: Kinematics) -> Drawing:
-    """Draw a mechanism. Raises `DescriptionError` where a bar has not the length that is stated, or nothing can be drawn."""
+    """Draw a mechanism. Raises `DescriptionError` where a bar has not the length that is stated, or nothing can be
+    drawn.
+    """
     mechanism = kinematics.mechanism
     machine = nominal_machine(kinematics)
     pose = drawn_pose(machine)

@@ -70,7 +70,9 @@ class Naming:
         return None
 
     def coordinates(self, entries: Sequence[Callable[[Values], float]]) -> tuple[sp.Expr, ...] | None:
-        """The parameters that equal the coordinates of a point; None where one of them is neither a parameter nor zero."""
+        """The parameters that equal the coordinates of a point; None where one of them is neither a
+        parameter nor zero.
+        """
         found = [self._found(entry, magnitude=False) for entry in entries]
         names = [name for name in found if name is not None]
         return tuple(names) if len(names) == len(found) and any(n != 0 for n in names) else None

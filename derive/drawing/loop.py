@@ -1,7 +1,8 @@
 """The scene of a closed loop: its bars, and the cranks, rails and legs that follow from the equations of their ends.
 
-An end of a bar that depends on a rotary joint moves on a circle: the centre is the joint, and the radius is the crank. An end
-that depends on a linear joint moves on a line, the rail. A bar whose length is a joint is a leg of variable length.
+An end of a bar that depends on a rotary joint moves on a circle: the centre is the joint, and the radius is the crank.
+An end that depends on a linear joint moves on a line, the rail. A bar whose length is a joint is a leg of variable
+length.
 """
 
 from __future__ import annotations
@@ -71,7 +72,9 @@ class _Builder:
         start, end = vector_at(bar.base, self.values), vector_at(bar.plate, self.values)
         stated, drawn = float(evaluate(bar.length, self.values)), float(np.linalg.norm(end - start))
         if abs(stated - drawn) > _EXACT * (1.0 + abs(stated)):
-            raise DescriptionError(f"bar {bar.name!r} is {stated:g} long, but its ends are {drawn:g} apart in the drawn pose")
+            raise DescriptionError(
+                f"bar {bar.name!r} is {stated:g} long, but its ends are {drawn:g} apart in the drawn pose"
+            )
         self.segments.append(Segment(point(start), point(end), Body.ROD))
         if not bar.length.free_symbols & self._joints():
             self._dimension(start, end, lambda v: float(evaluate(bar.length, v)))
@@ -91,7 +94,9 @@ class _Builder:
             self._rail(joint, ends)
 
     def _moved_by(self, joint: Joint) -> list[tuple[Entries, bool]]:
-        """The ends of bars that depend on the joint, and whether a crank holds them: base ends, else the first plate end."""
+        """The ends of bars that depend on the joint, and whether a crank holds them: base ends, else the first plate
+        end.
+        """
         bars = bars_of(self.mechanism)
         for bar in bars:
             if joint.symbol in sp.Matrix(bar.base).free_symbols:
@@ -110,7 +115,9 @@ class _Builder:
         self._hold(tuple(e.xreplace({joint.symbol: sp.Integer(0)}) for e in entries), is_ground=False)
 
     def _crank(self, joint: Joint, ends: list[tuple[Entries, bool]]) -> None:
-        """The crank, from the centre of the circle to the middle between the ends, and the cross bar that joins these."""
+        """The crank, from the centre of the circle to the middle between the ends, and the cross
+        bar that joins these.
+        """
         circles = [_circle(joint, entries, self.values) for entries, _ in ends]
         centre = np.mean([c for c, _, _ in circles], axis=0)
         arm = np.mean([a for _, a, _ in circles], axis=0)
@@ -169,7 +176,9 @@ class _Builder:
         points = [at for _, at in self._held]
         if len(points) > 2 or len(self.grounds) > 1:
             pairs = list(zip(points, (*points[1:], points[0]), strict=True))
-            self.segments += [Segment(point(a), point(b), Body.BASE) for a, b in pairs[: len(points) if len(points) > 2 else 1]]
+            self.segments += [
+                Segment(point(a), point(b), Body.BASE) for a, b in pairs[: len(points) if len(points) > 2 else 1]
+            ]
 
     def _azimuth(self, entries: Entries, at: Array) -> None:
         """The polar angle of a point, from X."""

@@ -98,7 +98,10 @@ class ExpressionPrinter(ABC):
             return self._product(node)
         if isinstance(node, Relational):
             sides = _Whole(self) if any(map(_is_whole, node.args)) else self
-            return f"{sides._text(node.lhs, _SUM)} {self.comparison(node.rel_op)} {sides._text(node.rhs, _SUM)}", COMPARE
+            return (
+                f"{sides._text(node.lhs, _SUM)} {self.comparison(node.rel_op)} {sides._text(node.rhs, _SUM)}",
+                COMPARE,
+            )
         if isinstance(node, sp.Not):
             return f"{self.logic('not')} {self._text(node.args[0], ATOM)}", COMPARE
         if isinstance(node, Wrap):

@@ -1,1 +1,2 @@
-"""What has to be solved: the closure in the coordinates of the task, chains split on both sides, axes and their periods."""
+"""What has to be solved: the closure in the coordinates of the task, chains split on both sides, axes and their
+periods."""

@@ -94,11 +94,12 @@ def axis_lets(joint: Joint) -> tuple[Let, ...]:
 
 
 def _near(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
-    """The axis value to which the nearest period is chosen: of the commanded turn, the middle of the limits, or the reference.
+    """The axis value to which the nearest period is chosen: of the commanded turn, the middle of the limits, or the
+    reference.
 
-    The middle is taken where one value at most lies inside the limits. In wider limits another value inside may be a whole turn
-    away, so limits never choose there: they only refuse. The reference is compared joint by joint, because with gear coupling
-    an axis moves with its neighbours.
+    The middle is taken where one value at most lies inside the limits. In wider limits another value inside may be a
+    whole turn away, so limits never choose there: they only refuse. The reference is compared joint by joint, because
+    with gear coupling an axis moves with its neighbours.
     """
     shift = -joint.coupling / joint.unit
     reference = joint.reference if joint.coupling == 0 else reference_value(joint) / joint.unit + joint.offset + shift

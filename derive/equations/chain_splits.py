@@ -1,9 +1,9 @@
 """Chain splits (Paul, Pieper): T = L M S, so that L^-1 T S^-1 = M holds for every middle part M of the chain.
 
-Positions are split once, before any joint is known. S is the part of the chain at the flange whose joints do not move its
-first point: this is the wrist centre, which the commanded position and rotation determine together (Pieper). L is the part up
-to the first joint. An arm whose first joints intersect in a point is treated the same way seen from its flange:
-T^-1 = S^-1 M^-1 L^-1. For rotations see `rotations`.
+Positions are split once, before any joint is known. S is the part of the chain at the flange whose joints do not move
+its first point: this is the wrist centre, which the commanded position and rotation determine together (Pieper). L is
+the part up to the first joint. An arm whose first joints intersect in a point is treated the same way seen from its
+flange: T^-1 = S^-1 M^-1 L^-1. For rotations see `rotations`.
 """
 
 from __future__ import annotations
@@ -85,7 +85,9 @@ def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> t
 
 
 def _split(factors: Sequence[Factor], target: Target, unknowns: Unknowns) -> tuple[Equation, ...]:
-    """The equations seen from behind the first joint, if more of them have one unknown than those seen from the base."""
+    """The equations seen from behind the first joint, if more of them have one unknown than those
+    seen from the base.
+    """
     first = next(i for i, f in enumerate(factors) if f.amount.free_symbols & {*unknowns.angles, *unknowns.lengths})
     whole, behind = _equations(factors, -1, target, unknowns), _equations(factors, first, target, unknowns)
     return behind if _alone(behind, unknowns) > _alone(whole, unknowns) else whole
@@ -147,7 +149,9 @@ def _wrist(point: sp.Matrix, rotation: sp.Matrix, seen: Sequence[sp.Expr]) -> Ta
 
 
 def _equations(factors: Sequence[Factor], first: int, target: Target, unknowns: Unknowns) -> tuple[Equation, ...]:
-    """The equations of the point in the frame behind the joint at `first` and the links fixed to it; -1: in that of the base."""
+    """The equations of the point in the frame behind the joint at `first` and the links fixed to it; -1: in that of the
+    base.
+    """
     moving = {*unknowns.angles, *unknowns.lengths}
     end = first + 1
     while first >= 0 and end < len(factors) and not factors[end].amount.free_symbols & moving:

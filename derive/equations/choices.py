@@ -1,9 +1,10 @@
-"""Flags and signs of a machine: equations calculate with 0 and 1, and with -1 and 1; programs choose, and convert to numbers.
+"""Flags and signs of a machine: equations calculate with 0 and 1, and with -1 and 1; programs choose, and convert to
+numbers.
 
-    x (1 - swap) + y swap     →  select(swap, y, x)
-    z + h (1 - 2 down)        →  z + h select(down, -1, 1)
-    a x (1 - swap) + a y swap →  a select(swap, y, x)
-    direction a               →  to_real(direction) a          where the machine is set up; elsewhere it is a number by then
+x (1 - swap) + y swap     →  select(swap, y, x)
+z + h (1 - 2 down)        →  z + h select(down, -1, 1)
+a x (1 - swap) + a y swap →  a select(swap, y, x)
+direction a               →  to_real(direction) a          where the machine is set up; elsewhere it is a number by then
 """
 
 from __future__ import annotations

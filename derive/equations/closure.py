@@ -72,14 +72,19 @@ def fixed_lets(mechanism: Mechanism) -> tuple[Let, ...]:
     """The cosines and sines of these angles, and the roots that are made of parameters alone."""
     functions = ((cosine, sp.cos), (sine, sp.sin))
     angles = tuple(Let(f(a), g(a * DEGREE)) for a in fixed_angles(mechanism) for f, g in functions)
-    return (*angles, *(let for _, let in _fixed_roots(mechanism.equations, tuple(p.symbol for p in mechanism.parameters))))
+    return (
+        *angles,
+        *(let for _, let in _fixed_roots(mechanism.equations, tuple(p.symbol for p in mechanism.parameters))),
+    )
 
 
 def fixed_squares(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
     """The squares of these roots, by their names."""
     parameters = tuple(p.symbol for p in mechanism.parameters)
     own = {real(p.name): p for p in parameters}
-    return {let.name: sp.expand((let.value**2).xreplace(own)) for _, let in _fixed_roots(mechanism.equations, parameters)}
+    return {
+        let.name: sp.expand((let.value**2).xreplace(own)) for _, let in _fixed_roots(mechanism.equations, parameters)
+    }
 
 
 @cache
@@ -181,15 +186,22 @@ def heading_of(chain: Chain) -> sp.Expr:
 
 
 def offset_closure(mechanism: Mechanism, unknown: tuple[Joint, ...]) -> Closure:
-    """The closure of the position of a point off the flange; the joints that are not unknown are held at their reference."""
+    """The closure of the position of a point off the flange; the joints that are not unknown are held at their
+    reference.
+    """
     if mechanism.chain is None:
         return _stated_closure(mechanism, dict(zip(COORDINATE_NAMES, OFFSET, strict=True)))
     factors = (*mechanism.chain.factors, *Txyz(*OFFSET).factors)
     symbols = {j.symbol for j in unknown}
-    last = max((i for i, f in enumerate(factors) if f.motion is Motion.TURN and f.amount.free_symbols & symbols), default=-1)
+    last = max(
+        (i for i, f in enumerate(factors) if f.motion is Motion.TURN and f.amount.free_symbols & symbols), default=-1
+    )
     tool = pose_of(Chain(factors[last + 1 :])).position
     lets: list[Let] = []
-    entries = [_named_tool(mechanism, entry, f"tool_{c}", symbols, lets) for entry, c in zip(tool, COORDINATE_NAMES, strict=True)]
+    entries = [
+        _named_tool(mechanism, entry, f"tool_{c}", symbols, lets)
+        for entry, c in zip(tool, COORDINATE_NAMES, strict=True)
+    ]
     seen = Chain(factors[: last + 1]) * Txyz(*entries)
     if is_spatial(mechanism.chain):
         return replace(_spatial_closure(mechanism, seen, unknown), lets=tuple(lets))
@@ -198,9 +210,7 @@ def offset_closure(mechanism: Mechanism, unknown: tuple[Joint, ...]) -> Closure:
     return Closure(closure.equations, closure.arguments, tuple(lets), closure.plane)
 
 
-def _named_tool(
-    mechanism: Mechanism, entry: sp.Expr, name: str, unknown: set[sp.Symbol], lets: list[Let]
-) -> sp.Expr:
+def _named_tool(mechanism: Mechanism, entry: sp.Expr, name: str, unknown: set[sp.Symbol], lets: list[Let]) -> sp.Expr:
     """The entry with its known part under one name, which the solver treats as a symbol."""
     form = polynomial(entry, angles_of(mechanism), signs_of(mechanism))
     moving, known = split_known(form, unknown)
@@ -229,7 +239,9 @@ def _stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: s
     known: the known part of a rod's vector: its "span" where the joints are unknown, its "pivot" where the position is.
     """
     flange = dict(zip(COORDINATE_NAMES, FLANGE, strict=True))
-    lets = tuple(Let(flange[c], real(c) - o, "position of the flange: the point less its offset") for c, o in offset.items())
+    lets = tuple(
+        Let(flange[c], real(c) - o, "position of the flange: the point less its offset") for c, o in offset.items()
+    )
     table = {real(c): flange[c] for c in offset}
     wanted = {j.symbol for j in mechanism.joints} if known == "span" else set(map(real, COORDINATE_NAMES))
     equations = [
@@ -274,7 +286,9 @@ def _rod_scales(mechanism: Mechanism, rod: Rod) -> dict[sp.Symbol, sp.Expr]:
     scales: dict[sp.Symbol, sp.Expr] = {}
     for symbol in (*(j.symbol for j in mechanism.joints), *(real(c) for c in COORDINATE_NAMES)):
         rates = [sp.diff(p - b, symbol) for p, b in zip(rod.plate, rod.base, strict=True)]
-        square = polynomial(with_fixed_names(mechanism, sum(r**2 for r in rates)), all_angles(mechanism), signs_of(mechanism))
+        square = polynomial(
+            with_fixed_names(mechanism, sum(r**2 for r in rates)), all_angles(mechanism), signs_of(mechanism)
+        )
         if square != 0 and not square.free_symbols & set(_moving_symbols(mechanism)):
             scales[symbol] = 2 * rod.length * sp.sqrt(sp.factor(square))
     return scales
@@ -296,5 +310,6 @@ def _arguments(expressions: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
 
 
 def _equation(mechanism: Mechanism, label: str, expression: sp.Expr) -> Equation:
-    return Equation(label, polynomial(with_fixed_names(mechanism, expression), all_angles(mechanism), signs_of(mechanism)))
-
+    return Equation(
+        label, polynomial(with_fixed_names(mechanism, expression), all_angles(mechanism), signs_of(mechanism))
+    )

@@ -20,18 +20,24 @@ from derive.ir.symbols import (
 
 
 def limits_program(mechanism: Mechanism) -> Program:
-    """The test of every axis, those with several turns first, then of every quantity with limits, each widened by a tolerance."""
+    """The test of every axis, those with several turns first, then of every quantity with limits, each widened by a
+    tolerance.
+    """
     turns = _other_turns(mechanism)
     body: list[Statement] = []
     for joint in sorted(mechanism.joints, key=lambda j: not j.multi_turn):  # a wrong turn is refused first
-        reason = replace(about_joint(joint.symbol, Why.BELOW, unit=_unit(joint.is_angle)), turns=turns.get(joint.key, ()))
+        reason = replace(
+            about_joint(joint.symbol, Why.BELOW, unit=_unit(joint.is_angle)), turns=turns.get(joint.key, ())
+        )
         body += _inside(joint.key, joint.axis, reason, f"limits of {joint.name}")
     if mechanism.limited:
         body += joint_lets(mechanism)
     for quantity in mechanism.limited:
         lets, (value,) = named_trigonometry(mechanism, [quantity.value / (DEGREE if quantity.is_angle else 1)])
         name = _value(quantity)
-        reason = replace(about(quantity.meaning, Why.BELOW, unit=_unit(quantity.is_angle)), turns=turns.get(quantity.name, ()))
+        reason = replace(
+            about(quantity.meaning, Why.BELOW, unit=_unit(quantity.is_angle)), turns=turns.get(quantity.name, ())
+        )
         body += [*lets, Let(name, value, quantity.meaning)]
         body += _inside(quantity.name, name, reason, f"limits of {quantity.meaning}")
     return assemble("limits", body, [])
@@ -40,7 +46,10 @@ def limits_program(mechanism: Mechanism) -> Program:
 def _inside(key: str, value: sp.Symbol, reason: Reason, note: str) -> tuple[Require, Require]:
     """Not below the lower end, and not above the upper one; each with its own reason and amount."""
     (lowest,), (highest,) = _ends(key)
-    below, above = replace(reason, why=Why.BELOW, amount=lowest - value), replace(reason, why=Why.ABOVE, amount=value - highest)
+    below, above = (
+        replace(reason, why=Why.BELOW, amount=lowest - value),
+        replace(reason, why=Why.ABOVE, amount=value - highest),
+    )
     return (
         Require(sp.Ge(value, lowest), Status.UNREACHABLE, note, below),
         Require(sp.Le(value, highest), Status.UNREACHABLE, note, above),

@@ -1,7 +1,8 @@
 """The pose of a spatial chain, frame by frame, every entry of every frame under a name.
 
 `r13_at_a23` is the x component of the z axis behind A2 and A3, in the frame of the base; `x_at_a4` is the x of axis A4.
-Consecutive rotations about parallel axes are one rotation by the sum of their angles, so that `cos(a2 + a3)` stays one cosine.
+Consecutive rotations about parallel axes are one rotation by the sum of their angles, so that `cos(a2 + a3)` stays one
+cosine.
 """
 
 from __future__ import annotations
@@ -113,9 +114,7 @@ class _Frames:
             return
         key = "_".join(a.name for a in moving)
         self._names.append(key)
-        self.position = [
-            self._named(f"{c}_at_{key}", p) for c, p in zip(COORDINATE_NAMES, self.position, strict=True)
-        ]
+        self.position = [self._named(f"{c}_at_{key}", p) for c, p in zip(COORDINATE_NAMES, self.position, strict=True)]
 
     def _named(self, name: str, value: sp.Expr) -> sp.Expr:
         """The value where it is a symbol or a number, else its name."""

@@ -19,5 +19,3 @@ class Forward:
     rotation: tuple[sp.Expr, ...]
     slope: Slope | None = None
     """The slope of the step with two solutions: its sign is the assembly mode."""
-
-

@@ -95,7 +95,9 @@ class Measure:
 
 @dataclass(frozen=True)
 class Binding:
-    """The answer of a subproblem: statements that bind unknowns, and the slope and measure that vanish in its singularities."""
+    """The answer of a subproblem: statements that bind unknowns, and the slope and measure that vanish in its
+    singularities.
+    """
 
     rule: str
     unknowns: tuple[sp.Symbol, ...]
@@ -181,7 +183,9 @@ class Problem:
         return bool(reduced.is_nonzero or reduced.xreplace({DEGREE: sp.pi / 180}).is_nonzero)
 
     def is_positive(self, value: sp.Expr) -> bool:
-        """Whether a value is a positive multiple of a quantity that is stated to be positive, or a product of such quantities."""
+        """Whether a value is a positive multiple of a quantity that is stated to be positive, or a product of such
+        quantities.
+        """
         if all(factor in self.positive for factor in sp.Mul.make_args(value)):
             return True
         ratios = [sp.cancel(value / quantity).xreplace({DEGREE: sp.pi / 180}) for quantity in self.positive]

@@ -1,8 +1,9 @@
-"""A rotation that a caller gives: refused where it is none, repaired where rounding has bent it, otherwise used bit for bit.
+"""A rotation that a caller gives: refused where it is none, repaired where rounding has bent it, otherwise used bit for
+bit.
 
 A frame may have passed through single precision. The repair keeps the direction of the tool: z is normalised, x is made
-perpendicular to it and normalised, and y = z × x. It runs once a call, before everything else; all other programs read a
-rotation that is orthogonal to all digits.
+perpendicular to it and normalised, and y = z × x. It runs once a call, before everything else; all other programs read
+a rotation that is orthogonal to all digits.
 """
 
 from __future__ import annotations
@@ -65,13 +66,17 @@ def rotation_program() -> Program:
         *lets,
         *chosen,
     )
-    return assemble("rotation", body, [Output(r.name, let.name) for r, let in zip(ROTATION_ENTRIES, chosen, strict=True)])
+    return assemble(
+        "rotation", body, [Output(r.name, let.name) for r, let in zip(ROTATION_ENTRIES, chosen, strict=True)]
+    )
 
 
 def _small(errors: list[Let], why: Why) -> Require:
     """The condition that all errors are small; the amount of its reason is the largest of them."""
     conditions = [sp.Le(let.name, ROTATION) for let in errors]
-    return Require(sp.And(*conditions), Status.BAD_INPUT, reason=about_input(why, amount=_largest([let.name for let in errors])))
+    return Require(
+        sp.And(*conditions), Status.BAD_INPUT, reason=about_input(why, amount=_largest([let.name for let in errors]))
+    )
 
 
 def _largest(values: Sequence[sp.Expr]) -> sp.Expr:
@@ -95,7 +100,9 @@ def _repaired() -> tuple[list[Let], sp.Matrix]:
 
 
 def _length(vector: sp.Matrix, word: str, note: str) -> tuple[Let, Let]:
-    """The length of a column, and a divisor that is never zero: a matrix that is no rotation may have a column of zeros."""
+    """The length of a column, and a divisor that is never zero: a matrix that is no rotation may have a column of
+    zeros.
+    """
     length = real(f"length_{word}")
     nonzero = Select(sp.Gt(length, sp.Rational(1, 2)), length, sp.Integer(1))
     return Let(length, Root(vector.dot(vector)), note), Let(real(f"divisor_{word}"), nonzero)

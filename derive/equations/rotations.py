@@ -1,8 +1,8 @@
 """The equations of the commanded rotation for the rotations of a chain that are still unknown: L^-1 R S^-1 = M.
 
-They are written again whenever an angle becomes known: the known rotations at both ends are moved to the side of the commanded
-one, one after the other, each entry under a name: `r13_from_a12` is r13 in the frame behind A1 and A2, `r13_before_a6` is r13
-of the frame in front of A6.
+They are written again whenever an angle becomes known: the known rotations at both ends are moved to the side of the
+commanded one, one after the other, each entry under a name: `r13_from_a12` is r13 in the frame behind A1 and A2,
+`r13_before_a6` is r13 of the frame in front of A6.
 """
 
 from __future__ import annotations
@@ -70,7 +70,9 @@ class _Side:
     def behind(self, joints: tuple[str, ...], turn: Factor) -> _Side:
         """The side with one more rotation."""
         if joints:
-            return replace(self, joints=(*self.joints, *joints) if self.word == "from" else (*joints, *self.joints), fixed=0)
+            return replace(
+                self, joints=(*self.joints, *joints) if self.word == "from" else (*joints, *self.joints), fixed=0
+            )
         is_oblique = any(entry not in (-1, 0, 1) for entry in turn.matrix())
         return replace(self, fixed=self.fixed + is_oblique)
 

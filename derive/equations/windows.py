@@ -61,7 +61,9 @@ class Window:
         low_value, high_value, free = lower, upper, sp.Le(sp.Abs(lower) + sp.Abs(upper), 0)
         for condition, bottom, top in self.fallback:
             given = sp.Gt(sp.Abs(lower) + sp.Abs(upper), 0)
-            low_value = Select(given, lower, Select(condition, bottom, sp.Integer(0)) if condition != sp.true else bottom)
+            low_value = Select(
+                given, lower, Select(condition, bottom, sp.Integer(0)) if condition != sp.true else bottom
+            )
             high_value = Select(given, upper, Select(condition, top, sp.Integer(0)) if condition != sp.true else top)
             free = sp.And(free, sp.Not(condition))
         return (
@@ -79,10 +81,11 @@ class Window:
 
     @property
     def ends(self) -> tuple[Let, ...]:
-        """The ends that are tested, which are the limits and their tolerance; and of an axis with turns what chooses one.
+        """The ends that are tested, which are the limits and their tolerance; and of an axis with turns what chooses
+        one.
 
-        That is whether the axis has one value inside its limits at most, with a gap that no step crosses; and the middle of
-        its range.
+        That is whether the axis has one value inside its limits at most, with a gap that no step crosses; and the
+        middle of its range.
         """
         low, high, unlimited = self._effective
         tolerance = real(f"tolerance_{self.key}")
@@ -134,9 +137,9 @@ def _fallback(joint: Joint) -> Fallback:
 def limits_of_axis() -> Program:
     """The limits of an axis of the machine and those of its drive together, for any axis.
 
-    own_unlimited own_lower own_upper, drive_limited drive_lower drive_upper → lowest highest single middle: both ends with
-    their tolerance, whether at most one turn is inside, and the middle. A drive that has handed over nothing has no limits:
-    `drive_limited` is false, and its ends are not read.
+    own_unlimited own_lower own_upper, drive_limited drive_lower drive_upper → lowest highest single middle: both ends
+    with their tolerance, whether at most one turn is inside, and the middle. A drive that has handed over nothing has
+    no limits: `drive_limited` is false, and its ends are not read.
     """
     axis = rotary("axis", "any axis")
     window = Window(axis.key, has_turns=axis.multi_turn, is_axis=True)
@@ -152,14 +155,20 @@ def limits_of_axis() -> Program:
         ),
         Let(own_low, Select(own_unlimited, -LARGEST, own_lower), "own limits; without any, the largest axis value"),
         Let(own_high, Select(own_unlimited, LARGEST, own_upper)),
-        Let(low, Select(sp.And(drive_limited, sp.Gt(drive_lower, own_low)), drive_lower, own_low), "the narrower of both limits"),
+        Let(
+            low,
+            Select(sp.And(drive_limited, sp.Gt(drive_lower, own_low)), drive_lower, own_low),
+            "the narrower of both limits",
+        ),
         Let(high, Select(sp.And(drive_limited, sp.Lt(drive_upper, own_high)), drive_upper, own_high)),
         Require(sp.Le(low, high), Status.NOT_INITIALIZED, reason=about_input(Why.NO_AXIS_VALUE)),
         Let(unlimited, sp.And(sp.Not(drive_limited), own_unlimited)),
         *window.ends,
     )
     general = {called(f"{word}_{axis.key}", like): called(name, like) for word, (name, like) in _OF_ANY_AXIS.items()}
-    named = tuple(renamed(rewritten(s, lambda e: e.xreplace(general)), lambda name: general.get(name, name)) for s in body)
+    named = tuple(
+        renamed(rewritten(s, lambda e: e.xreplace(general)), lambda name: general.get(name, name)) for s in body
+    )
     outputs = (*(Output(name, real(name)) for name in ("lowest", "highest")), Output("single", flag("single")))
     outputs = (*outputs, Output("middle", real("middle")))
     inputs = (own_unlimited, own_lower, own_upper, drive_limited, drive_lower, drive_upper)
@@ -169,7 +178,8 @@ def limits_of_axis() -> Program:
 _REAL, _FLAG = real("any_number"), flag("any_flag")
 _OF_ANY_AXIS = {
     "effective_lower": ("lower_end", _REAL), "effective_upper": ("upper_end", _REAL), "unlimited": ("unlimited", _FLAG),
-    "tolerance": ("tolerance", _REAL), "lowest": ("lowest", _REAL), "highest": ("highest", _REAL), "single": ("single", _FLAG),
+    "tolerance": ("tolerance", _REAL), "lowest": ("lowest", _REAL), "highest": ("highest", _REAL),
+    "single": ("single", _FLAG),
     "mid": ("middle", _REAL),
 }  # fmt: skip
 """The names of the limits of an axis, where no axis is named."""

@@ -1,4 +1,5 @@
-"""The pose of a chain, with consecutive parallel rotations merged, so that `cos(a1 + a2)` stays one cosine; and its screws."""
+"""The pose of a chain, with consecutive parallel rotations merged, so that `cos(a1 + a2)` stays one cosine; and its
+screws."""
 
 from __future__ import annotations
 
@@ -12,7 +13,9 @@ from derive.geometry.frames import Chain, Factor, Motion
 
 @dataclass(frozen=True)
 class Screw:
-    """The screw by which one factor moves the end of a chain: its direction, and a point on it, in the frame of the base."""
+    """The screw by which one factor moves the end of a chain: its direction, and a point on it, in the frame of the
+    base.
+    """
 
     motion: Motion
     amount: sp.Expr

@@ -1,1 +1,2 @@
-"""A program as data: symbols, numerical constants, primitives, statements; how it is checked, interpreted and assembled."""
+"""A program as data: symbols, numerical constants, primitives, statements; how it is checked, interpreted and
+assembled."""

@@ -1,10 +1,10 @@
 """Cells of a root scan along one joint, on arrays: how many roots a cell may hold, and where it is cut.
 
-A trial is a function of the scanned joint. It has a value, which is zero at a root, with its slope; a guard, which is negative
-where the trial has no solution, with its slope; and directions, the cosines and sines of angles that a step takes from a
-vector, which turn fast where that vector is short. The trial has two sides, the two roots of its two-root step. They join
-where the guard vanishes, and form one smooth curve in s, with joint = end + scale s², s > 0 on the wanted side and s < 0 on
-the other. A cell is cut
+A trial is a function of the scanned joint. It has a value, which is zero at a root, with its slope; a guard, which is
+negative where the trial has no solution, with its slope; and directions, the cosines and sines of angles that a step
+takes from a vector, which turn fast where that vector is short. The trial has two sides, the two roots of its two-root
+step. They join where the guard vanishes, and form one smooth curve in s, with joint = end + scale s², s > 0 on the
+wanted side and s < 0 on the other. A cell is cut
 
 * where a direction turns by more than 45 degrees, so that trials are dense where it turns fast;
 * where the value has one sign at both ends, and its slopes allow it to touch zero in between;
@@ -169,7 +169,8 @@ def _hides_roots(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Fl
 def _comes_back(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Flags:
     """Whether a value with one sign at both ends falls towards zero from both, and its tangents meet about beyond zero.
 
-    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks they are no bound.
+    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks they are no
+    bound.
     """
     margin = TOUCHED + NEAR_ZERO * np.minimum(np.abs(f), np.abs(f1)) + BENT * np.abs(df1 - df) * width
     sign = np.where(f < 0.0, -1.0, 1.0)

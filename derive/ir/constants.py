@@ -1,4 +1,5 @@
-"""The numerical constants of the product. Each stands here once and nowhere else; those of a search: `cells`, `roots`."""
+"""The numerical constants of the product. Each stands here once and nowhere else; those of a search: `cells`,
+`roots`."""
 
 from __future__ import annotations
 
@@ -15,15 +16,18 @@ OUT_OF_REACH = sp.Float("1e-9")
 BOUNDARY = sp.Float("1e-12")
 """A normalised radicand negative by at most this is zero: the boundary belongs to the workspace."""
 FOLD = sp.Float("1e-6")
-"""A radicand below this share of the machine's squared length is near enough to zero for its root to multiply rounding."""
+"""A radicand below this share of the machine's squared length is near enough to zero for its root to multiply
+rounding."""
 ROUNDING = sp.Float("1e-12")
 """A motion of the pose smaller than this share of the machine is rounding."""
 INSIDE = sp.Float("1e-7")
-"""An angle that is moved to where a later step reaches is moved inside of its boundary by this share, where that is free."""
+"""An angle that is moved to where a later step reaches is moved inside of its boundary by this share, where that is
+free."""
 LARGEST = sp.Integer(10) ** 9
 """Inputs larger in size than this are refused."""
 ROTATION = sp.Float("1e-4")
-"""How far the product of a rotation with its transpose may be from the identity: frames come from single precision, too."""
+"""How far the product of a rotation with its transpose may be from the identity: frames come from single precision,
+too."""
 EXACT_ROTATION = sp.Float("1e-12")
 """A rotation nearer to one than this is used as it is; one that is further away is repaired."""
 PLANE = sp.Float("1e-6")
@@ -39,11 +43,13 @@ SINGULAR = sp.Float("1e-3")
 PIVOT = sp.Float("1e-14")
 """A matrix is singular where no pivot is larger than this share of its largest entry."""
 SOLVABLE = sp.Float("1e30")
-"""Linear equations are solved where all their numbers are at most this size, and the largest at least its reciprocal."""
+"""Linear equations are solved where all their numbers are at most this size, and the largest at least its
+reciprocal."""
 CONVERGED = sp.Float("1e-11")
 """An iteration has converged where what is left of a length is at most this share of the machine's scale."""
 NEARLY = sp.Float("1e-6")
-"""A root of a search lies on a branch whose scaled margin it does not miss by more than this, the root of `BOUNDARY`."""
+"""A root of a search lies on a branch whose scaled margin it does not miss by more than this, the root of
+`BOUNDARY`."""
 TRIALS = 760
 """Trials of a search for a root, at most."""
 FINISHED = 12
@@ -59,7 +65,8 @@ TIE = sp.Float("1e-6")
 TIE_SHARE = sp.Float("1e-6")
 """Of linear axes, only where it is smaller by more than the square of this share of the machine's scale."""
 ONE_TURN = sp.Integer(350)
-"""An axis has one value inside its limits where they are at most this far apart (degrees): no step of a path crosses the gap."""
+"""An axis has one value inside its limits where they are at most this far apart (degrees): no step of a path crosses
+the gap."""
 EDGE = sp.Float("1e-9")
 """How far (degrees) the intervals of the periods are shifted down: see `NearestPeriod`."""
 UNLIMITED = sp.Integer(10) ** 12

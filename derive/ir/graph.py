@@ -3,9 +3,9 @@
     (b - a) / d   and   (a - b) * c / d       one node for a - b, read with a minus sign by the first
 
 Nodes are hash-consed: equal operations on equal parts are the same node. A minus sign is no node: it stands beside the
-node that is read, and the sign in front of a sum or of a product is moved to its reader. So a value and its negative are
-one node, and the cosine of an angle and of its negative are one node, too. The order of terms does not matter. Nothing is
-expanded, and nothing is factored.
+node that is read, and the sign in front of a sum or of a product is moved to its reader. So a value and its negative
+are one node, and the cosine of an angle and of its negative are one node, too. The order of terms does not matter.
+Nothing is expanded, and nothing is factored.
 
 Names, notes and statements are not part of the graph: see `derive.lowering.draft` and `writing`.
 """
@@ -96,7 +96,9 @@ class Graph:
         return Value(self._node((SUM, frozenset(signed)), SUM, signed), sign)
 
     def product(self, factors: Iterable[Value], divisors: Iterable[Value] = ()) -> Value:
-        """The product of factors over the product of divisors; numbers are multiplied, and signs moved to the reader."""
+        """The product of factors over the product of divisors; numbers are multiplied, and signs
+        moved to the reader.
+        """
         number, sign = sp.Integer(1), 1
         above, below = list[Node](), list[Node]()
         for value, side in (*((f, above) for f in factors), *((d, below) for d in divisors)):
@@ -156,9 +158,7 @@ class Graph:
     def _times(self, count: int, node: Node) -> Value:
         return Value(node, count) if abs(count) == 1 else self.product([self.leaf(sp.Integer(count)), Value(node, 1)])
 
-    def _node(
-        self, key: object, head: Head, parts: tuple[Value, ...] = (), divisors: tuple[Node, ...] = ()
-    ) -> Node:
+    def _node(self, key: object, head: Head, parts: tuple[Value, ...] = (), divisors: tuple[Node, ...] = ()) -> Node:
         known = self._known.get(key)
         if known is None:
             known = self._known[key] = Node(len(self.nodes), head, parts, divisors)

@@ -205,7 +205,9 @@ def _iterate(loop: Iterate, known: dict[str, Array], status: NDArray[np.object_]
 
 def _solve(system: Solve, known: dict[str, Array], shape: tuple[int, ...]) -> None:
     matrix, right = (
-        np.array([np.broadcast_to(evaluate(e, known), shape) for e in entries], dtype=float).reshape(system.size, -1, *shape)
+        np.array([np.broadcast_to(evaluate(e, known), shape) for e in entries], dtype=float).reshape(
+            system.size, -1, *shape
+        )
         for entries in (system.matrix, system.right)
     )
     determinant, solution = solve(matrix, right)
@@ -215,7 +217,9 @@ def _solve(system: Solve, known: dict[str, Array], shape: tuple[int, ...]) -> No
 
 
 def solve(matrix: Array, right: Array) -> tuple[Array, Array]:
-    """Determinant and solution by LU decomposition with partial pivoting: rows, columns, then any shape. Unsolvable: zeros."""
+    """Determinant and solution by LU decomposition with partial pivoting: rows, columns, then any shape. Unsolvable:
+    zeros.
+    """
     matrix, right, size = matrix.copy(), right.copy(), len(matrix)
     largest, most = np.max(np.abs(matrix), axis=(0, 1)), float(SOLVABLE)
     tiny = float(PIVOT) * largest

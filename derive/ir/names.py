@@ -28,7 +28,9 @@ class Names:
         return cls(s.name for s in (*program.inputs, *program.bound()))
 
     def fresh(self, proposal: str, like: sp.Symbol | None = None) -> sp.Symbol:
-        """The proposal, with a number behind it where it is taken. like: a name of the same type, else it is a real number."""
+        """The proposal, with a number behind it where it is taken. like: a name of the same type, else it is a real
+        number.
+        """
         number, name = 1, proposal
         while name.replace("_", "") in self._joined:
             number += 1

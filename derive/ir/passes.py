@@ -1,7 +1,7 @@
 """Passes over programs: fold aliases, order statements by use, hoist values that depend on parameters alone.
 
-fold    Let(cos_s, cos_heading); … cos_s …                   →  … cos_heading …
-order   a Let stands just before its first use; a Let that nothing reads disappears, and so does an unread result of a call;
+fold    Let(cos_s, cos_heading); … cos_s …                   →  … cos_heading … order   a Let stands just before its
+first use; a Let that nothing reads disappears, and so does an unread result of a call;
         a value that only the amount of a reason reads is written out in it
 hoist   Let(scale_a2, 2*link_length_1*link_length_2)         →  computed once, by `setup`
 """
@@ -45,7 +45,9 @@ from derive.ir.verify import BrokenProgram, verify
 
 
 def assemble(name: str, statements: Iterable[Statement], outputs: Sequence[Output]) -> Program:
-    """A verified program from statements in any order: symbols without assumptions, aliases folded, ordered, inputs found."""
+    """A verified program from statements in any order: symbols without assumptions, aliases folded, ordered, inputs
+    found.
+    """
     body, values = without_assumptions(statements), tuple(Output(o.name, plain(o.value)) for o in outputs)
     body, values = _fold(body, values)
     program = Program(name, (), written_out(_order(body, values), body), values)
@@ -60,7 +62,9 @@ def with_inputs(program: Program) -> Program:
 
 @cache
 def plain(value: sp.Basic) -> sp.Expr:
-    """The expression with symbols that have a type and no other assumptions, pi as 180 degrees, and square roots as `Root`."""
+    """The expression with symbols that have a type and no other assumptions, pi as 180 degrees, and square roots as
+    `Root`.
+    """
     named = value.xreplace({s: called(s.name, s) for s in value.free_symbols if s != DEGREE})
     rooted = named.replace(_is_square_root, lambda power: Root(power.base) ** sp.sign(power.exp))
     return rooted.subs(sp.pi, 180 * DEGREE) if rooted.has(sp.pi) else rooted
@@ -71,7 +75,9 @@ def _is_square_root(node: sp.Basic) -> bool:
 
 
 def without_assumptions(statements: Iterable[Statement]) -> tuple[Statement, ...]:
-    """The statements with symbols that have a type and no other assumptions: what the solver knew of signs is dropped."""
+    """The statements with symbols that have a type and no other assumptions: what the solver knew
+    of signs is dropped.
+    """
     return tuple(renamed(rewritten(s, plain), lambda name: called(name.name, name)) for s in statements)
 
 
@@ -88,9 +94,7 @@ def renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> Sta
     return replace(statement, names=tuple(map(name, statement.names))) if isinstance(statement, Call) else statement
 
 
-def _fold(
-    body: Sequence[Statement], outputs: Sequence[Output]
-) -> tuple[tuple[Statement, ...], tuple[Output, ...]]:
+def _fold(body: Sequence[Statement], outputs: Sequence[Output]) -> tuple[tuple[Statement, ...], tuple[Output, ...]]:
     aliases: dict[sp.Symbol, sp.Expr] = {}
     kept = _without_aliases(body, aliases, {}, set())
     return tuple(kept), tuple(replace(o, value=o.value.xreplace(aliases)) for o in outputs)
@@ -134,7 +138,9 @@ def _with_ordered_step(loop: Iterate) -> Iterate:
 
 
 def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Statement, ...]:
-    """The statements that the wanted expressions need, each just before its first use; a statement that may refuse is kept."""
+    """The statements that the wanted expressions need, each just before its first use; a statement that may refuse is
+    kept.
+    """
     sources = {name: s for s in body for name in binds(s)}
     done: list[Statement] = []
     begun: set[int] = set()
@@ -189,7 +195,9 @@ def _in_full(value: sp.Basic, bound: Container[sp.Symbol], values: Mapping[sp.Sy
 def untold(program: Program) -> Program:
     """The program for callers that get a status alone: its reasons compute nothing."""
     body = tuple(
-        replace(s, reason=replace(s.reason, amount=None, unit=Unit.NONE, turns=())) if isinstance(s, Require) and s.reason else s
+        replace(s, reason=replace(s.reason, amount=None, unit=Unit.NONE, turns=()))
+        if isinstance(s, Require) and s.reason
+        else s
         for s in program.body
     )
     return with_inputs(replace(program, body=body))

@@ -75,7 +75,8 @@ class Require:
 class Solve:
     """Bind `names` to matrix^-1 right, by LU decomposition with partial pivoting.
 
-    Total: determinant and solution are zeros where the matrix is singular, or a number is NaN or larger than `SOLVABLE`.
+    Total: determinant and solution are zeros where the matrix is singular, or a number is NaN or larger than
+    `SOLVABLE`.
 
     All three by rows: the matrix is square, `names` and `right` have as many columns as there are right-hand sides,
     which may be none where the determinant alone is wanted.
@@ -102,8 +103,8 @@ class Solve:
 class Iterate:
     """Repeat `step` from `start` until `done` holds, at most `limit` times; status `otherwise` where it never does.
 
-    Every pass evaluates the step at the state. Then the loop ends, or the state becomes `following`. So the names of the
-    step are bound behind the loop, too, and belong to the final state.
+    Every pass evaluates the step at the state. Then the loop ends, or the state becomes `following`. So the names of
+    the step are bound behind the loop, too, and belong to the final state.
     """
 
     state: tuple[sp.Symbol, ...]
@@ -123,7 +124,8 @@ class Iterate:
 class Call:
     """Run a program that several programs share, and bind names of its outputs; where it refuses, so does the caller.
 
-    given: the values of its arguments. Its other inputs are constants of the machine, which are inputs of the caller, too.
+    given: the values of its arguments. Its other inputs are constants of the machine, which are inputs of the caller,
+    too.
     """
 
     program: Program
@@ -147,13 +149,15 @@ class Call:
 
 @dataclass(frozen=True)
 class FindRoot:
-    """Bind `names` to true and the outputs of `finish` at the root of `trial` that fits and is nearest to `start` on the circle.
+    """Bind `names` to true and the outputs of `finish` at the root of `trial` that fits and is nearest to `start` on
+    the circle.
 
-    A trial is a function of `TRIED`, with the two-root step on the wanted side (`SIDE` = 1) or the other (-1), and the angle of
-    the step with the number `FREED` set to `FREED_ANGLE` (-1: no step). Its outputs are the residual with its slope, the guard,
-    which is negative where there is no solution, with its slope, then cosine and sine of the angle of every step with a measure.
-    `finish` has the same arguments; its first output tells whether the root is on the wanted branch. `roots` says how roots are
-    found. Where there is none, or `wanted` is false, the names are bound to false and zeros.
+    A trial is a function of `TRIED`, with the two-root step on the wanted side (`SIDE` = 1) or the other (-1), and the
+    angle of the step with the number `FREED` set to `FREED_ANGLE` (-1: no step). Its outputs are the residual with its
+    slope, the guard, which is negative where there is no solution, with its slope, then cosine and sine of the angle of
+    every step with a measure. `finish` has the same arguments; its first output tells whether the root is on the wanted
+    branch. `roots` says how roots are found. Where there is none, or `wanted` is false, the names are bound to false
+    and zeros.
     """
 
     trial: Program
@@ -278,7 +282,9 @@ def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> S
         reason = None if statement.reason is None else statement.reason.rewritten(change)
         return replace(statement, condition=change(statement.condition), reason=reason)
     if isinstance(statement, Solve):
-        return replace(statement, matrix=tuple(map(change, statement.matrix)), right=tuple(map(change, statement.right)))
+        return replace(
+            statement, matrix=tuple(map(change, statement.matrix)), right=tuple(map(change, statement.right))
+        )
     if isinstance(statement, Call):
         return replace(statement, given=tuple((name, change(value)) for name, value in statement.given))
     if isinstance(statement, FindRoot):

@@ -1,10 +1,10 @@
 """Why a program refuses, as data: what is at fault, what is wrong with it, how much is missing, and in which unit.
 
-    Require(distance <= 1e-6 machine_scale, UNREACHABLE, reason=Reason(z, OUT_OF_PLANE, distance - 1e-6 machine_scale, LENGTH))
-    →  "z: a planar machine has none [u]", with the amount
+    Require(distance <= 1e-6 machine_scale, UNREACHABLE, reason=Reason(z, OUT_OF_PLANE, distance - 1e-6 machine_scale,
+    LENGTH)) →  "z: a planar machine has none [u]", with the amount
 
-An amount is computed where the program refuses, and nowhere else: whatever it reads that nothing else needs is written out
-in it (see `passes`).
+An amount is computed where the program refuses, and nowhere else: whatever it reads that nothing else needs is written
+out in it (see `passes`).
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """All roots of a trial along one joint, on arrays: the circle is cut into cells until each holds at most one root.
 
-`cells` tells whether a cell must be cut. A cell that need not be cut has one root where the value changes its sign, else none.
-A cell that is too narrow to be cut, and over which a direction turns, is a jump: there the joint is constant, and the angle is
-free. The value is an entry of a rotation, so it is a + b cos + c sin of this angle, which three trials determine. Where no
-root fits, the circle is searched once more with other cells.
+`cells` tells whether a cell must be cut. A cell that need not be cut has one root where the value changes its sign,
+else none. A cell that is too narrow to be cut, and over which a direction turns, is a jump: there the joint is
+constant, and the angle is free. The value is an entry of a rotation, so it is a + b cos + c sin of this angle, which
+three trials determine. Where no root fits, the circle is searched once more with other cells.
 """
 
 from __future__ import annotations
@@ -182,7 +182,8 @@ def _ordered(cells: Cells, swap: Flags) -> tuple[Reals, Reals]:
 
 
 def _closing(trial: Trial, cells: Cells, column: int, level: Reals) -> tuple[Reals, Reals, Reals]:
-    """Find the place where a column equals a level. Returns the end on the side of the first, the other, and the better.
+    """Find the place where a column equals a level. Returns the end on the side of the first, the other, and the
+    better.
 
     Newton's method from the end that is nearer to zero; bisection outside the cell, and in every third step.
     """
@@ -204,7 +205,10 @@ def _closing(trial: Trial, cells: Cells, column: int, level: Reals) -> tuple[Rea
         new[:, 0] -= level[going]
         same = (new[:, 0] < 0.0) == (first[going, 0] < 0.0)
         low[going], high[going] = np.where(same, s, a), np.where(same, b, s)
-        first[going], last[going] = np.where(same[:, None], new, first[going]), np.where(same[:, None], last[going], new)
+        first[going], last[going] = (
+            np.where(same[:, None], new, first[going]),
+            np.where(same[:, None], last[going], new),
+        )
         settled = np.abs(new[:, 0]) <= FINEST * np.abs(new[:, 1])  # the next step would be rounding
         done = settled | (new[:, 0] == 0.0) | (high[going] - low[going] <= FINEST)
         going = going[~done]

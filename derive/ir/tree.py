@@ -1,9 +1,9 @@
 """A program as a structured tree: statements in order, and choices of which one side alone is run.
 
-    if radius > tolerance:
-        cos_q4 = x/radius
-    else:
-        cos_q4 = cos(free)
+if radius > tolerance:
+    cos_q4 = x/radius
+else:
+    cos_q4 = cos(free)
 """
 
 from __future__ import annotations

@@ -1,14 +1,13 @@
 """The types of the intermediate representation, and the operations on each.
 
-    Real     a number
-    Bool     a condition, and a name that is one: `flag`
-    Int      an integer: `count`. It is compared with, added to and multiplied by integers; `ToReal` makes it a Real
-    Angle    a Real modulo a turn, in radians. It comes from `Atan2` and `NearestOnArc`. It has sums, integer multiples, choices,
+    Real     a number Bool     a condition, and a name that is one: `flag` Int      an integer: `count`. It is compared
+    with, added to and multiplied by integers; `ToReal` makes it a Real Angle    a Real modulo a turn, in radians. It
+    comes from `Atan2` and `NearestOnArc`. It has sums, integer multiples, choices,
              a sine and a cosine. `Wrap` makes it a Real; every other use is refused
     Heading  an Angle in degrees, the unit of axes: `NearestPeriod` makes it a Real
 
-A literal integer is an Int or a Real, as its neighbours are. A flag and a count have their types by their names; a name is an
-angle if an angle is bound to it.
+A literal integer is an Int or a Real, as its neighbours are. A flag and a count have their types by their names; a name
+is an angle if an angle is bound to it.
 """
 
 from __future__ import annotations
@@ -64,7 +63,9 @@ def type_of(value: sp.Basic, known: Known = _NOTHING) -> Type:
 
 @cache
 def _type_of(value: sp.Basic, angles: frozenset[tuple[sp.Symbol, Type]]) -> Type:
-    """The same, with the names in it that are angles. Cached: every pass checks the expressions that it has not changed, too."""
+    """The same, with the names in it that are angles. Cached: every pass checks the expressions that it has not
+    changed, too.
+    """
     known = dict(angles)
     if isinstance(value, sp.Symbol):
         return Type.BOOL if isinstance(value, Flag) else Type.INT if is_count(value) else known.get(value, Type.REAL)

@@ -37,7 +37,9 @@ class BrokenProgram(Exception):
 
 
 def verify(program: Program) -> Program:
-    """Return the program, or raise `BrokenProgram`: unbound or repeated name, unportable name, unknown primitive, mixed types."""
+    """Return the program, or raise `BrokenProgram`: unbound or repeated name, unportable name, unknown primitive, mixed
+    types.
+    """
     bound = {s.name: s for s in (*program.inputs, DEGREE)}
     spelled: dict[str, str] = {}
     for name in [s.name for s in program.inputs] + [name.name for name in program.bound()]:
@@ -77,12 +79,16 @@ def _check_call(program: Program, call: Call) -> None:
     if strangers := [n.name for n in arguments if n not in call.program.inputs]:
         raise BrokenProgram(f"{program.name}: {call.program.name} does not read {strangers[0]!r}")
     if unbound := [s.name for s in call.constants if s not in program.inputs]:
-        raise BrokenProgram(f"{program.name}: {call.program.name} reads {unbound[0]!r}, which is neither given nor an input")
+        raise BrokenProgram(
+            f"{program.name}: {call.program.name} reads {unbound[0]!r}, which is neither given nor an input"
+        )
 
 
 def _check_loop(program: Program, loop: Iterate, bound: dict[str, sp.Symbol]) -> None:
     if not len(loop.state) == len(loop.start) == len(loop.following) or loop.limit < 1:
-        raise BrokenProgram(f"{program.name}: state, start and following of a loop must be as many, its limit at least 1")
+        raise BrokenProgram(
+            f"{program.name}: state, start and following of a loop must be as many, its limit at least 1"
+        )
     for value in loop.start:
         _check_expression(program, value, bound)
     bound |= {name.name: name for name in loop.state}
@@ -92,7 +98,9 @@ def _check_loop(program: Program, loop: Iterate, bound: dict[str, sp.Symbol]) ->
         _check_expression(program, value, bound)
     for own, value in zip(loop.state, loop.following, strict=True):
         if others := sorted(s.name for s in symbols_of(value) if s in loop.state and s != own):
-            raise BrokenProgram(f"{program.name}: what follows {own} reads {others[0]!r}, which may have been assigned before")
+            raise BrokenProgram(
+                f"{program.name}: what follows {own} reads {others[0]!r}, which may have been assigned before"
+            )
 
 
 def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:

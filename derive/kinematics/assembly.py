@@ -75,14 +75,18 @@ def _orientation(mechanism: Mechanism, forward: Forward) -> int:
         good = np.broadcast_to(status == Status.OK, (_SAMPLES,))
         found |= {int(s) for s in np.sign(side * values["indicator"][good])}
     if len(found) != 1 or 0 in found:
-        raise DescriptionError(f"assembly {mechanism.assembly.name!r}: its indicator does not tell the two solutions apart")
+        raise DescriptionError(
+            f"assembly {mechanism.assembly.name!r}: its indicator does not tell the two solutions apart"
+        )
     return found.pop()
 
 
 def assembly_checks(
     mechanism: Mechanism, done: Assembled, solved: tuple[Statement, ...], offset: bool
 ) -> tuple[Statement, ...]:
-    """The checks of a solved branch: the assembly mode of this machine, and the least distance from a type 2 singularity."""
+    """The checks of a solved branch: the assembly mode of this machine, and the least distance from a type 2
+    singularity.
+    """
     if done.margin is None or mechanism.assembly is None:
         return ()
     bound = {s.name for s in solved if isinstance(s, Let)} | {real(c) for c in "xyz"}

@@ -43,7 +43,9 @@ _SAMPLES = 64
 
 @dataclass(frozen=True)
 class Assignment:
-    """A branch, the slope of the step that decides it, and whether both have the same sign (+1) or opposite signs (-1)."""
+    """A branch, the slope of the step that decides it, and whether both have the same sign (+1) or
+    opposite signs (-1).
+    """
 
     branch: Branch
     slope: Slope
@@ -65,7 +67,9 @@ class Assignment:
         return reduce_units(value, all_angles(mechanism)) if value.is_polynomial() else value
 
 
-def assign(mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool = False) -> tuple[Assignment, ...]:
+def assign(
+    mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool = False
+) -> tuple[Assignment, ...]:
     """Find the step of every branch. Raises `DescriptionError` where there is not exactly one.
 
     optional_zero: compare on a machine without its optional lengths. The steps of the offset problem correspond to the
@@ -94,12 +98,16 @@ def assign(mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_ze
 def steps_and_rest(
     mechanism: Mechanism, inverse: Inverse, forward: Forward
 ) -> tuple[tuple[Assignment, ...], tuple[Branch, ...]]:
-    """The assignments of the branches that a step decides, and the branches that no step decides. Every step needs a branch."""
+    """The assignments of the branches that a step decides, and the branches that no step decides. Every step needs a
+    branch.
+    """
     branches = tuple(b for b in mechanism.branches if not b.is_crossing)
     named = replace(mechanism, branches=branches)
     signs, indicators = _signs(named, inverse, forward, False)
     decided = tuple(
-        b for b, row in zip(branches, indicators, strict=True) if any(np.all(o * s == row) for s in signs for o in (1, -1))
+        b
+        for b, row in zip(branches, indicators, strict=True)
+        if any(np.all(o * s == row) for s in signs for o in (1, -1))
     )
     found = assign(replace(mechanism, branches=decided), inverse, forward)
     return found, tuple(b for b in branches if b not in decided)
@@ -121,7 +129,9 @@ def _signs(
     values, status = run(program, samples)
     good = np.broadcast_to(status == Status.OK, (_SAMPLES,))
     if not good.any():
-        raise DescriptionError("no sampled pose is possible: a quantity that must be positive never is, or the loop never closes")
+        raise DescriptionError(
+            "no sampled pose is possible: a quantity that must be positive never is, or the loop never closes"
+        )
     rows = [np.sign(np.broadcast_to(values[n.name.name], (_SAMPLES,))[good]) for n in named]
     return rows[: len(slopes)], rows[len(slopes) :]
 

@@ -152,7 +152,9 @@ def _platform(mechanism: Mechanism) -> Kinematics:
 
 
 def _scanned(mechanism: Mechanism) -> Kinematics:
-    """The programs of a chain without a closed form for one parameter: one joint is scanned, the determinant is the margin."""
+    """The programs of a chain without a closed form for one parameter: one joint is scanned, the determinant is the
+    margin.
+    """
     both = solve_both(mechanism)
     statements, margins = margin_statements(both)
     determinant, scaled = determinant_margin(both)
@@ -164,7 +166,9 @@ def _scanned(mechanism: Mechanism) -> Kinematics:
         search_given(both),
         from_joints(mechanism),
         limits_program(mechanism),
-        assemble("singularity", (*both.forward.statements, *determinant, margin), [Output(DETERMINANT.name, margin.name)]),
+        assemble(
+            "singularity", (*both.forward.statements, *determinant, margin), [Output(DETERMINANT.name, margin.name)]
+        ),
         jacobian_program(mechanism, both.forward),
         _image_program(mechanism),
         _projection_program(mechanism),
@@ -194,7 +198,9 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
     derived = next(program for program in whole if program.name == "branch")
     read = frozenset(s for program in (*shorter, derived) for s in program.inputs)
     setup = setup_program(mechanism, parameters, hoisted, read)
-    settable = setup_program(mechanism, parameters, hoisted, read, has_settings=True) if mechanism.period_joints else None
+    settable = (
+        setup_program(mechanism, parameters, hoisted, read, has_settings=True) if mechanism.period_joints else None
+    )
     finished = {program.name: program for program in shorter}
     called = {program.name for program in shared(shorter)}
     for program in (p for p in shorter if p.name not in called):  # a caller gives what those read
@@ -231,7 +237,9 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
 
 
 def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -> None:
-    """Refuse a name that is read and is no input: a mistake of the derivation, found here and not in a generated file."""
+    """Refuse a name that is read and is no input: a mistake of the derivation, found here and not
+    in a generated file.
+    """
     allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
     allowed |= {f"sigma_{b.name}" for b in mechanism.branches}
     allowed |= {j.symbol.name for j in mechanism.joints} if program.name == "from_joints" else set()
@@ -262,10 +270,14 @@ def _offset_programs(mechanism: Mechanism, closed: Assembled) -> list[Program]:
         refuse_shared_names(mechanism, (*inverse.naming, *inverse.derivation.statements))
         assignments = assign(mechanism, inverse, forward, optional_zero=bool(inverse.frozen))
     except (Unsolved, DescriptionError) as problem:
-        raise type(problem)(f"with offset_interface=False it could be built, but for a point off the flange {problem}") from None
+        raise type(problem)(
+            f"with offset_interface=False it could be built, but for a point off the flange {problem}"
+        ) from None
     statements = with_branch_signs(inverse.derivation.statements, assignments)
     return [
-        inverse_program("offset_branch", mechanism, inverse, statements, _last(mechanism, closed, statements, offset=True)),
+        inverse_program(
+            "offset_branch", mechanism, inverse, statements, _last(mechanism, closed, statements, offset=True)
+        ),
         _offset_configuration(mechanism, inverse, forward, assignments),
     ]
 
@@ -300,7 +312,9 @@ def _turns_in_a_coupling(mechanism: Mechanism) -> bool:
 
 
 def _freedom(mechanism: Mechanism) -> Freedom:
-    """How the flange turns. With stated equations it keeps its orientation or follows all of it; a chain may turn it about z."""
+    """How the flange turns. With stated equations it keeps its orientation or follows all of it; a chain may turn it
+    about z.
+    """
     if mechanism.task.turning is Turning.FULL:
         return Freedom.THREE
     if mechanism.chain is None:

@@ -1,10 +1,10 @@
 """Coupling of a position and an orientation kinematics: which offsets of the orientation kinematics are allowed.
 
-The end point of an orientation kinematics is a sum of shifts. A shift along the axis of all rotations before it is fixed to the
-flange; a shift along the axis of all rotations behind it is fixed to the tool; any other lies in the wrist between its axes.
-A flange that keeps its orientation allows all of them. If the position axes turn the flange, its orientation is not known
-before they are solved. Then two parts are allowed: the part fixed to the flange along the axis about which the flange turns,
-and the part fixed to the tool along directions that the commanded rotation gives.
+The end point of an orientation kinematics is a sum of shifts. A shift along the axis of all rotations before it is
+fixed to the flange; a shift along the axis of all rotations behind it is fixed to the tool; any other lies in the wrist
+between its axes. A flange that keeps its orientation allows all of them. If the position axes turn the flange, its
+orientation is not known before they are solved. Then two parts are allowed: the part fixed to the flange along the axis
+about which the flange turns, and the part fixed to the tool along directions that the commanded rotation gives.
 """
 
 from __future__ import annotations
@@ -62,7 +62,9 @@ _MET: dict[Turning, tuple[int, ...]] = {
 
 @dataclass(frozen=True)
 class EndPoint:
-    """The end point in parts: one fixed to the flange, one fixed to the tool, and the size of the offset between the axes."""
+    """The end point in parts: one fixed to the flange, one fixed to the tool, and the size of the offset between the
+    axes.
+    """
 
     flange: tuple[sp.Expr, ...]
     tool: tuple[sp.Expr, ...]
@@ -98,7 +100,9 @@ def _compatible(mechanism: Mechanism) -> Program:
     across = [s - a * _ALONG for s, a in zip(parts.flange, FLANGE_AXIS, strict=True)]
     unmet = [s for k, s in enumerate(parts.tool) if k not in _MET[mechanism.task.turning]]
     lengths = [p.symbol for p in mechanism.parameters if p.unit == "u"]
-    body: list[Statement] = [Let(_UNNOTICED, HELD * sp.Add(*map(sp.Abs, lengths)), "offsets up to this are not noticed")]
+    body: list[Statement] = [
+        Let(_UNNOTICED, HELD * sp.Add(*map(sp.Abs, lengths)), "offsets up to this are not noticed")
+    ]
     if any(parts.flange):
         body += [*finite(FLANGE_AXIS), *_along(parts), Let(real("flange_offset"), _size(across), _ACROSS)]
         body.append(_unnoticed("flange_offset"))
@@ -110,7 +114,9 @@ def _compatible(mechanism: Mechanism) -> Program:
 
 def _unnoticed(name: str) -> Require:
     """The condition that the shift of this name is too small to be noticed."""
-    return Require(sp.Le(real(name), _UNNOTICED), Status.INVALID_COUPLING, reason=about_machine(Why.TURNS_WITH_THE_FLANGE))
+    return Require(
+        sp.Le(real(name), _UNNOTICED), Status.INVALID_COUPLING, reason=about_machine(Why.TURNS_WITH_THE_FLANGE)
+    )
 
 
 def _carried(mechanism: Mechanism) -> Program:

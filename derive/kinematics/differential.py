@@ -57,7 +57,8 @@ from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.plate.plate import platform_jacobian
 
 _ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
-"""The rows of a twist: along and about the axes of the base, and about the x and y axes of the tool, which tilt its z axis."""
+"""The rows of a twist: along and about the axes of the base, and about the x and y axes of the tool, which tilt its z
+axis."""
 _TURNS: dict[Turning, tuple[str, ...]] = {
     Turning.NONE: (),
     Turning.ABOUT_Z: ("turn z",),
@@ -109,7 +110,9 @@ def _entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:
 
 
 def _by_screws(mechanism: Mechanism, rows: Sequence[str]) -> sp.Matrix:
-    """The Jacobian of a serial chain: every factor moves its end as a screw, times the derivative of the factor by the joint."""
+    """The Jacobian of a serial chain: every factor moves its end as a screw, times the derivative of the factor by the
+    joint.
+    """
     assert mechanism.chain is not None
     screws, position = _screws(mechanism, mechanism.chain)
     columns = []
@@ -144,7 +147,9 @@ def _twist(screw: Screw, position: sp.ImmutableMatrix) -> sp.Matrix:
 
 
 def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]:
-    """The Jacobian of stated equations: -A^-1 B with A = dΦ/dx, B = dΦ/dq, by the adjugate; type 2 singular where det A = 0."""
+    """The Jacobian of stated equations: -A^-1 B with A = dΦ/dx, B = dΦ/dq, by the adjugate; type 2 singular where det A
+    = 0.
+    """
     closure = sp.Matrix([with_fixed_names(mechanism, e) for e in mechanism.equations])
     by_pose = closure.jacobian([real(c) for c in mechanism.task.position])
     by_joints = closure.jacobian([j.symbol for j in mechanism.joints])
@@ -166,9 +171,7 @@ def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]
     return -entries.adjugate() * drives / divisor, statements
 
 
-def _entries(
-    mechanism: Mechanism, matrix: sp.Matrix, names: Sequence[str]
-) -> tuple[sp.Matrix, tuple[Let, ...]]:
+def _entries(mechanism: Mechanism, matrix: sp.Matrix, names: Sequence[str]) -> tuple[sp.Matrix, tuple[Let, ...]]:
     """The entries of a matrix of derivatives by names of their own, `slope_<equation>_by_<unknown>`."""
     trigonometric, values = named_trigonometry(mechanism, list(matrix))
     lets: list[Let] = [*trigonometric]
@@ -183,7 +186,9 @@ def _entries(
 def _motor_matrix(mechanism: Mechanism) -> sp.Matrix:
     """The derivative of the joints by the motors: the identity and the gear couplings."""
     motors = [j.motor for j in mechanism.joints]
-    return sp.Matrix(len(motors), len(motors), [sp.diff(j.motor + j.coupling, m) for j in mechanism.joints for m in motors])
+    return sp.Matrix(
+        len(motors), len(motors), [sp.diff(j.motor + j.coupling, m) for j in mechanism.joints for m in motors]
+    )
 
 
 @dataclass(frozen=True)
@@ -259,11 +264,12 @@ def _exponents(mechanism: Mechanism, margins: Program, jacobian: Program) -> lis
 
 
 def _independent(logs: Sequence[NDArray[np.float64]]) -> list[int]:
-    """The margins that are no product of earlier ones: the measure of a two-root step is the absolute value of its slope."""
+    """The margins that are no product of earlier ones: the measure of a two-root step is the absolute value of its
+    slope.
+    """
     own: list[int] = []
     for k in range(len(logs)):
         columns = np.stack([logs[i] for i in (*own, k)] + [np.ones_like(logs[k])], axis=-1)
         if np.linalg.matrix_rank(columns, tol=1e-6) == len(own) + 2:
             own.append(k)
     return own
-

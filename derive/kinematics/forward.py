@@ -59,7 +59,9 @@ from derive.solver.solve import Derivation, solve
 
 
 def pose_at_axes(mechanism: Mechanism) -> Forward:
-    """The pose of a mechanism at its axis values; it requires the quantities to be positive that the description says are."""
+    """The pose of a mechanism at its axis values; it requires the quantities to be positive that the description says
+    are.
+    """
     checks = (*finite([j.axis for j in mechanism.joints]), *joint_lets(mechanism), *_positive(mechanism))
     if mechanism.chain is not None and is_spatial(mechanism.chain):
         return _frame_by_frame(mechanism, checks)
@@ -99,7 +101,9 @@ def _solve_for_position(mechanism: Mechanism) -> Derivation:
     )
     derivation = solve(problem, (), lambda angle: ())
     if len(derivation.slopes) > 1 or bool(derivation.slopes) != (mechanism.assembly is not None):
-        raise DescriptionError(f"forward kinematics has {len(derivation.slopes)} two-root steps: one assembly names one")
+        raise DescriptionError(
+            f"forward kinematics has {len(derivation.slopes)} two-root steps: one assembly names one"
+        )
     return derivation
 
 
@@ -176,9 +180,7 @@ def derivation_at_axes(mechanism: Mechanism, inverse: Inverse, forward: Forward)
     naming = [s for j in inverse.frozen for s in frozen_lets(j)]
     dropped = solved | own | {s.name for s in naming if isinstance(s, Let)} | trigonometric.keys()
     kept = [
-        s
-        for s in (*inverse.closure.lets, *inverse.derivation.plain)
-        if isinstance(s, Let) and s.name not in dropped
+        s for s in (*inverse.closure.lets, *inverse.derivation.plain) if isinstance(s, Let) and s.name not in dropped
     ]
     present = {s.name for s in forward.statements if isinstance(s, Let)}
     lets = tuple(s for n, s in trigonometric.items() if n not in present)

@@ -143,7 +143,11 @@ def heading_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
     determined = sp.Gt(length, FREE_ANGLE)
     cos_value, sin_value = heading_parts(mechanism)
     return (
-        Let(along, cos_value, "nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept"),
+        Let(
+            along,
+            cos_value,
+            "nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept",
+        ),
         Let(across, sin_value),
         Let(length, Root(along**2 + across**2)),
         Require(determined, Status.UNREACHABLE, reason=about_machine(Why.OPPOSITE)),
@@ -158,9 +162,15 @@ def _heading(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 
 def inverse_program(
-    name: str, mechanism: Mechanism, inverse: Inverse, statements: tuple[Statement, ...], last: tuple[Statement, ...] = ()
+    name: str,
+    mechanism: Mechanism,
+    inverse: Inverse,
+    statements: tuple[Statement, ...],
+    last: tuple[Statement, ...] = (),
 ) -> Program:
-    """The program of one branch: checks of inputs, the derivation with its branch signs, the checks `last`, axis values."""
+    """The program of one branch: checks of inputs, the derivation with its branch signs, the checks `last`, axis
+    values.
+    """
     in_plane: tuple[Statement, ...] = ()
     if inverse.closure.plane is not None:
         distance = sp.Abs(real("z") - inverse.closure.plane)

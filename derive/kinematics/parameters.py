@@ -56,7 +56,16 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
             parameters.append(_setting(f"{word}_{quantity.name}", meaning, unit, None))
     parameters += _assembly_parameters(mechanism)
     check = Parameter(
-        flag(CHECK_LIMITS), CHECK_LIMITS, Role.FLAG, "inverse kinematics tests the limits", "", 0.0, 1.0, False, 1.0, 1.0
+        flag(CHECK_LIMITS),
+        CHECK_LIMITS,
+        Role.FLAG,
+        "inverse kinematics tests the limits",
+        "",
+        0.0,
+        1.0,
+        False,
+        1.0,
+        1.0,
     )
     return (*parameters, check)
 
@@ -99,7 +108,8 @@ def setup_program(
     *,
     has_settings: bool = False,
 ) -> Program:
-    """Check every parameter; the outputs are the parameters, the effective limits, and the hoisted values that are `read`.
+    """Check every parameter; the outputs are the parameters, the effective limits, and the hoisted values that are
+    `read`.
 
     has_settings: drives hand over limits, so that the outputs of `limits_of_axis` are left to it.
     """
@@ -165,7 +175,9 @@ def _range_of(parameter: Parameter) -> tuple[Require, ...]:
     low = sp.Float(parameter.low) if parameter.low % 1 else sp.Integer(int(parameter.low))
     high = sp.Float(parameter.high) if parameter.high % 1 else sp.Integer(int(parameter.high))
     if parameter.role is Role.SIGNED_LENGTH:
-        nonzero = sp.Or(sp.Gt(value, 0), sp.Lt(value, 0))  # NaN fails a comparison; the absolute value of NaN is an error
+        nonzero = sp.Or(
+            sp.Gt(value, 0), sp.Lt(value, 0)
+        )  # NaN fails a comparison; the absolute value of NaN is an error
         inside = sp.And(nonzero, sp.Ge(value, low), sp.Le(value, min(high, LARGEST)))
         return (_needed(inside, note),)
     above = sp.Gt(value, low) if parameter.low_open else sp.Ge(value, low)

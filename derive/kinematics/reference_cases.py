@@ -38,7 +38,9 @@ class Case:
 
 @dataclass(frozen=True)
 class SelfTest:
-    """Machines by their parameters, and cases in the order in which they run: a machine is initialised by its first one."""
+    """Machines by their parameters, and cases in the order in which they run: a machine is initialised by its first
+    one.
+    """
 
     machines: tuple[Mapping[str, float], ...]
     cases: tuple[Case, ...]

@@ -1,8 +1,8 @@
 """Root scan: one joint is tried around the circle, and the others are solved at each trial; a root leaves no residual.
 
 Three programs with the same inputs. `try_joint` computes the residual of the closure at a trial, and its slope (see
-`FindRoot`). `finish_root` computes the joints at a root, improves them by Newton's method on the closure, and tells whether
-they lie on the wanted branch. `find_root` finds the root that is nearest to the reference; `ir/roots` says how.
+`FindRoot`). `finish_root` computes the joints at a root, improves them by Newton's method on the closure, and tells
+whether they lie on the wanted branch. `find_root` finds the root that is nearest to the reference; `ir/roots` says how.
 """
 
 from __future__ import annotations
@@ -45,7 +45,9 @@ _ZERO = sp.Integer(0)
 
 @dataclass(frozen=True)
 class Trial:
-    """One trial: statements that solve the other joints with the scanned one at `TRIED`, and the residual that they leave."""
+    """One trial: statements that solve the other joints with the scanned one at `TRIED`, and the residual that they
+    leave.
+    """
 
     statements: tuple[Let, ...]
     value: sp.Expr
@@ -63,11 +65,18 @@ def try_program(trial: Trial) -> Program:
     differentiated = with_slopes([*_roots_named(trial.statements), left, Let(guard, trial.guard)], TRIED)
     bound = {s.name for s in differentiated if isinstance(s, Let)}
     slopes = [slope_name(n) if slope_name(n) in bound else _ZERO for n in (value, guard)]
-    outputs = [Output("remainder", value), Output("slope", slopes[0]), Output("room", guard), Output("room_slope", slopes[1])]
+    outputs = [
+        Output("remainder", value),
+        Output("slope", slopes[0]),
+        Output("room", guard),
+        Output("room_slope", slopes[1]),
+    ]
     for number, angle in enumerate(trial.angles, 1):
         outputs += [Output(f"direction_{number}_cos", cosine(angle)), Output(f"direction_{number}_sin", sine(angle))]
     program = assemble("try_joint", differentiated, outputs)
-    return replace(program, summary="The residual of the closure at a trial, its slope, and the angles that may turn fast")
+    return replace(
+        program, summary="The residual of the closure at a trial, its slope, and the angles that may turn fast"
+    )
 
 
 def find_program(mechanism: Mechanism, trial: Program, finish: Program, arguments: Sequence[sp.Symbol]) -> Program:
@@ -76,7 +85,9 @@ def find_program(mechanism: Mechanism, trial: Program, finish: Program, argument
     note = f"root scan along {mechanism.search.joint.name if mechanism.search else ''}"
     found = FindRoot(trial, finish, START, LOOKED_FOR, names, tuple(arguments), note)
     program = assemble("find_root", (found,), [Output(n.name, n) for n in names])
-    return replace(program, summary="The joints at the root that is nearest to the start; zeros where the machine needs no scan")
+    return replace(
+        program, summary="The joints at the root that is nearest to the start; zeros where the machine needs no scan"
+    )
 
 
 def finish_program(mechanism: Mechanism, trial: Trial, wanted: Sequence[sp.Expr], determinant: sp.Symbol) -> Program:
@@ -91,14 +102,17 @@ def finish_program(mechanism: Mechanism, trial: Trial, wanted: Sequence[sp.Expr]
     fits = Let(flag(FITS), sp.And(*conditions))
     outputs = [Output(FITS, fits.name), *(Output(f"found_{j.name}", j) for j in joints)]
     program = assemble("finish_root", (*trial.statements, loop, last, fits), outputs)
-    return replace(program, summary="The joints at a root, improved by Newton's method, and whether they are on the branch")
+    return replace(
+        program, summary="The joints at a root, improved by Newton's method, and whether they are on the branch"
+    )
 
 
 def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tuple[sp.Expr, ...]]:
     """Newton's method on the closure: a step is taken where the next error, about its square, is smaller than this one.
 
-    The step is that of damped least squares, J^T (J J^T + d^2)^-1 e. Where the machine is singular it leaves an error that only
-    a long step could remove: there a root is known to a few digits, and the long step would lead away from it.
+    The step is that of damped least squares, J^T (J J^T + d^2)^-1 e. Where the machine is singular it leaves an error
+    that only a long step could remove: there a root is known to a few digits, and the long step would lead away from
+    it.
     """
     joints = [j.symbol for j in mechanism.joints]
     composed, (lets, entries) = named_pose(mechanism), jacobian_entries(mechanism)
@@ -154,13 +168,17 @@ def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequ
     matrix = tuple(names[min(i, j), max(i, j)] for i in range(size) for j in range(size))
     return [
         *(Let(names[i, j], product[i, j] + (DAMPED if i == j else 0)) for i, j in upper),
-        Solve(multipliers, matrix, tuple(errors), None, "damped least squares: the shortest step that cancels the error"),
+        Solve(
+            multipliers, matrix, tuple(errors), None, "damped least squares: the shortest step that cancels the error"
+        ),
         *(Let(step, value) for step, value in zip(steps, jacobian.T * sp.Matrix(multipliers), strict=True)),
     ]
 
 
 def _errors() -> list[sp.Expr]:
-    """The error to the goal: a shift in characteristic lengths, and the vector of the rotation to it (its skew part)."""
+    """The error to the goal: a shift in characteristic lengths, and the vector of the rotation to
+    it (its skew part).
+    """
     places = [(GOAL[real(c)] - real(c)) / SCALE for c in COORDINATE_NAMES]
     here = sp.Matrix(3, 3, ROTATION_ENTRIES)
     turn = sp.Matrix(3, 3, [GOAL[r] for r in ROTATION_ENTRIES]) * here.T
@@ -168,8 +186,8 @@ def _errors() -> list[sp.Expr]:
 
 
 def _slack(condition: sp.Basic) -> sp.Expr:
-    """By how much a condition holds, without a unit: 1 - c^2 of a cosine c whose size is at most 1; of a radicand, by how much
-    it is above its bound, divided by the scale of which the bound is `BOUNDARY`.
+    """By how much a condition holds, without a unit: 1 - c^2 of a cosine c whose size is at most 1; of a radicand, by
+    how much it is above its bound, divided by the scale of which the bound is `BOUNDARY`.
     """
     if isinstance(condition, sp.Le):
         (cosine_value,) = condition.lhs.args
@@ -178,9 +196,7 @@ def _slack(condition: sp.Basic) -> sp.Expr:
     return radicand / (-bound / BOUNDARY).as_coeff_Mul()[1] + BOUNDARY
 
 
-def trial_of(
-    statements: Sequence[Statement], value: sp.Expr, angles: Sequence[tuple[sp.Symbol, sp.Symbol]]
-) -> Trial:
+def trial_of(statements: Sequence[Statement], value: sp.Expr, angles: Sequence[tuple[sp.Symbol, sp.Symbol]]) -> Trial:
     """A trial from solved statements. angles: those of steps with a measure, each with its value where it is free."""
     guards = [s.condition for s in statements if isinstance(s, Require)]
     guard = _slack(guards[0]) if guards else sp.Integer(1)
@@ -190,7 +206,9 @@ def trial_of(
     for number, (angle, reference) in enumerate(angles):
         chosen = real(f"chosen_{angle.name}")
         is_freed = sp.Eq(FREED, number)
-        found.append(Let(chosen, Select(is_freed, FREED_ANGLE, reference), f"{angle.name} where the pose leaves it free"))
+        found.append(
+            Let(chosen, Select(is_freed, FREED_ANGLE, reference), f"{angle.name} where the pose leaves it free")
+        )
         for function in (sp.cos, sp.sin):
             choices[function(reference)] = function(chosen)
             conditions[function(reference)] = sp.Ne(FREED, number)

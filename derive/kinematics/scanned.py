@@ -1,10 +1,10 @@
 """A mechanism with a root scan: closed form where a parameter is zero, a scan along one joint where it is not.
 
-Both derivations stand in one program. Names of the closed form end in `_closed`, names of a trial in `_tried`. The conditions
-of the closed form refuse nothing where a scan is made. Branches are two-root steps of both derivations, as everywhere. A branch
-that no step of the trial decides is read off the root that was found. The last byte of the configuration says whether the
-residual rises or falls at the root. The sign of this slope is that of det J over the product of the slopes of the trial's
-steps. So det J is the only margin, and no formula is derived for it.
+Both derivations stand in one program. Names of the closed form end in `_closed`, names of a trial in `_tried`. The
+conditions of the closed form refuse nothing where a scan is made. Branches are two-root steps of both derivations, as
+everywhere. A branch that no step of the trial decides is read off the root that was found. The last byte of the
+configuration says whether the residual rises or falls at the root. The sign of this slope is that of det J over the
+product of the slopes of the trial's steps. So det J is the only margin, and no formula is derived for it.
 """
 
 from __future__ import annotations
@@ -272,7 +272,9 @@ def _named_apart(statements: Iterable[Statement], word: str, own: Container[sp.S
 
 def _only(statements: Iterable[Statement], otherwise: sp.Basic) -> tuple[Statement, ...]:
     """The statements with conditions that refuse only where `otherwise` is false."""
-    return tuple(replace(s, condition=sp.Or(otherwise, s.condition)) if isinstance(s, Require) else s for s in statements)
+    return tuple(
+        replace(s, condition=sp.Or(otherwise, s.condition)) if isinstance(s, Require) else s for s in statements
+    )
 
 
 def margin_statements(both: Scanned) -> tuple[tuple[Statement, ...], tuple[Let, ...]]:
@@ -281,7 +283,10 @@ def margin_statements(both: Scanned) -> tuple[tuple[Statement, ...], tuple[Let, 
     statements: list[Statement] = [searched_flag(mechanism), *both.forward.statements]
     own = {name for s in both.forward.statements for name in binds(s)}
     margins: dict[str, dict[str, sp.Expr]] = {}
-    for word, inverse, assignments in (("closed", both.closed, both.closed_branches), ("tried", both.trial, both.trial_branches)):
+    for word, inverse, assignments in (
+        ("closed", both.closed, both.closed_branches),
+        ("tried", both.trial, both.trial_branches),
+    ):
         values = [Let(real(f"margin_{a.branch.name}"), a.margin(mechanism)) for a in assignments]
         at_axes = derivation_at_axes(mechanism, inverse, both.forward)
         apart = _named_apart((*at_axes, *values), word, own)
@@ -310,12 +315,16 @@ def _crossing_margin(both: Scanned, determinant: sp.Expr, margins: dict[str, dic
 
 
 def determinant_margin(both: Scanned) -> tuple[tuple[Statement, ...], sp.Expr]:
-    """The determinant of the Jacobian at a pose that forward kinematics has found, over the scales of the closed steps."""
+    """The determinant of the Jacobian at a pose that forward kinematics has found, over the scales
+    of the closed steps.
+    """
     mechanism = both.mechanism
     lets, entries = jacobian_entries(mechanism)
     width = len(mechanism.joints)
     scaled = [v / (SCALE if k // width < len(mechanism.task.position) else 1) for k, v in enumerate(entries)]
-    system = Solve((), tuple(scaled), (), DETERMINANT, "determinant of the Jacobian, positions in characteristic lengths")
+    system = Solve(
+        (), tuple(scaled), (), DETERMINANT, "determinant of the Jacobian, positions in characteristic lengths"
+    )
     return (*lets, system), DETERMINANT * _determinant_scale(both)
 
 
@@ -327,7 +336,9 @@ def _determinant_scale(both: Scanned) -> sp.Expr:
 
 
 def _orientation(both: Scanned) -> int:
-    """+1 where the slope of the residual has the sign of det J over the slopes of the steps, else -1. All poses must agree."""
+    """+1 where the slope of the residual has the sign of det J over the slopes of the steps, else -1. All poses must
+    agree.
+    """
     mechanism = both.mechanism
     assert mechanism.search is not None
     machine = sample_machine(mechanism, 51)

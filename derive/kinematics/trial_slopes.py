@@ -1,4 +1,5 @@
-"""Slopes, by automatic differentiation: every value of a straight-line program also differentiated by one of its inputs.
+"""Slopes, by automatic differentiation: every value of a straight-line program also differentiated by one of its
+inputs.
 
     Let(a, t*x)              →  Let(slope_a, x)
     Let(b, Root(a))          →  Let(slope_b, Select(b > 0, slope_a/(2*b), 0))

@@ -1,4 +1,5 @@
-"""Coefficients: constants that multiply one value are one constant, and a constant in front of a sum goes into its terms.
+"""Coefficients: constants that multiply one value are one constant, and a constant in front of a sum goes into its
+terms.
 
     c * x + d * x                    →  (c + d) * x
     c * (d * x + f * y)              →  (c d) * x + (c f) * y
@@ -48,7 +49,9 @@ class _Coefficients:
         self._graph, self._constant = graph, constant
 
     def split(self, node: Node) -> tuple[Value, Value] | None:
-        """The coefficient, with the numbers in it, and what it multiplies; None of a constant and of what is no product."""
+        """The coefficient, with the numbers in it, and what it multiplies; None of a constant and of what is no
+        product.
+        """
         if node.head is not PRODUCT or self._constant.allows(node):
             return None
         fixed, others = self._apart(part.node for part in node.parts)
@@ -111,7 +114,9 @@ class _Collecting(Rewriting):
 
 
 class _Distributing(Rewriting):
-    """Multiplies the coefficients of the terms of a sum, or of the sides of a choice, by the constant in front of it."""
+    """Multiplies the coefficients of the terms of a sum, or of the sides of a choice, by the
+    constant in front of it.
+    """
 
     def __init__(self, graph: Graph, constant: Constant, readers: Readers) -> None:
         super().__init__(graph)
@@ -132,7 +137,9 @@ class _Distributing(Rewriting):
         return Value(value.node, value.sign * sign * inner_sign)
 
     def _can_scale(self, start: Node, factor: Node) -> bool:
-        """Whether a value, and what is a part of it, is read by such multiples alone, and each part has a coefficient."""
+        """Whether a value, and what is a part of it, is read by such multiples alone, and each part
+        has a coefficient.
+        """
         seen: set[Node] = set()
         pending = [start]
         while pending:

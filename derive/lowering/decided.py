@@ -1,7 +1,7 @@
 """What a refusal has decided is not asked again, where a program ends at its first refusal.
 
-    require(length > tolerance)
-    divisor = select(length > tolerance, length, 1)      →  length is read where divisor was
+require(length > tolerance)
+divisor = select(length > tolerance, length, 1)      →  length is read where divisor was
 """
 
 from __future__ import annotations

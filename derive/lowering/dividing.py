@@ -1,6 +1,6 @@
 """Dividing once: what divides three values or more is inverted, and they are multiplied by its inverse.
 
-    along_x = span_x / length,  along_y = span_y / length,  along_z = span_z / length   →   inverse = 1 / length, …
+along_x = span_x / length,  along_y = span_y / length,  along_z = span_z / length   →   inverse = 1 / length, …
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Programs as drafts: their values in a graph, and a table of what stands where and under which name.
 
-A draft is read from a program, changed, and written as a program again. A name belongs to a value: two statements that bind
-equal values bind one name, and a value that is read twice without a name gets one.
+A draft is read from a program, changed, and written as a program again. A name belongs to a value: two statements that
+bind equal values bind one name, and a value that is read twice without a name gets one.
 """
 
 from __future__ import annotations

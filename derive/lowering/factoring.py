@@ -1,7 +1,7 @@
 """Factoring: a factor or a divisor that terms of a sum have in common is multiplied or divided once.
 
-    a * c / d + b * s / d    →  (a * c + b * s) / d
-    s * x - s * y + x        →  s * (x - y) + x
+a * c / d + b * s / d    →  (a * c + b * s) / d
+s * x - s * y + x        →  s * (x - y) + x
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Hoisting: what depends on parameters alone is computed once, by the setup, under a name that says what it is.
 
-    x = l1 * cos_q + l2 - l3         →  setup: l2_minus_l3 = l2 - l3;   x = l1 * cos_q + l2_minus_l3
+x = l1 * cos_q + l2 - l3         →  setup: l2_minus_l3 = l2 - l3;   x = l1 * cos_q + l2_minus_l3
 """
 
 from __future__ import annotations

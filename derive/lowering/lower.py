@@ -24,8 +24,8 @@ def lowered(
 ) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
     """The programs, and what they read of constants alone. A program that others call comes before them.
 
-    any_turn: whether an angle may be a turn more or less, unless its value is taken; inverts: whether a division takes longer
-    than several multiplications.
+    any_turn: whether an angle may be a turn more or less, unless its value is taken; inverts: whether a division takes
+    longer than several multiplications.
     """
     reader = Reader()
     graph, constant = reader.graph, Constant(constants)
@@ -39,7 +39,9 @@ def lowered(
     taken = {*constants, *(let.name.name for let in lets)}
     done: dict[str, Program] = {}
     for draft in drafts:
-        draft.items[:] = [replace(i, statement=calling(i.statement, done)) if isinstance(i, Effect) else i for i in draft.items]
+        draft.items[:] = [
+            replace(i, statement=calling(i.statement, done)) if isinstance(i, Effect) else i for i in draft.items
+        ]
         done[draft.program.name] = written(draft, names, taken, any_turn=any_turn)
     return tuple(done.values()), lets
 

@@ -1,6 +1,6 @@
 """Mirrored directions: an angle whose turn nobody counts is the negative of the angle of the mirrored direction.
 
-    angle_up = atan2(-s, c)   where   angle_down = atan2(s, c)     →     angle_up = -angle_down
+angle_up = atan2(-s, c)   where   angle_down = atan2(s, c)     →     angle_up = -angle_down
 """
 
 from __future__ import annotations

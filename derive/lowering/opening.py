@@ -1,8 +1,10 @@
-"""Opening: a sum that one other sum alone reads is a part of it, where terms of both then make a pair that is known already.
+"""Opening: a sum that one other sum alone reads is a part of it, where terms of both then make a pair that is known
+already.
 
     first = x - a,   second = b + a,   third = x - second     →  third = first - b
 
-One addition less, for `second` is not computed. No other sum is taken apart: terms keep the company in which they were written.
+One addition less, for `second` is not computed. No other sum is taken apart: terms keep the company in which they were
+written.
 """
 
 from __future__ import annotations
@@ -54,7 +56,9 @@ class _Opening(Rewriting):
 
 
 def _pairs(terms: tuple[Value, ...]) -> list[_Pair]:
-    return [_pair(one, other) for one, other in combinations(terms, 2) if not (one.node.is_number or other.node.is_number)]
+    return [
+        _pair(one, other) for one, other in combinations(terms, 2) if not (one.node.is_number or other.node.is_number)
+    ]
 
 
 def _pair(one: Value, other: Value) -> _Pair:

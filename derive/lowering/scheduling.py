@@ -7,8 +7,8 @@
                                                                   cos_q4 = cos(free)
                                                                   sin_q4 = sin(free)
 
-A language that evaluates one side of a choice alone prints the result; the values are the same. A program is total, so that
-a statement may move to where it is needed.
+A language that evaluates one side of a choice alone prints the result; the values are the same. A program is total, so
+that a statement may move to where it is needed.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ def structured(program: Program) -> tuple[Item, ...]:
 def _together(body: Sequence[Statement]) -> tuple[Statement, ...]:
     """Choices by one condition, in the stretch between refusals where the first of them stands, with what they need.
 
-    Nothing that is bound needs a refusal before it: a program is total. What waits for a statement of another kind stays.
+    Nothing that is bound needs a refusal before it: a program is total. What waits for a statement of another kind
+    stays.
     """
     stretches: list[list[Let]] = [[]]
     others: list[Statement] = []

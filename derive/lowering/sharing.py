@@ -1,4 +1,5 @@
-"""Sharing: two terms that several sums have in common are added once, two factors that several products have, multiplied once.
+"""Sharing: two terms that several sums have in common are added once, two factors that several products have,
+multiplied once.
 
     first = x + y - a,       second = x + y + b        →  x_plus_y = x + y, once
     first = a * b / c,       second = b * d / c        →  b_by_c = b / c, once
@@ -18,7 +19,9 @@ from derive.lowering.draft import Rewriting
 
 @dataclass(frozen=True)
 class Pair:
-    """Two terms, the second with the sign that it has where the first has none; or two factors, the second above or below."""
+    """Two terms, the second with the sign that it has where the first has none; or two factors, the second above or
+    below.
+    """
 
     first: Part
     second: Part

@@ -1,4 +1,5 @@
-"""Stretches: bindings without a refusal between them, choices by one condition gathered with what their sides alone need."""
+"""Stretches: bindings without a refusal between them, choices by one condition gathered with what their sides alone
+need."""
 
 from __future__ import annotations
 
@@ -152,11 +153,15 @@ class _Choice:
         return max(self.stretch.downstream(torn[:1]) & self.members)
 
     def items(self, elsewhere: set[int]) -> list[Item]:
-        """The stretch with the choice in it, and what is left gathered in turn. elsewhere: what other choices gather."""
+        """The stretch with the choice in it, and what is left gathered in turn. elsewhere: what
+        other choices gather.
+        """
         lets, later = self.stretch.lets, self.stretch.later
         inside = self.places
         needed_outside = {s for place, let in enumerate(lets) if place not in inside for s in names_in(let.value)}
-        results = tuple(lets[place].name for place in sorted(self.members) if lets[place].name in later | needed_outside)
+        results = tuple(
+            lets[place].name for place in sorted(self.members) if lets[place].name in later | needed_outside
+        )
         arms = If(self.condition, self._arm(0, results), self._arm(1, results), results)
         first = self.stretch.upstream(inside | self._deciders()) - inside
         behind = self.stretch.downstream(inside | (elsewhere - first))
@@ -200,7 +205,9 @@ def _simplified(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:
             value = known[value]
         elif not is_condition(value) and -value in known:
             value = -known[-value]
-        if let.name not in results and (value.is_Symbol or value.is_Number or (not is_condition(value) and (-value).is_Symbol)):
+        if let.name not in results and (
+            value.is_Symbol or value.is_Number or (not is_condition(value) and (-value).is_Symbol)
+        ):
             aliases[let.name] = value
             continue
         if not value.is_Symbol and not value.is_Number:

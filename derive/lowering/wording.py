@@ -46,7 +46,9 @@ def _words(value: Value, called: Called) -> str | None:
         said_terms = [(t.sign, _factor(t.node, called)) for t in terms]
         if any(word is None for _, word in said_terms):
             return None
-        return "".join(("_minus_" if sign < 0 else "_plus_") + str(word) for sign, word in said_terms).removeprefix("_plus_")
+        return "".join(("_minus_" if sign < 0 else "_plus_") + str(word) for sign, word in said_terms).removeprefix(
+            "_plus_"
+        )
     return _factor(node, called)
 
 

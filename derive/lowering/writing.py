@@ -29,7 +29,9 @@ _WHOLE = count("whole")
 def written(
     draft: Draft, constants: Mapping[Node, Named], taken: Iterable[str] = (), *, any_turn: bool = False
 ) -> Program:
-    """The program of a draft. constants: what is bound elsewhere; taken: names that are not free; any_turn: see `lowered`."""
+    """The program of a draft. constants: what is bound elsewhere; taken: names that are not free; any_turn: see
+    `lowered`.
+    """
     elsewhere = {named.name.name for named in constants.values()}
     writer = _Writer(draft, dict(constants), Names({*taken, *elsewhere, *_names_in(draft)}), any_turn)
     body = tuple(writer.statements())
@@ -93,7 +95,9 @@ class _Writer:
         proposal = said(value, self._called, "" if known is None else known.name.name)
         order = len(self.draft.program.body) if known is None else known.order
         has_whole_sides = node.head is Select and known is not None and is_count(known.name)
-        return Named(self.free.fresh(proposal, _WHOLE if has_whole_sides or is_whole(node) else None), value.sign, "", order)
+        return Named(
+            self.free.fresh(proposal, _WHOLE if has_whole_sides or is_whole(node) else None), value.sign, "", order
+        )
 
     def _called(self, node: Node) -> sp.Expr | None:
         """The name of a value; of one that stays away from zero by a choice, the name of what it is elsewhere."""
@@ -265,7 +269,9 @@ def is_condition(node: Node) -> bool:
 
 
 def _is_slight(node: Node, names: Container[Node]) -> bool:
-    """Whether a value is written as easily as a name: the size of a name, a multiple of a name that the program reads."""
+    """Whether a value is written as easily as a name: the size of a name, a multiple of a name that
+    the program reads.
+    """
     sources = node.sources()
     if node.head is sp.Abs and sources[0] in names:
         return True

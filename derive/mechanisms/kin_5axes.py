@@ -18,7 +18,9 @@ MECHANISM = Mechanism(
     vendor=Vendor.CODESYS,
     family="articulated",
     source="CODESYS SM3_Transformation",
-    summary="Gantry with three slides and a wrist with two axes: the tool's direction is followed, its twist is passive.",
+    summary=(
+        "Gantry with three slides and a wrist with two axes: the tool's direction is followed, its twist is passive."
+    ),
     parameters=(LENGTH, SIDE),
     joints=(X, Y, Z, A, B),
     chain=Tx(X) * Ty(Y) * Tz(Z) * Rz(A) * Ry(SIDE * B) * Tz(SIDE * LENGTH),

@@ -38,7 +38,17 @@ MECHANISM = Mechanism(
     summary="Articulated arm with six axes, with a spherical wrist or with axis A6 beside the wrist centre.",
     parameters=(D1, L1, L2, L3, D4, LATERAL, D6),
     joints=(A1, A2, A3, A4, A5, A6),
-    chain=Rz(A1) * Txyz(L1, 0, D1) * Ry(A2) * Tz(L2) * Ry(A3) * Txyz(D4, 0, L3) * Rx(A4) * Ry(A5) * Tx(LATERAL) * Rz(A6) * Tz(D6),
+    chain=Rz(A1)
+    * Txyz(L1, 0, D1)
+    * Ry(A2)
+    * Tz(L2)
+    * Ry(A3)
+    * Txyz(D4, 0, L3)
+    * Rx(A4)
+    * Ry(A5)
+    * Tx(LATERAL)
+    * Rz(A6)
+    * Tz(D6),
     task=Task("xyz", Turning.FULL),
     branches=(
         branch("shoulder", FORWARD, front=+1, back=-1),
@@ -49,9 +59,12 @@ MECHANISM = Mechanism(
     search=search(A6, where=LATERAL),
     offset_interface=False,
     notes=(
-        "With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and answers with "
-        "the one that is nearest to the reference. With A6 known the arm is that with a spherical wrist, and what is left is the "
-        "cosine between axis 4 and axis 5. The fourth byte tells whether it rises or falls with A6; without the offset it is "
+        "With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and "
+        "answers with "
+        "the one that is nearest to the reference. With A6 known the arm is that with a spherical wrist, and what is "
+        "left is the "
+        "cosine between axis 4 and axis 5. The fourth byte tells whether it rises or falls with A6; without the "
+        "offset it is "
         "always 1.",
         "The wrist byte is the sign of cos A5 for a spherical wrist, and the sign of sin A4 with a lateral offset.",
     ),

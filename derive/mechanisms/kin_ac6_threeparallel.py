@@ -1,4 +1,5 @@
-"""Kin_Ac6_ThreeParallel: an arm whose axes A2, A3 and A4 are parallel, by its standard Denavit-Hartenberg parameters."""
+"""Kin_Ac6_ThreeParallel: an arm whose axes A2, A3 and A4 are parallel, by its standard Denavit-Hartenberg
+parameters."""
 
 from sympy import cos, pi, sin
 

@@ -32,7 +32,13 @@ MECHANISM = Mechanism(
     ),
     task=Task("xyz", Turning.FULL),
     branches=(
-        branch("arm", L1 - L2 * sin(A2) + D4 * cos(A2 + A3) - L3 * sin(A2 + A3), front=+1, back=-1, margin="wrist_on_axis_1"),
+        branch(
+            "arm",
+            L1 - L2 * sin(A2) + D4 * cos(A2 + A3) - L3 * sin(A2 + A3),
+            front=+1,
+            back=-1,
+            margin="wrist_on_axis_1",
+        ),
         branch("elbow", L3 * sin(A3) - D4 * cos(A3), down=-1, up=+1),
         branch("hand", sin(A5), down=+1, up=-1, margin="a4_parallel_a6"),
     ),

@@ -37,7 +37,9 @@ MECHANISM = Mechanism(
     name="Kin_Bipod_Rotary",
     vendor=Vendor.CODESYS,
     family="parallel",
-    source="CODESYS SM3_Transformation lists Kin_Bipod_Rotary without a geometry: as Kin_P2C_Type1, Softkin's definition",
+    source=(
+        "CODESYS SM3_Transformation lists Kin_Bipod_Rotary without a geometry: as Kin_P2C_Type1, Softkin's definition"
+    ),
     summary="Bipod: two arms carry a plate that keeps its orientation, in the X-Y plane.",
     parameters=(L1, L2, BASE, PLATE),
     joints=(A1, A2),

@@ -24,7 +24,8 @@ from derive.vectors import cross, dot, minus, triple, vector
 
 ARMS = ("1", "2", "3")
 AZIMUTH = [
-    angle(f"azimuth_{i}", f"Direction of arm {i}, from X", nominal=a) for i, a in zip(ARMS, (0.0, 90.0, -90.0), strict=True)
+    angle(f"azimuth_{i}", f"Direction of arm {i}, from X", nominal=a)
+    for i, a in zip(ARMS, (0.0, 90.0, -90.0), strict=True)
 ]
 BASE = [length(f"base_radius_{i}", f"Origin to the motor axis of arm {i}", nominal=140.0) for i in ARMS]
 INNER = [length(f"inner_arm_{i}", f"Inner arm {i}", nominal=200.0) for i in ARMS]

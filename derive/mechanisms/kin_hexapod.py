@@ -85,13 +85,17 @@ MECHANISM = Mechanism(
     offset_interface=False,
     notes=(
         "Six lengths allow up to 40 poses. Forward kinematics finds the one in the assembly mode of the home pose, "
-        "by Newton's method from there; it refuses where that does not converge in 20 passes. On six machines of different "
-        "shape it found every pose that the inverse accepts within 40 degrees of home about each axis. Beyond 60 degrees it "
+        "by Newton's method from there; it refuses where that does not converge in 20 passes. On six machines of "
+        "different "
+        "shape it found every pose that the inverse accepts within 40 degrees of home about each axis. Beyond 60 "
+        "degrees it "
         "may refuse, or find another pose of the same mode with these lengths: bound the joints.",
-        "The frame of the platform is the tool frame: give platform joints in it. Base joints are given in the machine's frame.",
+        "The frame of the platform is the tool frame: give platform joints in it. Base joints are given in the "
+        "machine's frame.",
         "Initialize refuses a home pose that is singular: there the legs do not hold the platform.",
         "The inverse tests the lengths of the legs and the cones of their joints, max_angle_base_joint and "
-        "max_angle_platform_joint. A cone is about the leg at the home pose: choose the home pose where the joints are in "
+        "max_angle_platform_joint. A cone is about the leg at the home pose: choose the home pose where the joints "
+        "are in "
         "the middle of their range. It does not test whether legs touch each other: exclude that by the limits.",
     ),
 )

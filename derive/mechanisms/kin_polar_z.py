@@ -19,7 +19,7 @@ MECHANISM = Mechanism(
     positive=(R,),
     offset_interface=False,
     notes=(
-        "As CODESYS's own block it has no orientation mode \"Axis\": a point beside the arm has two radii.",
+        'As CODESYS\'s own block it has no orientation mode "Axis": a point beside the arm has two radii.',
         "The centre is a singularity: the direction of the arm is then the reference's.",
     ),
 )

@@ -24,7 +24,13 @@ MECHANISM = Mechanism(
     chain=denavit_hartenberg((A1, D1, L1, pi / 2), (A2 + pi / 2, 0, L2, 0), (A3, D3, L3, pi / 2)) * Tz(D4),
     task=Task("xyz"),
     branches=(
-        branch("arm", L1 - L2 * sin(A2) + D4 * cos(A2 + A3) - L3 * sin(A2 + A3), front=+1, back=-1, margin="point_on_axis_1"),
+        branch(
+            "arm",
+            L1 - L2 * sin(A2) + D4 * cos(A2 + A3) - L3 * sin(A2 + A3),
+            front=+1,
+            back=-1,
+            margin="point_on_axis_1",
+        ),
         branch("elbow", L3 * sin(A3) - D4 * cos(A3), down=-1, up=+1),
     ),
 )

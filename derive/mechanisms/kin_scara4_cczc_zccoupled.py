@@ -1,4 +1,5 @@
-"""Kin_Scara4_CCZC_ZCcoupled: the SCARA of Type1 with either spelling of the coupling, and a flange that may look down."""
+"""Kin_Scara4_CCZC_ZCcoupled: the SCARA of Type1 with either spelling of the coupling, and a flange that may look
+down."""
 
 from sympy import Eq, sin
 

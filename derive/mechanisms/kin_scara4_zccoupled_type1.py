@@ -7,7 +7,9 @@ from derive.mechanism import TURN, Mechanism, Task, Turning, Vendor, branch, hel
 
 L1 = length("link_length_1", "Length of link 1, axis A1 to axis A2", high=800.0, nominal=325.0)
 L2 = length("link_length_2", "Length of link 2, axis A2 to axis A4", high=800.0, nominal=225.0)
-P = pitch("pitch_zc", "Travel of the quill per clockwise turn of A4, downward negative", low=-200.0, high=200.0, nominal=20.0)
+P = pitch(
+    "pitch_zc", "Travel of the quill per clockwise turn of A4, downward negative", low=-200.0, high=200.0, nominal=20.0
+)
 
 A1 = rotary("A1", "Arm 1 about Z", offset_range=(-360.0, 360.0), limit_range=(-360.0, 360.0))
 A2 = rotary("A2", "Arm 2 about Z", offset_range=(-360.0, 360.0), limit_range=(-360.0, 360.0))

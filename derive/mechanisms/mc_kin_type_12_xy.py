@@ -43,7 +43,9 @@ MECHANISM = Mechanism(
         "e", MIRROR * cross(minus(W, T), minus(E, T)), margin="arms_aligned", handedness=MIRROR, left=+1, right=-1
     ),
     constraints=tuple(
-        Constraint(longest < L1 + L3 + L4 + L5 - longest, f"link {k} must be shorter than the other links of the loop together")
+        Constraint(
+            longest < L1 + L3 + L4 + L5 - longest, f"link {k} must be shorter than the other links of the loop together"
+        )
         for k, longest in ((1, L1), (3, L3), (4, L4), (5, L5))
     ),
 )

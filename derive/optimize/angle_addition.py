@@ -6,8 +6,8 @@
     c23 = c2 * c3 - s2 * s3           →     c23 = cos(angle_q2 + angle_q3)
     s23 = s2 * c3 + c2 * s3                 s23 = sin(angle_q2 + angle_q3)
 
-Two branches share these angles, or have them with opposite signs. Nothing is lost: an arc tangent is as exact as its arguments.
-What is called the cosine and sine of one angle is that; of a mere direction the angle alone is taken.
+Two branches share these angles, or have them with opposite signs. Nothing is lost: an arc tangent is as exact as its
+arguments. What is called the cosine and sine of one angle is that; of a mere direction the angle alone is taken.
 """
 
 from __future__ import annotations
@@ -115,7 +115,10 @@ def _angle(pair: Pair, known: _Known) -> sp.Expr | None:
     if condition != same or not isinstance(sine_else, sp.sin) or cosine_else != sp.cos(sine_else.args[0]):
         return None
     for length in [1 / f for f in sp.Mul.make_args(along) if 1 / f in known.lengths]:
-        across, along = across * length, along * length  # a divisor that one of the two has alone stays, and nothing fits
+        across, along = (
+            across * length,
+            along * length,
+        )  # a divisor that one of the two has alone stays, and nothing fits
     first = _turned(known.values.get(across, across), known.values.get(along, along), known)
     return None if first is None else Select(condition, first, sine_else.args[0])
 

@@ -3,7 +3,8 @@
     cos_q1_front = …; axis_a1_front = f(cos_q1_front)         cos_q1 = …; axis_a1_front = f(cos_q1)
     cos_q1_back = …;  axis_a1_back = f(cos_q1_back)      →    cos_q1 = …; axis_a1_back = f(cos_q1)
 
-It reads like one branch after the other, and holds fewer numbers at a time: a language reuses the memory of those that it drops.
+It reads like one branch after the other, and holds fewer numbers at a time: a language reuses the memory of those that
+it drops.
 """
 
 from __future__ import annotations
@@ -49,13 +50,17 @@ def _lives(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> dict[sp.Symbol,
     last = {s: place for place, item in enumerate(items) for s in _read(item)}
     last |= {s: len(items) for value in wanted for s in symbols_of(value)}
     first = {name: place for place, item in reversed(list(enumerate(items))) for name in _bound(item)}
-    return {name: (place, max(place, last.get(name, place))) for name, place in sorted(first.items(), key=lambda e: e[1])}
+    return {
+        name: (place, max(place, last.get(name, place))) for name, place in sorted(first.items(), key=lambda e: e[1])
+    }
 
 
 def _shortest(
     variants: Sequence[sp.Symbol], signs: Sequence[Sign], lives: Mapping[sp.Symbol, tuple[int, int]], taken: set[str]
 ) -> dict[sp.Symbol, sp.Symbol]:
-    """The variants of a name with as few words as tell those apart that are needed at a time: the first words go first."""
+    """The variants of a name with as few words as tell those apart that are needed at a time: the
+    first words go first.
+    """
     others = taken | {name.name for name in lives if name not in variants}
     for kept in range(len(signs) + 1):
         names = {v: _with_last_words(v, signs, kept) for v in variants}

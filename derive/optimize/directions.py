@@ -1,7 +1,8 @@
-"""Directions: the angle of a direction is taken of what is at hand, without the sine and the cosine that nothing else reads.
+"""Directions: the angle of a direction is taken of what is at hand, without the sine and the cosine that nothing else
+reads.
 
-    added      atan2(s1 c2 + c1 s2, c1 c2 - s1 s2)    →  atan2(s1, c1) + atan2(s2, c2), up to a turn, which is chosen afterwards
-    unscaled   atan2(y/r, x/r)                        →  atan2(y, x)
+    added      atan2(s1 c2 + c1 s2, c1 c2 - s1 s2)    →  atan2(s1, c1) + atan2(s2, c2), up to a turn, which is chosen
+    afterwards unscaled   atan2(y/r, x/r)                        →  atan2(y, x)
 
 Both also hold for what is made of a direction: a direction that it turns, or that it is multiplied with.
 """
@@ -167,7 +168,9 @@ def _divided(program: Program) -> tuple[tuple[frozenset[sp.Symbol], sp.Symbol], 
     found: dict[tuple[sp.Basic, sp.Symbol], list[sp.Symbol]] = {}
     lengths = lengths_of(program)
     for let in (let for let in program.lets() if not is_condition(let.value)):
-        condition, value = (let.value.args[0], let.value.args[1]) if isinstance(let.value, Select) else (sp.true, let.value)
+        condition, value = (
+            (let.value.args[0], let.value.args[1]) if isinstance(let.value, Select) else (sp.true, let.value)
+        )
         for factor in sp.Mul.make_args(value):
             if 1 / factor in lengths:
                 found.setdefault((condition, 1 / factor), []).append(let.name)
@@ -175,14 +178,18 @@ def _divided(program: Program) -> tuple[tuple[frozenset[sp.Symbol], sp.Symbol], 
 
 
 def lengths_of(program: Program) -> frozenset[sp.Symbol]:
-    """The names that are the length of something, or 1 where that is none: never negative, and no divisor that is zero."""
+    """The names that are the length of something, or 1 where that is none: never negative, and no
+    divisor that is zero.
+    """
     roots = {let.name for let in program.lets() if isinstance(let.value, Root)}
     choices = [let for let in program.lets() if isinstance(let.value, Select) and let.value.args[2] == 1]
     return frozenset(c.name for c in choices if isinstance(c.value.args[1], Root) or c.value.args[1] in roots)
 
 
 def _graded(program: Program, names: frozenset[sp.Symbol]) -> frozenset[sp.Symbol] | None:
-    """All names that grow with these in proportion; None where something else is made of them, or a reason tells of them."""
+    """All names that grow with these in proportion; None where something else is made of them, or a reason tells of
+    them.
+    """
     graded = set(names)
     for statement in program.body:
         if any(symbols_of(value) & graded for value in told(statement)):
@@ -257,4 +264,8 @@ def _called(name: sp.Symbol, taken: Names) -> sp.Symbol:
 
 
 def _times(value: sp.Expr, length: sp.Symbol) -> sp.Expr:
-    return value.func(value.args[0], value.args[1] * length, value.args[2]) if isinstance(value, Select) else value * length
+    return (
+        value.func(value.args[0], value.args[1] * length, value.args[2])
+        if isinstance(value, Select)
+        else value * length
+    )

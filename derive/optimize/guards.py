@@ -1,11 +1,11 @@
 """Guards: a condition that holds where a root is positive is asked only where it is not.
 
-    if not square >= -tolerance:                          if square > 0:
-        return                                                x = sqrt(square)*sigma
-    x = (sqrt(square) if square > 0 else 0)*sigma    →    else:
-                                                              if not square >= -tolerance:
-                                                                  return
-                                                              x = 0
+if not square >= -tolerance:                          if square > 0:
+    return                                                x = sqrt(square)*sigma
+x = (sqrt(square) if square > 0 else 0)*sigma    →    else:
+                                                          if not square >= -tolerance:
+                                                              return
+                                                          x = 0
 """
 
 from __future__ import annotations

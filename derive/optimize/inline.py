@@ -6,9 +6,9 @@
     angle_of_v = atan2(u, v)
     angle = angle_of_x - angle_of_v
 
-It serves a language in which a name costs time. A choice reads on one of its sides, so that what is read once on each is
-written on each. Products are not regrouped; terms of a sum may be added in another order. What has a note keeps its name, and
-so does a choice.
+It serves a language in which a name costs time. A choice reads on one of its sides, so that what is read once on each
+is written on each. Products are not regrouped; terms of a sum may be added in another order. What has a note keeps its
+name, and so does a choice.
 """
 
 from __future__ import annotations
@@ -45,10 +45,16 @@ class Grouped(sp.Function):
 
 
 def squares_where_read(program: Program) -> Program:
-    """The program with the squares of names as products: it costs no more, and a root of them is known to be one of squares."""
+    """The program with the squares of names as products: it costs no more, and a root of them is known to be one of
+    squares.
+    """
     own = {let.name: let.value for let in program.lets() if isinstance(let.value, sp.Pow) and let.value.base.is_Symbol}
     squares = {name: value for name, value in own.items() if value.exp == 2}
-    body = [rewritten(s, lambda e: e.xreplace(squares)) for s in program.body if not (isinstance(s, Let) and s.name in squares)]
+    body = [
+        rewritten(s, lambda e: e.xreplace(squares))
+        for s in program.body
+        if not (isinstance(s, Let) and s.name in squares)
+    ]
     outputs = tuple(replace(o, value=o.value.xreplace(squares)) for o in program.outputs)
     return with_inputs(replace(program, body=tuple(body), outputs=outputs))
 

@@ -3,8 +3,8 @@
     y = -a * u - b * v,  x = -a * w - b * t          minus_y = a * u + b * v,  minus_x = a * w + b * t
     axis = shift + atan2(y, x)/DEGREE           →    axis = (shift + 180) + atan2(minus_y, minus_x)/DEGREE
 
-Where both coordinates of a direction have a minus in front, the angle of the opposite one is half a turn away; its turn is
-chosen afterwards.
+Where both coordinates of a direction have a minus in front, the angle of the opposite one is half a turn away; its turn
+is chosen afterwards.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
     dx = -r33', dy = r23   (or a free direction)          y = select(radius > known, r12' * …, dx * r21 + dy * r31')
     y = dx * r21 + dy * r31'                         →    with r12' = cos * r12 + sin * r32, of the same rotation
 
-The direction (dx, dy) is of a column, as long as its distance from the axis. Where that is far from zero, what the direction
-turns is as well known without it, and shorter.
+The direction (dx, dy) is of a column, as long as its distance from the axis. Where that is far from zero, what the
+direction turns is as well known without it, and shorter.
 """
 
 from __future__ import annotations
@@ -82,9 +82,7 @@ class _Product:
     second: sp.Symbol
 
 
-def _third(
-    value: sp.Expr, values: Mapping[sp.Symbol, sp.Expr], rotations: Sequence[_Entries]
-) -> sp.Expr | None:
+def _third(value: sp.Expr, values: Mapping[sp.Symbol, sp.Expr], rotations: Sequence[_Entries]) -> sp.Expr | None:
     """The choice between an entry of the third column and the value; None where the value is no such product."""
     entries = {e for rotation in rotations for row in rotation for e in row if e.is_Symbol}
     terms = [_product(term, values, entries) for term in sp.Add.make_args(value)]

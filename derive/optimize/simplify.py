@@ -1,7 +1,7 @@
 """Shorter: what a derivation step by step does twice and undoes again is done once.
 
-    turned back    c = a/e cos s - b/e sin s,  s = …,  e² = a² + b²:   b c - a s   →  -e sin s
-    signs          Let(r23, -x - y), Let(cos_q5, -r23)                            →  Let(cos_q5, x + y)
+turned back    c = a/e cos s - b/e sin s,  s = …,  e² = a² + b²:   b c - a s   →  -e sin s
+signs          Let(r23, -x - y), Let(cos_q5, -r23)                            →  Let(cos_q5, x + y)
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def _turns(lets: Iterable[Let]) -> Iterable[_Turned]:
             if len(before) == 2 and symbols_of(values[cosine]) == symbols_of(values[sine]):
                 x, y = before
                 both = {cosine: values[cosine], sine: values[sine]}
-                turn = sp.expand(values[cosine]**2 + values[sine]**2 - (x**2 + y**2) * square / length**2)
+                turn = sp.expand(values[cosine] ** 2 + values[sine] ** 2 - (x**2 + y**2) * square / length**2)
                 if turn == 0:
                     yield _Turned(frozenset(both), both, (x, y), length, square)
 

@@ -1,8 +1,8 @@
 """Twins: a value that another one gives by a change of sign or by half a turn is not computed again.
 
-    c_up = select(r > tolerance, -x/r, cos(free))     where r > tolerance, c_up is -c_down
-    m_up = a * c_up + b * s_up                     →  m_up = select(r > tolerance, -m_down, a * c_up + b * s_up)
-    axis_up = turn(atan2(m_up, n_up))              →  direction = select(r > tolerance, axis_down + 180, atan2(m_up, n_up))
+    c_up = select(r > tolerance, -x/r, cos(free))     where r > tolerance, c_up is -c_down m_up = a * c_up + b * s_up
+    →  m_up = select(r > tolerance, -m_down, a * c_up + b * s_up) axis_up = turn(atan2(m_up, n_up))              →
+    direction = select(r > tolerance, axis_down + 180, atan2(m_up, n_up))
                                                       axis_up = turn(direction)
 
 So does a wrist that is turned over. It serves a language that computes one side of a choice alone.

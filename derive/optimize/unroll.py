@@ -7,8 +7,8 @@ A statement stands once for every assignment of the branch signs that it depends
     Let(axis_a1, f(cos_a1, sin_a2))      →  axis_a1_right, axis_a1_left
     Require(c(sin_a2), UNREACHABLE)      →  refusal_right = 0, or the number of the status; likewise refusal_left
 
-A condition that no sign influences stays a condition: it refuses all branches alike. Programs are total, so that a branch
-that is refused disturbs no other.
+A condition that no sign influences stays a condition: it refuses all branches alike. Programs are total, so that a
+branch that is refused disturbs no other.
 """
 
 from __future__ import annotations
@@ -84,19 +84,25 @@ def without_words(name: str, signs: Sequence[Sign]) -> tuple[str, tuple[str, ...
 
 
 def is_straight(program: Program) -> bool:
-    """Whether a program can be unrolled: one that iterates takes longer on some branches, and a shared one has its names."""
+    """Whether a program can be unrolled: one that iterates takes longer on some branches, and a shared one has its
+    names.
+    """
     return not any(isinstance(s, Iterate | Call | FindRoot) for s in program.body)
 
 
 def unroll(program: Program, signs: Sequence[Sign]) -> Program:
-    """All branches at once; outputs are those of every slot, and its `REFUSAL`, with the words of the slot behind the name."""
+    """All branches at once; outputs are those of every slot, and its `REFUSAL`, with the words of the slot behind the
+    name.
+    """
     unroller = _Unroller(tuple(signs), Names(s.name for s in program.inputs))
     for statement in program.body:
         if not isinstance(statement, Require):
             unroller.add(statement)
     refusals = unroller.refusals(program.requires())
     outputs = []
-    for choice in sorted(choices(len(signs)), reverse=True):  # one branch after the other: what two share is nearest to both
+    for choice in sorted(
+        choices(len(signs)), reverse=True
+    ):  # one branch after the other: what two share is nearest to both
         outputs.append(Output(suffixed(REFUSAL, signs, choice), refusals[choice]))
         values = unroller.values(choice)
         outputs += [Output(suffixed(o.name, signs, choice), o.value.xreplace(values)) for o in program.outputs]
@@ -169,7 +175,9 @@ class _Unroller:
                 by_support.setdefault(self._union(reads(condition)), []).append(condition)
             for support in sorted(by_support, key=lambda s: (len(s), s)):
                 if not support and refusal.status in (None, status):
-                    self.body += [self._at(condition, (), ()) for condition in by_support[support]]  # all branches alike
+                    self.body += [
+                        self._at(condition, (), ()) for condition in by_support[support]
+                    ]  # all branches alike
                 else:
                     refusal = self._refused(refusal, support, by_support[support])
         return {choice: refusal.at(choice) for choice in choices(len(self.signs))}
@@ -210,7 +218,9 @@ class _Unroller:
         return name
 
     def _written_out(self, value: sp.Expr) -> sp.Expr:
-        """A sum of squares of what is bound, in terms of that: those of two branches can be equal though no square is."""
+        """A sum of squares of what is bound, in terms of that: those of two branches can be equal
+        though no square is.
+        """
         terms = sp.Add.make_args(value)
         if len(terms) > 1 and all(t.is_Pow and t.exp == 2 and t.base in self._values_of for t in terms):
             return sp.expand(value.xreplace(self._values_of))
@@ -245,7 +255,11 @@ class _Unroller:
 
 def _is_negative(statement: Statement) -> bool:
     """Whether a value has a minus in front: its opposite is named rather, so that it is taken without one."""
-    return isinstance(statement, Let) and not is_condition(statement.value) and bool(statement.value.could_extract_minus_sign())
+    return (
+        isinstance(statement, Let)
+        and not is_condition(statement.value)
+        and bool(statement.value.could_extract_minus_sign())
+    )
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,8 @@
 
     angle = atan2(y, x),  axis = nearest_period(shift + angle/DEGREE, reference),  s = sin(angle + other)
 
-`angle` may be a turn more: it is an Angle, and nothing takes its value by `wrap`. Where an axis may be in any turn, it is
-shift + angle/DEGREE, unless a statement reads it as a real number: as what a pitch or a gear moves along.
+`angle` may be a turn more: it is an Angle, and nothing takes its value by `wrap`. Where an axis may be in any turn, it
+is shift + angle/DEGREE, unless a statement reads it as a real number: as what a pitch or a gear moves along.
 """
 
 from __future__ import annotations
@@ -42,7 +42,9 @@ def turnless(program: Program) -> frozenset[sp.Symbol]:
 
 
 def any_turn(program: Program) -> Program:
-    """The program for inputs that are known to be good: no look at them, and any turn of an axis that is only an angle."""
+    """The program for inputs that are known to be good: no look at them, and any turn of an axis
+    that is only an angle.
+    """
     counted = turns_that_count(program)
     body = [_in_any_turn(s, counted) for s in _of_good_input(program)]
     return assemble(program.name, body, program.outputs)

@@ -1,8 +1,9 @@
 """The cones of a rod's joints: the largest angle between a rod and its direction at the home pose.
 
-Let u be the unit vector along the rod in the frame of the base, and R^T u the same in the frame of the plate. At the home pose
-these are u0 and R0^T u0, the axes of the two cones. A joint leans by the angle between the rod and the axis of its cone. What
-is compared is the span along that axis and the length of the rod times the least cosine: no unit vector is needed.
+Let u be the unit vector along the rod in the frame of the base, and R^T u the same in the frame of the plate. At the
+home pose these are u0 and R0^T u0, the axes of the two cones. A joint leans by the angle between the rod and the axis
+of its cone. What is compared is the span along that axis and the length of the rod times the least cosine: no unit
+vector is needed.
 """
 
 from __future__ import annotations
@@ -71,7 +72,9 @@ def _inside(side: str, cones: Sequence[tuple[Rod, sp.Expr]], axis: str) -> Itera
     least = {cone: real(f"least_cos_{side}" + (f"_{k}" if len(widths) > 1 else "")) for k, cone in enumerate(widths, 1)}
     for cone, name in least.items():
         narrow = sp.Gt(sp.cos(cone), BOUNDARY - 1)
-        yield Let(name, Select(narrow, sp.cos(cone) - BOUNDARY, sp.Integer(-2)), f"least cosine of a leg's lean on the {side}")
+        yield Let(
+            name, Select(narrow, sp.cos(cone) - BOUNDARY, sp.Integer(-2)), f"least cosine of a leg's lean on the {side}"
+        )
     for rod, cone in cones:
         ahead = of(f"along_{side}_cone", rod)
         note = f"leg {rod.name}: how far it reaches along the axis of its cone on the {side}"

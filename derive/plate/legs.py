@@ -1,8 +1,8 @@
 """The legs of a platform at a pose: names, vectors, and the rows of the matrix A in A (v, w) = -e.
 
-The length error of rod i is e = |span| - length. Let a be the arm from the origin of the plate to the rod's joint, and u the
-unit vector along the rod. Then e' = [u, a x u] (v, w): a row of A is the rod as a line, in Pluecker coordinates. Moments are
-divided by the platform's radius, so that det A has no unit.
+The length error of rod i is e = |span| - length. Let a be the arm from the origin of the plate to the rod's joint, and
+u the unit vector along the rod. Then e' = [u, a x u] (v, w): a row of A is the rod as a line, in Pluecker coordinates.
+Moments are divided by the platform's radius, so that det A has no unit.
 """
 
 from __future__ import annotations
@@ -102,7 +102,9 @@ def row(rod: Rod, arm: Sequence[sp.Expr], measured: sp.Expr) -> tuple[Let, ...]:
 
 def span_moment(rod: Rod, arm: Sequence[sp.Expr]) -> tuple[Let, ...]:
     """The moment in a row of A, times the length of the leg: nothing is divided."""
-    return with_note(_moment(rod, arm, names("span", rod)), f"leg {rod.name}: the moment of its span about the platform's origin")
+    return with_note(
+        _moment(rod, arm, names("span", rod)), f"leg {rod.name}: the moment of its span about the platform's origin"
+    )
 
 
 def _moment(rod: Rod, arm: Sequence[sp.Expr], vector: Sequence[sp.Expr]) -> tuple[Let, ...]:
@@ -122,5 +124,7 @@ def with_note(lets: Iterable[Let], note: str) -> tuple[Let, ...]:
 
 
 def rows(mechanism: Mechanism, vector: str = "along") -> tuple[sp.Symbol, ...]:
-    """The names of the entries of A, by rows. With the vector "span" each row is multiplied by the length of its leg."""
+    """The names of the entries of A, by rows. With the vector "span" each row is multiplied by the
+    length of its leg.
+    """
     return tuple(entry for rod in mechanism.rods for word in (vector, "moment") for entry in names(word, rod))

@@ -1,9 +1,10 @@
 """Forward kinematics of a platform that moves freely: Newton's method on the lengths of its rods, from a start pose.
 
-The state is the position, and the rotation from the start in roll, pitch and yaw: R = Rz(yaw) Ry(pitch) Rx(roll) R_start.
-A step solves A (v, w) = -e for the twist; w = E (roll', pitch', yaw') gives the rates of the angles. A step is at most half the
-size of the machine and half a radian, so that nothing overflows, and a far start does not lead into another assembly mode.
-The iteration ends when the rods fit for the second time: the step between leaves rounding errors only, however small det A is.
+The state is the position, and the rotation from the start in roll, pitch and yaw: R = Rz(yaw) Ry(pitch) Rx(roll)
+R_start. A step solves A (v, w) = -e for the twist; w = E (roll', pitch', yaw') gives the rates of the angles. A step is
+at most half the size of the machine and half a radian, so that nothing overflows, and a far start does not lead into
+another assembly mode. The iteration ends when the rods fit for the second time: the step between leaves rounding errors
+only, however small det A is.
 """
 
 from __future__ import annotations
@@ -99,7 +100,9 @@ def at_given() -> Start:
 
 
 def found_from(mechanism: Mechanism, start: Start, search: Program) -> Forward:
-    """The pose of the platform at its axis values, and the rows of A there, from the iteration that all programs share."""
+    """The pose of the platform at its axis values, and the rows of A there, from the iteration that
+    all programs share.
+    """
     axes = tuple((j.axis, j.axis) for j in mechanism.joints)
     begin = zip((*START_POSITION, *START_ROTATION), (*start.position, *start.rotation), strict=True)
     outputs = tuple(real(o.name) for o in search.outputs)
@@ -109,7 +112,9 @@ def found_from(mechanism: Mechanism, start: Start, search: Program) -> Forward:
 
 
 def search_program(mechanism: Mechanism) -> Program:
-    """The program that finds the pose of the platform at its axis values from a start, the rows of A there, and det A."""
+    """The program that finds the pose of the platform at its axis values from a start, the rows of
+    A there, and det A.
+    """
     outputs = [Output(n.name, n) for n in (*POSITION, *ROTATION_ENTRIES, DETERMINANT, *rows(mechanism))]
     positive = sp.And(*[sp.Gt(v, 0) for v in mechanism.positive])
     checks: tuple[Statement, ...] = (
@@ -118,7 +123,9 @@ def search_program(mechanism: Mechanism) -> Program:
         Require(positive, Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_MIRROR)),
     )
     search = assemble(SEARCH, (*checks, *_newton(mechanism)), outputs)
-    return replace(search, summary="The pose of the platform at its axis values, the rows of A there, and their determinant")
+    return replace(
+        search, summary="The pose of the platform at its axis values, the rows of A there, and their determinant"
+    )
 
 
 def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
@@ -183,7 +190,13 @@ def _step(mechanism: Mechanism) -> tuple[Let | Solve, ...]:
     shares = [*(v / SCALE for v in twist[0]), *(real(f"{a}_rate") for a in ANGLES)]
     errors = tuple(-of("error", rod) for rod in mechanism.rods)
     return (
-        Solve((*twist[0], *twist[1]), rows(mechanism), errors, DETERMINANT, "Newton step: twist that cancels the length errors"),
+        Solve(
+            (*twist[0], *twist[1]),
+            rows(mechanism),
+            errors,
+            DETERMINANT,
+            "Newton step: twist that cancels the length errors",
+        ),
         *(Let(n, v / RADIUS) for n, v in zip(spin, twist[1], strict=True)),
         *_rates(spin),
         Let(size, Root(sp.Add(*[s**2 for s in shares])), "size of the step, in characteristic lengths and radians"),

@@ -1,7 +1,7 @@
 """A platform on six rods that moves with its whole pose: its home pose, the checks of its inverse, and its singularity.
 
-det A (see `legs`) is the margin: it is zero where the lines of the rods belong to one linear complex (type 2). The inverse
-computes it from the spans of the legs, and divides by their lengths at the end.
+det A (see `legs`) is the margin: it is zero where the lines of the rods belong to one linear complex (type 2). The
+inverse computes it from the spans of the legs, and divides by their lengths at the end.
 """
 
 from __future__ import annotations
@@ -69,7 +69,9 @@ _HELD = "a home pose at which the legs hold the platform"
 
 
 def machine_statements(mechanism: Mechanism) -> tuple[Statement, ...]:
-    """The statements that depend on parameters alone: home rotation and arms, scales, assembly mode at the home pose."""
+    """The statements that depend on parameters alone: home rotation and arms, scales, assembly mode
+    at the home pose.
+    """
     if len(mechanism.rods) != 6 or len(mechanism.home) != 6:
         raise DescriptionError("a platform that moves freely needs six rods and a home pose of six coordinates")
     turns = tuple(zip(ANGLES, mechanism.home[3:], strict=True))
@@ -111,9 +113,17 @@ def _at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
         Require(apart, Status.NOT_INITIALIZED, reason=about_parameters(_APART)),
         *(let for rod, arm in zip(rods, arms, strict=True) for let in row(rod, arm, of("length", rod))),
         *cone_axes(mechanism, HOME_ROTATION),
-        Solve((), rows(mechanism), (), DETERMINANT, "determinant at the home pose: zero where the legs do not hold the platform"),
+        Solve(
+            (),
+            rows(mechanism),
+            (),
+            DETERMINANT,
+            "determinant at the home pose: zero where the legs do not hold the platform",
+        ),
         Require(sp.Gt(sp.Abs(DETERMINANT), SINGULAR), Status.NOT_INITIALIZED, reason=about_parameters(_HELD)),
-        Let(ASSEMBLY_SIGN, Select(sp.Gt(DETERMINANT, 0), sp.Integer(1), sp.Integer(-1)), "assembly mode of this machine"),
+        Let(
+            ASSEMBLY_SIGN, Select(sp.Gt(DETERMINANT, 0), sp.Integer(1), sp.Integer(-1)), "assembly mode of this machine"
+        ),
     )
 
 
@@ -124,12 +134,18 @@ def machine_constants(mechanism: Mechanism) -> tuple[Output, ...]:
 
 
 def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[Statement, ...]:
-    """The checks of a solved inverse: legs with a length, the assembly mode of the machine, a distance from the singularity."""
+    """The checks of a solved inverse: legs with a length, the assembly mode of the machine, a distance from the
+    singularity.
+    """
     bound = {s.name for s in solved if isinstance(s, Let)}
     lets: list[Let] = []
     for rod in mechanism.rods:
         arm = names("arm", rod)
-        vectors = (*turned(ROTATION_ENTRIES, point_of(rod), arm), *span(rod, POSITION, arm, rod.base), *span_moment(rod, arm))
+        vectors = (
+            *turned(ROTATION_ENTRIES, point_of(rod), arm),
+            *span(rod, POSITION, arm, rod.base),
+            *span_moment(rod, arm),
+        )
         lets += [let for let in (*vectors, divisor(rod, rod.length)) if let.name not in bound]
     margin, least = ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN)
     of_spans, lengths = real("determinant_of_spans"), sp.Mul(*[of("divisor", rod) for rod in mechanism.rods])
@@ -138,13 +154,19 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
         *(_long_enough(rod) for rod in mechanism.rods),
         *cone_checks(mechanism),
         Solve((), rows(mechanism, "span"), (), of_spans, "determinant of the spans of the legs and their moments"),
-        Let(DETERMINANT, of_spans / lengths, "the same of unit vectors: margin of the platform, zero in a type 2 singularity"),
+        Let(
+            DETERMINANT,
+            of_spans / lengths,
+            "the same of unit vectors: margin of the platform, zero in a type 2 singularity",
+        ),
         Require(sp.Ge(margin, least), Status.UNREACHABLE, reason=about(MARGIN, Why.NEAR_TYPE_2, least - margin)),
     )
 
 
 def _long_enough(rod: Rod) -> Require:
-    return Require(sp.Gt(rod.length, SHORTEST_LINK * SCALE), Status.UNREACHABLE, reason=about_leg(rod.name, Why.WITHOUT_LENGTH))
+    return Require(
+        sp.Gt(rod.length, SHORTEST_LINK * SCALE), Status.UNREACHABLE, reason=about_leg(rod.name, Why.WITHOUT_LENGTH)
+    )
 
 
 def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
@@ -155,7 +177,9 @@ def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[St
     words = (*(f"v{c}" for c in COORDINATE_NAMES), *(f"w{c}" for c in COORDINATE_NAMES))
     entries = [real(f"column_{column}_{word}") for word in words for column in range(1, width + 1)]
     held = Require(sp.Gt(sp.Abs(DETERMINANT), FREE_ANGLE), Status.IMPOSSIBLE, reason=about_machine(Why.UNCONTROLLED))
-    system = Solve(tuple(entries), rows(mechanism), tuple(driven), None, "twist of the platform per velocity of each leg")
+    system = Solve(
+        tuple(entries), rows(mechanism), tuple(driven), None, "twist of the platform per velocity of each leg"
+    )
     return (held, system), [e if k // width < 3 else e / RADIUS for k, e in enumerate(entries)]
 
 

@@ -1,8 +1,9 @@
-"""The cost of a program: the operations of one call in the worst case, counted in the statements that every language prints.
+"""The cost of a program: the operations of one call in the worst case, counted in the statements that every language
+prints.
 
-A subtraction counts as an addition, changes of sign and comparisons are free, a power counts as multiplications. Of a choice
-between statements the more expensive side counts, of a choice between values both values, and all passes of an iteration. Values
-that `Initialize` has computed count nothing.
+A subtraction counts as an addition, changes of sign and comparisons are free, a power counts as multiplications. Of a
+choice between statements the more expensive side counts, of a choice between values both values, and all passes of an
+iteration. Values that `Initialize` has computed count nothing.
 """
 
 from __future__ import annotations
@@ -147,7 +148,9 @@ def _amounts(require: Require) -> tuple[sp.Expr, ...]:
 
 
 def cost_of(program: Program, of_sides: _OfSides = _most) -> Cost:
-    """The cost of one run of a program in the worst case. of_sides: what counts of the costs of both sides of a choice."""
+    """The cost of one run of a program in the worst case. of_sides: what counts of the costs of
+    both sides of a choice.
+    """
     items = (_item(item, of_sides) for item in structured(program))
     return _total(items) + _total(map(expression_cost, (o.value for o in program.outputs)))
 
@@ -189,7 +192,9 @@ def _statement(statement: Statement) -> Cost:
         return _total(expression_cost(value) for _, value in statement.given) + cost_of(statement.program)
     if isinstance(statement, FindRoot):
         return cost_of(statement.trial) * TRIALS + cost_of(statement.finish) * FINISHED
-    one_pass = _total(map(_statement, statement.step)) + _total(map(expression_cost, (statement.done, *statement.following)))
+    one_pass = _total(map(_statement, statement.step)) + _total(
+        map(expression_cost, (statement.done, *statement.following))
+    )
     return _total(map(expression_cost, statement.start)) + one_pass * statement.limit
 
 

@@ -1,7 +1,8 @@
-"""Reasons in words: where a condition of the inverse does not hold, which axis or leg refuses, why, and what is missing.
+"""Reasons in words: where a condition of the inverse does not hold, which axis or leg refuses, why, and what is
+missing.
 
-A reason ends in the unit of the missing amount, as in "A1: above its upper limit [deg]". Without a unit the amount is a number
-(a margin), or there is none.
+A reason ends in the unit of the missing amount, as in "A1: above its upper limit [deg]". Without a unit the amount is a
+number (a margin), or there is none.
 """
 
 from __future__ import annotations
@@ -36,7 +37,8 @@ class Check:
     missing: sp.Expr | None
     """By how much one side is short of the other; None where this has no meaning."""
     turns: tuple[tuple[OtherTurn, str], ...] = ()
-    """The axes that may be inside on another turn, each with its reason; the first one that is gives reason and number."""
+    """The axes that may be inside on another turn, each with its reason; the first one that is gives reason and
+    number."""
 
 
 @dataclass(frozen=True)
@@ -131,5 +133,6 @@ def workspace(kinematics: Kinematics) -> tuple[str, ...]:
     for reason in bounds:
         found.setdefault(reason.why if reason.why.is_about_a_subject else reason.subject, []).append(reason)
     return tuple(
-        alike[0].why.of(", ".join(dict.fromkeys(reasons.name(reason.subject) for reason in alike))) for alike in found.values()
+        alike[0].why.of(", ".join(dict.fromkeys(reasons.name(reason.subject) for reason in alike)))
+        for alike in found.values()
     )

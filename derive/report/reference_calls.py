@@ -104,10 +104,16 @@ def branches(
             return slots, [nothing] * len(slots), [refused] * len(slots)
         values |= made
     values |= {j.reference.name: np.asarray(r) for j, r in zip(kinematics.mechanism.joints, reference, strict=True)}
-    values |= {f"sigma_{b.name}": np.array([3.0 - 2.0 * slot[k] for slot in slots]) for k, b in enumerate(kinematics.branches)}
-    values |= {j.turn.name: np.asarray(float(n)) for j, n in zip(kinematics.period_joints, configuration[count:], strict=True)}
+    values |= {
+        f"sigma_{b.name}": np.array([3.0 - 2.0 * slot[k] for slot in slots]) for k, b in enumerate(kinematics.branches)
+    }
+    values |= {
+        j.turn.name: np.asarray(float(n)) for j, n in zip(kinematics.period_joints, configuration[count:], strict=True)
+    }
     found, status = _run(kinematics.branch, machine, values | {"": np.zeros(len(slots))})
-    solved = [_rounded([float(found[n][k]) for n in axes]) if status[k] is Status.OK else nothing for k in range(len(slots))]
+    solved = [
+        _rounded([float(found[n][k]) for n in axes]) if status[k] is Status.OK else nothing for k in range(len(slots))
+    ]
     return slots, solved, list(status)
 
 
@@ -131,14 +137,18 @@ def _nearest(machine: Machine, solved: Sequence[Reals], reference: Reals) -> Rea
     return best
 
 
-def _run(program: Program, machine: Machine, values: Mapping[str, Array]) -> tuple[dict[str, Array], NDArray[np.object_]]:
+def _run(
+    program: Program, machine: Machine, values: Mapping[str, Array]
+) -> tuple[dict[str, Array], NDArray[np.object_]]:
     return run(program, {**machine.values, **values})
 
 
 def _axes(machine: Machine, poses: Sequence[Reals]) -> dict[str, Array]:
     """Axis values by name, a row for every pose, also of a mechanism without axes."""
     columns = np.array(poses, dtype=float).reshape(len(poses), -1)
-    return {j.axis.name: columns[:, k] for k, j in enumerate(machine.kinematics.mechanism.joints)} | {"": np.zeros(len(poses))}
+    return {j.axis.name: columns[:, k] for k, j in enumerate(machine.kinematics.mechanism.joints)} | {
+        "": np.zeros(len(poses))
+    }
 
 
 def _branch_byte(margin: float) -> int:

@@ -47,7 +47,9 @@ _NO_ROTATION = 1.1
 
 
 def self_test(kinematics: Kinematics) -> SelfTest:
-    """The test vectors of a mechanism: a refused machine, the nominal one, and the nominal one with limits around a pose."""
+    """The test vectors of a mechanism: a refused machine, the nominal one, and the nominal one with limits around a
+    pose.
+    """
     nominal = _nominal(kinematics)
     found = _Vectors(nominal)
     machines = [nominal]
@@ -153,7 +155,9 @@ class _Vectors:
     def _regular(self) -> list[Reals]:
         """Poses away from singular ones, to which the inverse leads back."""
         found: list[Reals] = []
-        for axes, smallest in zip(self._candidates, np.min(np.abs(margins(self.machine, self._candidates)), axis=0), strict=True):
+        for axes, smallest in zip(
+            self._candidates, np.min(np.abs(margins(self.machine, self._candidates)), axis=0), strict=True
+        ):
             if not smallest > _REGULAR:
                 continue
             _, frame, own = forward(self.machine, axes)
@@ -171,7 +175,9 @@ class _Vectors:
         return list(branches(self.machine, frame, every, self._aside(axes))[2])
 
     def _branches(self) -> Iterator[Case]:
-        """The first pose with its own configuration, and on every branch without turns; a root scan that fails is long."""
+        """The first pose with its own configuration, and on every branch without turns; a root scan
+        that fails is long.
+        """
         axes, frame = self.poses[0], self.frames[0]
         reference, every = self._aside(axes), self._open((0,) * len(self._mechanism.branches))
         yield self._inverse(frame, forward(self.machine, axes)[2], reference)
@@ -221,7 +227,9 @@ class _Vectors:
                     return
 
     def _square(self) -> Iterator[Reals]:
-        """A singular pose where the margin keeps its sign: the first pose, with one joint at zero or at a right angle."""
+        """A singular pose where the margin keeps its sign: the first pose, with one joint at zero
+        or at a right angle.
+        """
         for k, joint in enumerate(self._mechanism.joints):
             for value in (0.0, 90.0, -90.0, 180.0) if joint.is_angle else (0.0,):
                 zero = self.machine.given[joint.offset.name]
@@ -239,14 +247,23 @@ class _Vectors:
         return axes if abs(margins(self.machine, [axes])[row, 0]) < _SINGULAR else None
 
     def _refusals(self) -> Iterator[Case]:
-        """Refusals: a number too large, a pose too far away, no rotation, a tool pointing the opposite way, an invalid byte."""
+        """Refusals: a number too large, a pose too far away, no rotation, a tool pointing the opposite way, an invalid
+        byte.
+        """
         axes, frame = self.poses[0], self.frames[0]
         own = forward(self.machine, axes)[2]
         if axes:
             yield self._forward((2.0 * float(LARGEST), *axes[1:]))
-        turned, far = (tuple(round(k * v, 6) for v in part) for k, part in ((_NO_ROTATION, frame[3:]), (1e3, frame[:3])))
+        turned, far = (
+            tuple(round(k * v, 6) for v in part) for k, part in ((_NO_ROTATION, frame[3:]), (1e3, frame[:3]))
+        )
         opposite = tuple(v * (1.0 if k % 3 == 0 else -1.0) + 0.0 for k, v in enumerate(frame[3:]))
-        frames = [(2.0 * float(LARGEST), *frame[1:]), (*far, *frame[3:]), (*frame[:3], *turned), (*frame[:3], *opposite)]
+        frames = [
+            (2.0 * float(LARGEST), *frame[1:]),
+            (*far, *frame[3:]),
+            (*frame[:3], *turned),
+            (*frame[:3], *opposite),
+        ]
         cases = [self._inverse(other, own, axes) for other in frames]
         if self._mechanism.branches:
             cases.append(self._inverse(frame, (4, *own[1:]), axes))

@@ -1,1 +1,2 @@
-"""How the closure is solved: driver, derivation record, eliminations, parallel axes, feasible arcs, and the subproblems."""
+"""How the closure is solved: driver, derivation record, eliminations, parallel axes, feasible arcs, and the
+subproblems."""

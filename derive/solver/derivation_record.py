@@ -88,7 +88,9 @@ class DerivationRecord:
                 self._statements.append(rewritten(statement, lambda e: e.xreplace(names)))
                 continue
             if values.setdefault(statement.name, statement.value) != statement.value:
-                raise BrokenProgram(f"a step binds {statement.name} twice, to {values[statement.name]} and to {statement.value}")
+                raise BrokenProgram(
+                    f"a step binds {statement.name} twice, to {values[statement.name]} and to {statement.value}"
+                )
             value = statement.value.xreplace(names)
             shared = self._by_value.get(value)
             if shared is not None and statement.name not in keep:

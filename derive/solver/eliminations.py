@@ -1,9 +1,11 @@
 """Eliminations, in tiers: each is tried only when the previous one gives no subproblem.
 
 * difference: an unknown length that is linear in two equations is eliminated between them;
-* elimination: an unknown length that is linear in one equation, with a number as its coefficient, is put into the others;
+* elimination: an unknown length that is linear in one equation, with a number as its coefficient, is put into the
+  others;
 * squares: the sum of the squares of two equations, known parts on the right side, is free of the angle that
-  turns both (this is the law of cosines). As a last resort three are squared: free of every angle that turns all of them.
+  turns both (this is the law of cosines). As a last resort three are squared: free of every angle that turns all of
+  them.
 """
 
 from __future__ import annotations

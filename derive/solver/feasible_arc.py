@@ -1,10 +1,11 @@
 """Feasible arc: a free angle is moved onto the arc on which the later steps have solutions.
 
 Where the measure of a step vanishes its angle u is free, and where the measure is tiny u is known only to a few digits.
-A later two-root step needs |e| <= h with e = level + along cos u + across sin u. (The second harmonic of e in u vanishes with
-the measure, and is taken as constant.) So cos(u - centre) lies between two bounds, and u on one of two arcs, one on each side
-of the centre. u moves to the nearest point of the arc on its side, if the change of the pose, measure times the angle moved, is
-no more than rounding. Where e is within its bound, or far beyond it although u is well known, u stays.
+A later two-root step needs |e| <= h with e = level + along cos u + across sin u. (The second harmonic of e in u
+vanishes with the measure, and is taken as constant.) So cos(u - centre) lies between two bounds, and u on one of two
+arcs, one on each side of the centre. u moves to the nearest point of the arc on its side, if the change of the pose,
+measure times the angle moved, is no more than rounding. Where e is within its bound, or far beyond it although u is
+well known, u stays.
 """
 
 from __future__ import annotations
@@ -85,7 +86,9 @@ def within_reach(
 
 
 def _in_order(statements: Sequence[Statement]) -> list[Statement]:
-    """Every statement behind those that it reads: a motion reads values bound behind the angle that do not depend on it."""
+    """Every statement behind those that it reads: a motion reads values bound behind the angle that do not depend on
+    it.
+    """
     sources = {name: s for s in statements for name in binds(s)}
     ordered: list[Statement] = []
     begun: set[int] = set()
@@ -122,7 +125,9 @@ def _condition(statements: Sequence[Statement], measure: Measure, slope: Slope) 
     return _Condition(slope.step, f"{angle.name}_of_{slope.step.name}", size, value, parts, chain)
 
 
-def _chain(statements: Sequence[Statement], names: Sequence[sp.Symbol], dependent: Mapping[sp.Symbol, sp.Expr]) -> list[Let]:
+def _chain(
+    statements: Sequence[Statement], names: Sequence[sp.Symbol], dependent: Mapping[sp.Symbol, sp.Expr]
+) -> list[Let]:
     """The statements by which names depend on the angle."""
     needed, found = set(names), list[Let]()
     for s in reversed(statements):
@@ -196,12 +201,14 @@ def nearest_on_arc(
 ) -> tuple[Let, ...]:
     """`moved_<word>`: the u nearest to where it was, on its side of the centre, at which |value| <= size.
 
-    slopes: the derivatives of the value by cos u and sin u. angle: the cosine and sine of u where it was; `value` is its value
-    there.
+    slopes: the derivatives of the value by cos u and sin u. angle: the cosine and sine of u where it was; `value` is
+    its value there.
     """
     cos_u, sin_u = angle
     along, across, swing, level = (real(f"{name}_{word}") for name in ("along", "across", "swing", "level"))
-    divisor, highest, lowest, near, far = (real(f"{name}_{word}") for name in ("divisor", "highest", "lowest", "near", "far"))
+    divisor, highest, lowest, near, far = (
+        real(f"{name}_{word}") for name in ("divisor", "highest", "lowest", "near", "far")
+    )
     centre, before, side, moved = (real(f"{name}_{word}") for name in ("centre", "angle", "side", "moved"))
     turns = sp.Gt(swing, ROUNDING * size)
     one = sp.Integer(1)
@@ -232,7 +239,9 @@ def _parts(condition: _Condition) -> tuple[tuple[Let, ...], sp.Expr, tuple[sp.Ex
         lets += [Let(n, getattr(part, w)) for w, n in names.items()]
         fixed[part.name] = names["fixed"]
     slopes = [
-        sp.Add(*[sp.diff(condition.value, p.name).xreplace(fixed) * real(f"{p.name.name}_{w}") for p in condition.parts])
+        sp.Add(
+            *[sp.diff(condition.value, p.name).xreplace(fixed) * real(f"{p.name.name}_{w}") for p in condition.parts]
+        )
         for w in ("along", "across")
     ]
     return tuple(lets), condition.value.xreplace(before), (slopes[0], slopes[1])

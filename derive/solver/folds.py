@@ -1,12 +1,13 @@
-"""Folds: where the two roots of a step nearly meet, its angle is turned, within rounding, to where a later step has a solution.
+"""Folds: where the two roots of a step nearly meet, its angle is turned, within rounding, to where a later step has a
+solution.
 
-A two-root step solves along cos v + across sin v = beside for v. The distance ahead is a root:
-along sin v - across cos v = sigma sqrt(distance² - beside²). A rounding error eps of the radicand becomes sqrt(eps) in a root
-near zero, and eps / root in v. A later step needs |e| <= h, where e depends on v. If it is at its own boundary, e is then
-beyond h by far more than rounding: where two singularities coincide, the pose would be refused. So v is turned to where the
-later step has a solution, if the residual of v's own equation stays within rounding. The turn t follows from the first order,
-e + e' t = ± h. Where this turns a later angle that is nearly free, the first order does not suffice: see `sweeps`.
-Where e is within its bound, or the root is not near zero, v stays.
+A two-root step solves along cos v + across sin v = beside for v. The distance ahead is a root: along sin v - across cos
+v = sigma sqrt(distance² - beside²). A rounding error eps of the radicand becomes sqrt(eps) in a root near zero, and eps
+/ root in v. A later step needs |e| <= h, where e depends on v. If it is at its own boundary, e is then beyond h by far
+more than rounding: where two singularities coincide, the pose would be refused. So v is turned to where the later step
+has a solution, if the residual of v's own equation stays within rounding. The turn t follows from the first order, e +
+e' t = ± h. Where this turns a later angle that is nearly free, the first order does not suffice: see `sweeps`. Where e
+is within its bound, or the root is not near zero, v stays.
 
 The distance ahead is not computed from v again: the root is as long as the triangle says even where v is free.
 """
@@ -50,7 +51,9 @@ from derive.solver.sweeps import WAYS, Sweep, sweep_of, swept
 
 @dataclass(frozen=True)
 class _Later:
-    """The condition of a later step on the angle of an earlier one: |value| <= size, and how the value follows from the angle."""
+    """The condition of a later step on the angle of an earlier one: |value| <= size, and how the value follows from the
+    angle.
+    """
 
     step: sp.Symbol
     """The unknown of the later step."""
@@ -140,7 +143,9 @@ def _moved(statements: Sequence[Statement], later: _Later, sweep: Sweep | None) 
         if not (isinstance(s, Let) and s.name in later.bound):
             found.append(s)
             continue
-        found.append(replace(s, name=later.before(s.name), value=s.value.xreplace({n: later.before(n) for n in later.bound})))
+        found.append(
+            replace(s, name=later.before(s.name), value=s.value.xreplace({n: later.before(n) for n in later.bound}))
+        )
         if s.name == sine(later.angle):  # the last of the three
             found += _motion(later, sweep)
     return found
@@ -182,11 +187,15 @@ def _turned(later: _Later, turn: sp.Symbol) -> tuple[Let, ...]:
 
 
 def _swept(later: _Later) -> tuple[Let, ...]:
-    """The same where the angle follows a later one, by the way with the smaller residual; a free angle has no residual."""
+    """The same where the angle follows a later one, by the way with the smaller residual; a free
+    angle has no residual.
+    """
     legs, (near, mirrored) = later.legs, (later.name(f"{way}_cost") for way in WAYS)
     determined = sp.Gt(legs.distance, FREE_ANGLE * later.scale)
     cos_v, sin_v = later.name("swept_cos"), later.name("swept_sin")
-    chosen = (Select(sp.Le(near, mirrored), *(later.name(f"{way}_{f}") for way in WAYS)) for f in ("cost", "cos", "sin"))
+    chosen = (
+        Select(sp.Le(near, mirrored), *(later.name(f"{way}_{f}") for way in WAYS)) for f in ("cost", "cos", "sin")
+    )
     return (
         *(Let(later.name(f"{way}_cost"), Select(determined, _residual(later, way), sp.Integer(0))) for way in WAYS),
         *(Let(n, v) for n, v in zip((later.name("swept_cost"), cos_v, sin_v), chosen, strict=True)),
@@ -200,7 +209,9 @@ def _residual(later: _Later, word: str) -> sp.Expr:
 
 
 def _taken(later: _Later, *, is_swept: bool) -> tuple[Let, ...]:
-    """The angle as it was where it is far from the fold, or the later step has a solution; else turned within rounding."""
+    """The angle as it was where it is far from the fold, or the later step has a solution; else
+    turned within rounding.
+    """
     bests = [later.name(f"best_{word}") for word in ("cost", "ahead", "cos", "sin")]
     chosen = [later.name(f"turned_{word}") for word in ("cost", "ahead", "cos", "sin")]
     if is_swept:
@@ -225,7 +236,9 @@ def _is_far(square: sp.Expr, scale: sp.Expr) -> sp.Basic:
 
 
 def _rates(later: _Later) -> tuple[list[Let], dict[sp.Symbol, sp.Expr], dict[sp.Symbol, sp.Expr]]:
-    """The chain before the turn with its derivatives by the angle; the names of the values; the derivatives or their names."""
+    """The chain before the turn with its derivatives by the angle; the names of the values; the derivatives or their
+    names.
+    """
     cos_v, sin_v = cosine(later.angle), sine(later.angle)
     names: dict[sp.Symbol, sp.Expr] = {n: later.before(n) for n in later.bound}
     rates: dict[sp.Symbol, sp.Expr] = {later.legs.root: later.legs.beside, cos_v: -sin_v, sin_v: cos_v}

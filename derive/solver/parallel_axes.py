@@ -36,12 +36,15 @@ class Sum:
 
 
 def candidate_sums(problem: Problem, arguments: Sequence[sp.Expr]) -> tuple[Sum, ...]:
-    """Sums to try: every argument of a sine or cosine with several unknown angles, then every difference of two arguments."""
+    """Sums to try: every argument of a sine or cosine with several unknown angles, then every difference of two
+    arguments.
+    """
     differences = [b - a for a, b in combinations(arguments, 2)]
     found: dict[sp.Symbol, Sum] = {}
     for argument in [*arguments, *differences]:
         expanded = sp.expand(argument)
-        constant = expanded.xreplace(dict.fromkeys(expanded.free_symbols, sp.Integer(0)))  # a fixed rotation of the base
+        # A fixed rotation of the base
+        constant = expanded.xreplace(dict.fromkeys(expanded.free_symbols, sp.Integer(0)))
         terms = terms_of(expanded - constant, problem.angles)
         if terms is not None and len(terms) > 1:
             found.setdefault(symbol_of_sum(terms), Sum(symbol_of_sum(terms), terms, terms[-1][0]))
@@ -58,7 +61,8 @@ def substitute(problem: Problem, total: Sum) -> Problem:
 
     def through_sum(equation: Equation) -> Equation:
         if total.replaced in equation.expression.free_symbols:
-            return equation  # the angle stands outside a sine, and its whole turns count: it waits until the angle is known
+            # The angle stands outside a sine, and its whole turns count: the equation waits until the angle is known
+            return equation
         expression = reduce_units(equation.expression.xreplace(table), units, problem.signs)
         return replace(equation, expression=expression)
 
@@ -66,7 +70,9 @@ def substitute(problem: Problem, total: Sum) -> Problem:
     equations = tuple(through_sum(e) for e in problem.equations)
     pending = (*problem.pending, total.replaced)
     turns = tuple(replace(t, amount=sp.expand(t.amount.xreplace({total.replaced: form}))) for t in problem.turns)
-    return replace(problem, angles=angles, units=units, equations=equations, references=references, pending=pending, turns=turns)
+    return replace(
+        problem, angles=angles, units=units, equations=equations, references=references, pending=pending, turns=turns
+    )
 
 
 def resolve(problem: Problem, total: Sum) -> Binding | None:

@@ -31,7 +31,9 @@ RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quad
 
 
 def _stated(problem: Problem) -> tuple[Equation, ...]:
-    """The equations and those of the rotation; with an equation too many the rotation waits until the positions are solved."""
+    """The equations and those of the rotation; with an equation too many the rotation waits until the positions are
+    solved.
+    """
     if problem.is_overdetermined and problem.equations:
         return problem.equations
     return problem.equations + rotations(problem)
@@ -63,9 +65,9 @@ class Derivation:
 def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve) -> Derivation:
     """Solve a problem.
 
-    arguments: those of the sines and cosines in the original equations, from which sums of angles about parallel axes are
-    read. resolve_angle: gives the statements that bind an angle with its whole turns, for equations in which it stands outside
-    sines and cosines. Raises `Unsolved` where no rule applies.
+    arguments: those of the sines and cosines in the original equations, from which sums of angles about parallel axes
+    are read. resolve_angle: gives the statements that bind an angle with its whole turns, for equations in which it
+    stands outside sines and cosines. Raises `Unsolved` where no rule applies.
     """
     record = DerivationRecord()
     sums: tuple[Sum, ...] = ()
@@ -103,7 +105,9 @@ def _next(
         return problem, found, sums
     for total in candidate_sums(problem, arguments):
         trial = substitute(problem, total)
-        wanted = TIERS if found is None else TIERS[:1]  # a cosine alone loses half the digits: both functions of a sum are better
+        wanted = (
+            TIERS if found is None else TIERS[:1]
+        )  # a cosine alone loses half the digits: both functions of a sum are better
         better = _best([b for b in _candidates(trial, tier(trial)) if total.symbol in b.unknowns] for tier in wanted)
         if better is not None and (found is None or (better.rank < found.rank and problem.turns)):
             return trial, better, (*sums, total)

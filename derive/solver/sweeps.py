@@ -1,14 +1,15 @@
-"""Sweeps: where an angle near its fold turns a later angle that is nearly free, the later one is chosen and the earlier follows.
+"""Sweeps: where an angle near its fold turns a later angle that is nearly free, the later one is chosen and the earlier
+follows.
 
-After a two-root step for v, another step takes u as the polar angle of (x, y), both linear in cos v and sin v. Where (x, y)
-nearly vanishes, and v is known to half of its digits or not at all, u sweeps half a turn while v changes by rounding: the
-derivative of u by v says nothing. But x sin u = y cos u is linear in cos v and sin v. So u is moved to where a later step has a
-solution, and v follows from p cos v + q sin v = 0, the coefficients of x sin u - y cos u: cos v : sin v = -q : p. Of the two
-opposite v the one is taken for which (x, y) points along u. There are two such u, one on each side of the centre of the
-feasible arc; the one is taken that leaves the smaller residual of v's own equation.
-Where p and q vanish every v gives this u, and v stays. Where u is free behind v as well, the v nearer to where it was is taken.
-This is decided at half of the threshold: within rounding of the threshold the next step may still take u from (x, y), and must
-not then find it pointing the other way.
+After a two-root step for v, another step takes u as the polar angle of (x, y), both linear in cos v and sin v. Where
+(x, y) nearly vanishes, and v is known to half of its digits or not at all, u sweeps half a turn while v changes by
+rounding: the derivative of u by v says nothing. But x sin u = y cos u is linear in cos v and sin v. So u is moved to
+where a later step has a solution, and v follows from p cos v + q sin v = 0, the coefficients of x sin u - y cos u: cos
+v : sin v = -q : p. Of the two opposite v the one is taken for which (x, y) points along u. There are two such u, one on
+each side of the centre of the feasible arc; the one is taken that leaves the smaller residual of v's own equation.
+Where p and q vanish every v gives this u, and v stays. Where u is free behind v as well, the v nearer to where it was
+is taken. This is decided at half of the threshold: within rounding of the threshold the next step may still take u from
+(x, y), and must not then find it pointing the other way.
 """
 
 from __future__ import annotations
@@ -91,7 +92,9 @@ def _written_out(value: sp.Expr, definitions: Mapping[sp.Symbol, sp.Expr]) -> sp
 def _harmonic(value: sp.Expr, lets: Mapping[sp.Symbol, Let], angle: sp.Symbol) -> Row | None:
     """The coefficients of cos u and sin u in a value, where its normal form is linear in them; else None."""
     own = {cosine(angle), sine(angle)}
-    angles = [a for n in lets if n.name.startswith("cos_") for a in [real(n.name.removeprefix("cos_"))] if sine(a) in lets]
+    angles = [
+        a for n in lets if n.name.startswith("cos_") for a in [real(n.name.removeprefix("cos_"))] if sine(a) in lets
+    ]
     functions = {f(a) for a in angles for f in (cosine, sine)}
     rough = _written_out(value, {n: s.value for n, s in lets.items() if n not in functions})
     moving = set(own)
@@ -110,9 +113,11 @@ WAYS = ("near", "mirrored")
 def swept(
     sweep: Sweep, first: sp.Symbol, names: Mapping[sp.Symbol, sp.Expr], rates: Mapping[sp.Symbol, sp.Expr], word: str
 ) -> tuple[Let, ...]:
-    """u moved in both ways, and v that follows: `<way>_cos_<word>`, `<way>_sin_<word>`; `follows_<word>`: whether it must.
+    """u moved in both ways, and v that follows: `<way>_cos_<word>`, `<way>_sin_<word>`; `follows_<word>`: whether it
+    must.
 
-    names: those of the values before the motion; rates: their derivatives by v. `turn_<word>` is the turn of v to first order.
+    names: those of the values before the motion; rates: their derivatives by v. `turn_<word>` is the turn of v to first
+    order.
     """
     before = (names[cosine(sweep.angle)], names[sine(sweep.angle)])
     slopes = (sweep.harmonic[0].xreplace(dict(names)), sweep.harmonic[1].xreplace(dict(names)))
@@ -132,7 +137,11 @@ def _follows(sweep: Sweep, names: Mapping[sp.Symbol, sp.Expr], rates: Mapping[sp
     square = real(f"turn_{word}") ** 2
     dx, dy = (rates[part].xreplace(dict(names)) for part in sweep.parts)
     is_far = sp.Gt(square, BOUNDARY) | sp.Gt(square * (dx**2 + dy**2), BOUNDARY * names[sweep.length] ** 2)
-    return Let(flag(f"follows_{word}"), is_far, f"whether the first order is not enough: then {sweep.angle.name} is chosen first")
+    return Let(
+        flag(f"follows_{word}"),
+        is_far,
+        f"whether the first order is not enough: then {sweep.angle.name} is chosen first",
+    )
 
 
 def _followed(sweep: Sweep, u: sp.Symbol, before: Row, way: str, word: str) -> tuple[Let, ...]:
@@ -140,7 +149,8 @@ def _followed(sweep: Sweep, u: sp.Symbol, before: Row, way: str, word: str) -> t
     cos_u, sin_u, p, q, along, radius, length, turned, side, cos_v, sin_v = (
         real(f"{way}_{name}_{word}")
         for name in (
-            f"cos_{sweep.angle.name}", f"sin_{sweep.angle.name}", "p", "q", "along", "radius", "length", "towards", "side", "cos",
+            f"cos_{sweep.angle.name}", f"sin_{sweep.angle.name}", "p", "q", "along", "radius", "length", "towards",
+            "side", "cos",
             "sin",
         )
     )  # fmt: skip

@@ -1,4 +1,5 @@
-"""The checks of the witness: each measures one derived program against the closure, and raises `Disagreement` if it fails.
+"""The checks of the witness: each measures one derived program against the closure, and raises `Disagreement` if it
+fails.
 
 Errors are dimensionless: angles in radians, lengths in reaches of the machine.
 """
@@ -51,8 +52,8 @@ def displacement(closure: Closure, samples: Samples, joints: Array) -> Array:
 def least_move(kin: Kinematics, closure: Closure, samples: Samples, joints: Array) -> Array:
     """The distance by which the pose, and in a loop the joints, would have to move to close Φ: |[A B]⁺ Φ|.
 
-    Of the many solutions of a loop some are next to a type 2 singularity: there the pose alone would have to go far for what
-    is the last digit of a joint.
+    Of the many solutions of a loop some are next to a type 2 singularity: there the pose alone would have to go far for
+    what is the last digit of a joint.
     """
     if kin.mechanism.chain is not None:
         return displacement(closure, samples, joints)
@@ -93,20 +94,28 @@ def check_jacobian(kin: Kinematics, closure: Closure, samples: Samples) -> float
         raise Disagreement(f"the Jacobian has the rows {kin.rows}, the task {closure.task}")
     outputs = run_regular(kin, kin.jacobian, samples)
     rows, columns = samples.jacobian.shape[1:]
-    derived = np.stack([np.stack([outputs[f"j{i + 1}{k + 1}"] for k in range(columns)], axis=1) for i in range(rows)], axis=1)
+    derived = np.stack(
+        [np.stack([outputs[f"j{i + 1}{k + 1}"] for k in range(columns)], axis=1) for i in range(rows)], axis=1
+    )
     sizes = np.max(np.abs(samples.jacobian), axis=2, keepdims=True)
     errors = np.max(np.abs(derived - samples.jacobian) / sizes, axis=(1, 2))
     return worst(kin, "Jacobian", errors, samples, JACOBIAN_TOLERANCE)
 
 
 def check_margins(kin: Kinematics, closure: Closure, samples: Samples) -> float:
-    """√det(J Jᵀ) is one constant of each machine times the margins with their exponents; their signs are the branches'."""
+    """√det(J Jᵀ) is one constant of each machine times the margins with their exponents; their
+    signs are the branches'.
+    """
     _check_signs(kin, closure, samples)
     outputs = run_regular(kin, kin.singularity, samples)
     expected = np.ones(len(samples))
     for margin in kin.margins:
         expected = expected * np.abs(outputs[margin.factor]) ** margin.exponent
-    j = samples.jacobian if samples.jacobian.shape[1] <= samples.jacobian.shape[2] else np.swapaxes(samples.jacobian, 1, 2)
+    j = (
+        samples.jacobian
+        if samples.jacobian.shape[1] <= samples.jacobian.shape[2]
+        else np.swapaxes(samples.jacobian, 1, 2)
+    )
     ratio = np.sqrt(np.linalg.det(j @ np.swapaxes(j, 1, 2))) / expected
     constant = {m: np.median(ratio[samples.machine == m]) for m in np.unique(samples.machine)}
     errors = np.abs(ratio / np.array([constant[m] for m in samples.machine]) - 1.0)

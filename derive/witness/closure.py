@@ -150,7 +150,9 @@ def task_rows(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def _positive(mechanism: Mechanism) -> list[sp.Expr]:
-    """The positive quantities of this machine: stated ones, distances from bounds, the indicator of the assembly mode."""
+    """The positive quantities of this machine: stated ones, distances from bounds, the indicator of
+    the assembly mode.
+    """
     left = [*mechanism.positive, *(b.largest - sp.Abs(b.value) for b in mechanism.bounds)]
     if mechanism.assembly is None:
         return left
@@ -160,7 +162,9 @@ def _positive(mechanism: Mechanism) -> list[sp.Expr]:
 
 
 def _indicator(branch: Branch, named: dict[sp.Symbol, Term]) -> Term:
-    """The branch indicators: positive is byte 1. NaN, which no check compares, where only a scan tells the solutions apart."""
+    """The branch indicators: positive is byte 1. NaN, which no check compares, where only a scan tells the solutions
+    apart.
+    """
     return ca.SX(float("nan")) if branch.is_crossing else branch.signs[0] * term(branch.indicator, named)
 
 

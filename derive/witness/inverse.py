@@ -1,4 +1,5 @@
-"""The inverse against the closure: every slot is a solution, the slot of forward kinematics leads back, none is missing."""
+"""The inverse against the closure: every slot is a solution, the slot of forward kinematics leads back, none is
+missing."""
 
 from __future__ import annotations
 
@@ -33,7 +34,9 @@ Slots = tuple[Array, NDArray[np.bool_]]
 
 
 def check_inverse(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[float, float]:
-    """The answer of every slot closes Φ and lies on its branch; the slot of forward kinematics gives back the axes with turns."""
+    """The answer of every slot closes Φ and lies on its branch; the slot of forward kinematics gives back the axes with
+    turns.
+    """
     axes, ok = run_slots(kin, kin.branch, samples, _commands(kin, samples))
     residual = 0.0
     for slot, signs in enumerate(_signs(kin)):
@@ -52,7 +55,8 @@ def check_inverse(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[
 
 
 def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[int, tuple[int, int] | None]:
-    """Multi-start root finding finds the solutions in the slots, no more and no less. Returns the largest number of solutions.
+    """Multi-start root finding finds the solutions in the slots, no more and no less. Returns the largest number of
+    solutions.
 
     A search may miss some: then also how many, of how many.
     """
@@ -115,14 +119,18 @@ def run_slots(kin: Kinematics, program: Program, samples: Samples, commands: dic
 
 
 def _ranks(kin: Kinematics, samples: Samples) -> Slots:
-    """The solutions of every slot; with a root scan from references around the circle: a branch may have several solutions."""
+    """The solutions of every slot; with a root scan from references around the circle: a branch may have several
+    solutions.
+    """
     commands = _commands(kin, samples)
     search = kin.mechanism.search
     if search is None:
         return run_slots(kin, kin.branch, samples, commands)
     found: list[Slots] = []
     for turn in np.linspace(0.0, 360.0, _AROUND, endpoint=False):
-        found.append(run_slots(kin, kin.branch, samples, commands | {search.joint.reference.name: np.full(len(samples), turn)}))
+        found.append(
+            run_slots(kin, kin.branch, samples, commands | {search.joint.reference.name: np.full(len(samples), turn)})
+        )
     return np.concatenate([axes for axes, _ in found]), np.concatenate([ok for _, ok in found])
 
 
@@ -171,7 +179,11 @@ def _compare(kin: Kinematics, problem: Problem, solutions: tuple[Array, Array], 
     missing = [f for f in found if not any(same(f, o, problem.angles) for o in offered)]
     is_search = kin.mechanism.search is not None
     expected = len(found) - (len(missing) if is_search else 0)
-    if (missing and not is_search) or expected != len(offered) or len(distinct(offered, problem.angles)) != len(offered):
+    if (
+        (missing and not is_search)
+        or expected != len(offered)
+        or len(distinct(offered, problem.angles)) != len(offered)
+    ):
         raise Disagreement(
             f"number of solutions: the closure has {len(found)}, the slots hold {len(offered)}"
             f" ({len(distinct(offered, problem.angles))} distinct), for the pose {place}"
@@ -179,7 +191,9 @@ def _compare(kin: Kinematics, problem: Problem, solutions: tuple[Array, Array], 
     return len(missing)
 
 
-def _point_error(kin: Kinematics, closure: Closure, samples: Samples, joints: Array, point: Array, offset: Array) -> Array:
+def _point_error(
+    kin: Kinematics, closure: Closure, samples: Samples, joints: Array, point: Array, offset: Array
+) -> Array:
     if kin.mechanism.chain is None:  # the flange keeps its orientation: the offset only shifts the pose
         return least_move(kin, closure, samples, joints)
     frame = closure.frame(joints, samples.parameters)[:, :, 0]

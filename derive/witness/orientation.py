@@ -40,7 +40,9 @@ def _check_projection(kin: Kinematics, samples: Samples) -> float:
     tilted = (swings @ rotation).reshape(-1, 9)
     outputs, status = run(kin.projection, samples.values | {name: tilted[:, i] for i, name in enumerate(POSE[3:])})
     if (status != Status.OK).any():
-        raise Disagreement(f"the projection refuses a tilt: {describe(kin, samples, int(np.argmax(status != Status.OK)))}")
+        raise Disagreement(
+            f"the projection refuses a tilt: {describe(kin, samples, int(np.argmax(status != Status.OK)))}"
+        )
     projected = np.stack([outputs[name] for name in POSE[3:]], axis=1)
     errors = np.max(np.abs(projected - samples.pose[:, 3:]), axis=1)
     return worst(kin, "projection of the orientation", errors, samples, CLOSURE_TOLERANCE)

@@ -27,7 +27,12 @@ _FREE = 1e-11
 def refused_when_planted(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[int, int]:
     """The number of these poses that are refused on their own branch, and the number of all."""
     rng = np.random.default_rng(SEED + 7)
-    rows = [r for b in range(len(kin.branches)) for j in range(samples.axes.shape[1]) for r in _near(closure, samples, b, j, rng)]
+    rows = [
+        r
+        for b in range(len(kin.branches))
+        for j in range(samples.axes.shape[1])
+        for r in _near(closure, samples, b, j, rng)
+    ]
     if not rows:
         return 0, 0
     index, axes = np.array([k for k, _ in rows]), np.array([a for _, a in rows])
@@ -50,7 +55,9 @@ def refused_when_planted(kin: Kinematics, closure: Closure, samples: Samples) ->
     return int(np.sum(~answered & ~several)), int(np.sum(~several))
 
 
-def _near(closure: Closure, samples: Samples, branch: int, joint: int, rng: np.random.Generator) -> list[tuple[int, Array]]:
+def _near(
+    closure: Closure, samples: Samples, branch: int, joint: int, rng: np.random.Generator
+) -> list[tuple[int, Array]]:
     """For every machine the joint where the indicator vanishes, on both sides of it, and a distance away."""
     found: list[tuple[int, Array]] = []
     first = np.unique(samples.machine, return_index=True)[1]

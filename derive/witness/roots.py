@@ -34,7 +34,9 @@ class Problem:
 
     def take(self, rows: Rows) -> Problem:
         """The problem at the chosen rows."""
-        return Problem(self.closure, self.pose[rows], self.parameters[rows], self.weights[rows], self.units[rows], self.angles)
+        return Problem(
+            self.closure, self.pose[rows], self.parameters[rows], self.weights[rows], self.units[rows], self.angles
+        )
 
     def residual(self, unknowns: Array) -> Array:
         """Φ."""
@@ -69,7 +71,9 @@ def all_solutions(problem: Problem) -> list[Array]:
     many = problem.take(rows)
     size = np.where(problem.angles, np.pi, 4.0)
     starts = np.random.default_rng(SEED).uniform(-1.0, 1.0, (len(rows), len(size))) * size
-    starts[1::2] = np.where(problem.angles, starts, np.abs(starts))[1::2]  # six lengths have 64 mirror images, one is wanted
+    starts[1::2] = np.where(problem.angles, starts, np.abs(starts))[
+        1::2
+    ]  # six lengths have 64 mirror images, one is wanted
     ends = within_one_turn(many, _newton(many, starts, _ITERATIONS))
     good = (np.linalg.norm(many.residual(ends), axis=1) < _CONVERGED) & many.is_positive(ends)
     return [distinct(ends[(rows == i) & good], problem.angles) for i in range(count)]

@@ -58,7 +58,10 @@ class Samples:
 
     def take(self, chosen: NDArray[np.bool_] | NDArray[np.int64]) -> Samples:
         """The chosen rows."""
-        rows = {f: getattr(self, f)[chosen] for f in ("machine", "parameters", "axes", "joints", "pose", "reach", "jacobian")}
+        rows = {
+            f: getattr(self, f)[chosen]
+            for f in ("machine", "parameters", "axes", "joints", "pose", "reach", "jacobian")
+        }
         return replace(self, values={k: v[chosen] for k, v in self.values.items()}, **rows)
 
 
@@ -91,7 +94,9 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
     machine = samples.machine
     regular = _least_singular_value(closure, samples) > REGULAR
     chosen = np.flatnonzero(regular & (_rank_within(machine, regular) <= POSES))
-    possible = len(np.unique(machine[chosen]))  # random dimensions may form a loop that never closes, the nominal ones not
+    possible = len(
+        np.unique(machine[chosen])
+    )  # random dimensions may form a loop that never closes, the nominal ones not
     if possible < (min(2, count) if kin.mechanism.rods else count) or machine[chosen][0] != 0:
         raise Disagreement("a machine has no regular pose: is the mechanism always singular?")
     return samples.take(chosen)
@@ -150,7 +155,11 @@ def _draw(parameter: Parameter, count: int, rng: Generator) -> Array:
 
 
 def _reach(mechanism: Mechanism, values: dict[str, Array]) -> Array:
-    lengths = [np.abs(values[p.name]) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)]
+    lengths = [
+        np.abs(values[p.name])
+        for p in mechanism.parameters
+        if p.role in (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
+    ]
     total = np.sum(lengths, axis=0) if lengths else np.zeros_like(next(iter(values.values())))
     legs = max(1, len(mechanism.rods)) if mechanism.task.turning is Turning.NONE else 1  # one leg of a loop
     return np.where(total > 0, total / legs, WITHOUT_LENGTHS)

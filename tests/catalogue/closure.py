@@ -95,7 +95,9 @@ class Closure:
             return self._stated(joints, positions)
         position, rotation = self.frames(joints)
         lengths = (position - positions)[:, self.task]
-        return np.hstack([lengths, (rotation - rotations)[:, :, self.columns].reshape(len(lengths), 3 * len(self.columns))])
+        return np.hstack(
+            [lengths, (rotation - rotations)[:, :, self.columns].reshape(len(lengths), 3 * len(self.columns))]
+        )
 
     def jacobian(self, axes: Array, positions: Array) -> Array:
         """Rows of the task by axes, per radian for an axis in degrees."""

@@ -1,4 +1,5 @@
-"""The machines of the tests of corners: special dimensions with coinciding singularities, random ones, both assembly modes."""
+"""The machines of the tests of corners: special dimensions with coinciding singularities, random ones, both assembly
+modes."""
 
 from __future__ import annotations
 

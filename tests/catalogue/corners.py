@@ -1,7 +1,8 @@
-"""Corners: poses where two or three singular factors vanish together, and poses beside them at every decade of distance.
+"""Corners: poses where two or three singular factors vanish together, and poses beside them at every decade of
+distance.
 
-The factors are the slopes and measures of the inverse derivation, by which it divides or of which it takes roots. Here they are
-functions of axis values whose zeros Newton's method finds. They do not decide whether an answer is right.
+The factors are the slopes and measures of the inverse derivation, by which it divides or of which it takes roots. Here
+they are functions of axis values whose zeros Newton's method finds. They do not decide whether an answer is right.
 """
 
 from __future__ import annotations
@@ -51,12 +52,15 @@ LONGEST = 0.4
 CONTROLLED = 2e-3
 """A pose of a loop is refused where its type 2 margin is below 1e-3: such poses are no corners."""
 ENDS = 1e-6
-"""Quantities with a boundary keep this distance from it, per reach: the workspace ends there, which is no singularity."""
+"""Quantities with a boundary keep this distance from it, per reach: the workspace ends there, which is no
+singularity."""
 
 
 @dataclass(frozen=True)
 class Corner:
-    """Axis values at which some factors vanish, and the motions of the axes by which each of them leaves zero at unit rate."""
+    """Axis values at which some factors vanish, and the motions of the axes by which each of them leaves zero at unit
+    rate.
+    """
 
     names: tuple[str, ...]
     axes: Array
@@ -66,7 +70,9 @@ class Corner:
 
     def beside(self, distances: Array) -> Array:
         """The axis values where every factor is at one of the distances (factors,) or (n, factors)."""
-        return self.axes + np.einsum("njf,nf->nj", self.ways, np.broadcast_to(distances, (len(self.axes), len(self.names))))
+        return self.axes + np.einsum(
+            "njf,nf->nj", self.ways, np.broadcast_to(distances, (len(self.axes), len(self.names)))
+        )
 
 
 @cache
@@ -84,7 +90,9 @@ def _compiled(mechanism: Mechanism) -> tuple[tuple[str, tuple[str, ...], Callabl
     """Every statement of the program: the name that it binds, the names that it reads, and its value in NumPy."""
     primitives = {"Root": lambda x: np.sqrt(np.maximum(x, 0.0)), "Select": np.where, "Atan2": np.arctan2}
     program = factor_program(mechanism)
-    values = [(let.name.name, let.value) for let in program.lets()] + [(f"factor {o.name}", o.value) for o in program.outputs]
+    values = [(let.name.name, let.value) for let in program.lets()] + [
+        (f"factor {o.name}", o.value) for o in program.outputs
+    ]
     found = []
     for name, value in values:
         read = sorted(value.free_symbols, key=lambda s: s.name)
@@ -183,7 +191,9 @@ def can_be_at(machine: Machine, axes: Array) -> Array:
     possible &= (machine.closure.positive(joints) >= 0.0).all(axis=1)
     if machine.mechanism.rods:
         name = machine.mechanism.assembly.margin
-        margins = [machine.robot.singularity(row).margins[name] if ok else 0.0 for row, ok in zip(axes, possible, strict=True)]
+        margins = [
+            machine.robot.singularity(row).margins[name] if ok else 0.0 for row, ok in zip(axes, possible, strict=True)
+        ]
         possible &= np.abs(margins) > CONTROLLED
         positions = machine.robot.forward_batch(axes)[0]
         possible &= machine.closure.room(joints, positions) > ENDS

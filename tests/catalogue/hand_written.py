@@ -95,8 +95,16 @@ def _three_parallel(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     along = p["a2"] * c2 + p["a3"] * c23 + p["d5"] * s - p["d6"] * s5 * c
     z = p["d1"] + p["a2"] * s2 + p["a3"] * s23 - p["d5"] * c - p["d6"] * s5 * s
     rotation = (
-        (c6 * (s1 * s5 + c1 * c5 * c) - c1 * s6 * s, -s6 * (s1 * s5 + c1 * c5 * c) - c1 * c6 * s, c5 * s1 - c1 * s5 * c),
-        (c6 * (s1 * c5 * c - c1 * s5) - s1 * s6 * s, s6 * (c1 * s5 - s1 * c5 * c) - s1 * c6 * s, -c1 * c5 - s1 * s5 * c),
+        (
+            c6 * (s1 * s5 + c1 * c5 * c) - c1 * s6 * s,
+            -s6 * (s1 * s5 + c1 * c5 * c) - c1 * c6 * s,
+            c5 * s1 - c1 * s5 * c,
+        ),
+        (
+            c6 * (s1 * c5 * c - c1 * s5) - s1 * s6 * s,
+            s6 * (c1 * s5 - s1 * c5 * c) - s1 * c6 * s,
+            -c1 * c5 - s1 * s5 * c,
+        ),
         (c5 * c6 * s + s6 * c, c6 * c - c5 * s6 * s, -s5 * s),
     )
     return along * c1 - across * s1, along * s1 + across * c1, z, rotation
@@ -110,7 +118,13 @@ def _arm(p: Mapping[str, float], q: Sequence[Array]) -> tuple[Array, Array]:
     lean, tilt = q[1], q[1] + q[2]
     out, high = -np.sin(tilt) * radial + np.cos(tilt) * up, np.cos(tilt) * radial + np.sin(tilt) * up
     shoulder = p["a1"] * radial + p["d1"] * up
-    wrist = shoulder + p["a2"] * (np.cos(lean) * up - np.sin(lean) * radial) + p["d3"] * sideways + p["a3"] * out + p["d4"] * high
+    wrist = (
+        shoulder
+        + p["a2"] * (np.cos(lean) * up - np.sin(lean) * radial)
+        + p["d3"] * sideways
+        + p["a3"] * out
+        + p["d4"] * high
+    )
     return wrist, np.array([out, sideways, high])
 
 

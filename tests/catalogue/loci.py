@@ -85,7 +85,9 @@ class Locus:
         return angle - self._value(there) / (across * np.cos(angle) - along * np.sin(angle))
 
     def _arc(self, joints: Array) -> tuple[Array, Array]:
-        """The middle of the arc on which the quantity is positive, and half its width; within reason, where it never vanishes."""
+        """The middle of the arc on which the quantity is positive, and half its width; within reason, where it never
+        vanishes.
+        """
         level, along, across = self._harmonic(joints)
         return np.arctan2(across, along), np.arccos(np.clip(-level / np.hypot(along, across), -OFTEN, OFTEN))
 
@@ -107,7 +109,9 @@ class Locus:
 
 
 def loci(machine: Machine) -> list[Locus]:
-    """Every place where some quantity of the description vanishes; no two branches' by the same joint, where that can be."""
+    """Every place where some quantity of the description vanishes; no two branches' by the same joint, where that can
+    be.
+    """
     quantities: list[tuple[int | None, sp.Expr]] = [(i, b.indicator) for i, b in enumerate(machine.mechanism.branches)]
     quantities += [(None, sp.sympify(p)) for p in machine.mechanism.positive]
     chosen: dict[int, Locus] = {}

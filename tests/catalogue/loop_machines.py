@@ -29,7 +29,9 @@ PASSES = 20
 
 
 class LoopClosure(Closure):
-    """The closure of a closed loop. The indicator of the assembly alone decides which solution belongs to this machine."""
+    """The closure of a closed loop. The indicator of the assembly alone decides which solution
+    belongs to this machine.
+    """
 
     def __init__(self, mechanism: Mechanism, parameters: Mapping[str, float], reach: float) -> None:
         super().__init__(mechanism, parameters)
@@ -42,7 +44,9 @@ class LoopClosure(Closure):
         self._equations = [*mechanism.closure, *(r.equation / r.length for r in mechanism.rods)]
 
     def poses(self, axes: Array) -> tuple[Array, Array]:
-        """Position and rotation at axis values; not a number where nothing, or nothing on this machine's side, closes."""
+        """Position and rotation at axis values; not a number where nothing, or nothing on this
+        machine's side, closes.
+        """
         joints = self.joints(axes)
         found = np.full((len(axes), 3), np.nan)
         wanted = (self.positive(joints) > 0).all(axis=1)
@@ -108,7 +112,9 @@ class LoopMachine(Machine):
     closure: LoopClosure
 
     def draw(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
-        """Random axis values of regular poses, over several turns where an axis has them and `farthest` (degrees) allows."""
+        """Random axis values of regular poses, over several turns where an axis has them and `farthest` (degrees)
+        allows.
+        """
         turning = np.array([j.multi_turn for j in self.mechanism.joints])
         pool = self.pool[np.abs(self.pool[:, turning]).max(axis=1, initial=0.0) < farthest]
         chosen = pool[rng.integers(len(pool), size=count)]
@@ -169,10 +175,14 @@ def loop_machines_of(mechanism: Mechanism) -> tuple[LoopMachine, ...]:
     assert mechanism.assembly is not None
     rng = np.random.default_rng(23)
     modes = [{mechanism.assembly.parameter: mode} for mode in (False, True)]
-    found = [loop_machine(mechanism, f"nominal{' other' * k}", _nominal(mechanism) | mode) for k, mode in enumerate(modes)]
+    found = [
+        loop_machine(mechanism, f"nominal{' other' * k}", _nominal(mechanism) | mode) for k, mode in enumerate(modes)
+    ]
     while len(found) < 4:
         try:
-            found.append(loop_machine(mechanism, f"random {len(found) - 1}", _unequal(mechanism, rng) | modes[len(found) - 2]))
+            found.append(
+                loop_machine(mechanism, f"random {len(found) - 1}", _unequal(mechanism, rng) | modes[len(found) - 2])
+            )
         except softkin.KinematicsError as refused:
             assert refused.status is softkin.Status.NOT_INITIALIZED  # noqa: PT017 - dimensions that form no machine
     return tuple(found)

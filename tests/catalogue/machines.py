@@ -17,7 +17,8 @@ from tests.catalogue.closure import Array, Closure
 from tests.mechanisms import catalogue
 
 MECHANISMS = tuple(m for _, m in catalogue() if not m.rods and not m.is_orientation and m.search is None)
-"""The serial mechanisms: machines of closed loops are in `loop_machines.py`, those of a platform in `hexapod`, orientation
+"""The serial mechanisms: machines of closed loops are in `loop_machines.py`, those of a platform in `hexapod`,
+orientation
 kinematics in `coupling`."""
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths."""
@@ -26,7 +27,8 @@ TURNS = 1000.0
 CLIMBING_TURNS = 720.0
 """The range of an axis with a pitch, which is limited."""
 REGULAR = 0.05
-"""Branch indicators (those that are lengths: per their largest) and positive quantities (per reach) are at least this."""
+"""Branch indicators (those that are lengths: per their largest) and positive quantities (per reach) are at least
+this."""
 UNEQUAL = (320.0, 80.0, 20.0)
 LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH)
 """What must be given; a distance need not be."""
@@ -44,7 +46,9 @@ class Machine:
     reach: float
 
     def draw(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
-        """Random axis values of regular poses, over several turns where an axis has them and `farthest` (degrees) allows."""
+        """Random axis values of regular poses, over several turns where an axis has them and `farthest` (degrees)
+        allows.
+        """
         chosen: list[Array] = []
         while sum(map(len, chosen)) < count:
             axes = self._any(4 * count, rng, farthest)
@@ -74,12 +78,15 @@ class Machine:
 
     @property
     def has_a_reach(self) -> bool:
-        """Whether some positions are out of reach: not where slides move every coordinate, or where there are no branches."""
+        """Whether some positions are out of reach: not where slides move every coordinate, or where there are no
+        branches.
+        """
         return self.robot.BRANCHES > 0 and int((~self.closure.angles).sum()) < len(self.closure.task)
 
     @property
     def branches_meet_together(self) -> bool:
-        """Whether every branch answers where one does: two roots of one equation do, several equations each have a reach.
+        """Whether every branch answers where one does: two roots of one equation do, several equations each have a
+        reach.
 
         Some working modes of a loop are on its other side.
         """

@@ -88,7 +88,10 @@ def _read(expression: sp.Basic) -> tuple[object, ...]:
     if isinstance(expression, sp.Rational):
         return (_NUMBER, Number(int(expression.p)) / int(expression.q))
     if isinstance(expression, sp.Number):
-        return (_NUMBER, Number(float(expression)))  # a constant of the product is the double that stands in every language
+        return (
+            _NUMBER,
+            Number(float(expression)),
+        )  # a constant of the product is the double that stands in every language
     return (_FUNCTIONS[type(expression)], *(_code(a) for a in expression.args))
 
 

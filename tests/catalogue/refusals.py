@@ -9,7 +9,9 @@ from softkin import KinematicsError, Status
 
 
 def refusal(call: Callable[..., object], *arguments: object) -> Status:
-    """The status that a call is refused with; its message is one line, and where it is about values it names the mechanism."""
+    """The status that a call is refused with; its message is one line, and where it is about values it names the
+    mechanism.
+    """
     with pytest.raises(KinematicsError) as error:
         call(*arguments)
     message = str(error.value)

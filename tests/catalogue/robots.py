@@ -12,5 +12,7 @@ PUMA_560 = {"d1": 660.4, "a2": 431.8, "d3": -149.09, "a3": 20.32, "d4": 433.07, 
 ROBOTS: dict[str, dict[str, dict[str, float]]] = {
     "Kin_Ac6_ThreeParallel": {"UR5": UR5},
     "Kin_ArticulatedRobot_6DOF": {"KR6 R900": KR6_R900, "PUMA 560": PUMA_560},
-    "Kin_Pos_RRR": {name: {k: v for k, v in r.items() if k != "d6"} for name, r in (("KR6", KR6_R900), ("PUMA", PUMA_560))},
+    "Kin_Pos_RRR": {
+        name: {k: v for k, v in r.items() if k != "d6"} for name, r in (("KR6", KR6_R900), ("PUMA", PUMA_560))
+    },
 }

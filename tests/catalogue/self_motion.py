@@ -1,4 +1,5 @@
-"""What a singular pose allows: a self-motion under which nothing of the pose changes, or a fold where the workspace ends."""
+"""What a singular pose allows: a self-motion under which nothing of the pose changes, or a fold where the workspace
+ends."""
 
 from __future__ import annotations
 
@@ -29,7 +30,9 @@ def null_vectors(machine: Machine, axes: Array) -> tuple[Array, Array]:
 
 
 def is_free(machine: Machine, axes: Array) -> Array:
-    """Which rows of singular axis values have another posture rather far away, along the motion that changes nothing."""
+    """Which rows of singular axis values have another posture rather far away, along the motion
+    that changes nothing.
+    """
     motion, _ = null_vectors(machine, axes)
     joints, frames = machine.closure.joints(axes), machine.closure.poses(axes)
     found = np.zeros(len(axes), dtype=bool)
@@ -52,7 +55,9 @@ def inward(machine: Machine, axes: Array) -> tuple[Array, Array]:
     for way in (size, -size):  # what is of first order cancels
         there, turned = machine.closure.frames(joints + way)
         spin = np.einsum("nij,nkj->nik", turned, rotations)
-        turns = np.stack([spin[:, 2, 1] - spin[:, 1, 2], spin[:, 0, 2] - spin[:, 2, 0], spin[:, 1, 0] - spin[:, 0, 1]], axis=1)
+        turns = np.stack(
+            [spin[:, 2, 1] - spin[:, 1, 2], spin[:, 0, 2] - spin[:, 2, 0], spin[:, 1, 0] - spin[:, 0, 1]], axis=1
+        )
         bent += np.hstack([(there - positions)[:, machine.closure.task] / machine.reach, turns / 2])[:, : bent.shape[1]]
     side = np.sign(np.sum(bent * twist, axis=1, keepdims=True))
     assert (side != 0).all()
@@ -64,7 +69,9 @@ def inward(machine: Machine, axes: Array) -> tuple[Array, Array]:
     return shifts, turns
 
 
-def twisted(machine: Machine, frames: tuple[Array, Array], shifts: Array, turns: Array, size: float) -> tuple[Array, Array]:
+def twisted(
+    machine: Machine, frames: tuple[Array, Array], shifts: Array, turns: Array, size: float
+) -> tuple[Array, Array]:
     """Poses moved by some size of a twist."""
     angles = size * np.linalg.norm(turns, axis=1)
     k = turns / np.maximum(np.linalg.norm(turns, axis=1, keepdims=True), 1e-300)

@@ -22,7 +22,9 @@ def tie_of(machine: Machine) -> float:
     """What squared distances tie within."""
     if machine.closure.angles.any():
         return SQUARE_DEGREES
-    lengths = [p for p in machine.mechanism.parameters if p.role in LENGTHS or (p.role is Role.DISTANCE and p.low >= 0.0)]
+    lengths = [
+        p for p in machine.mechanism.parameters if p.role in LENGTHS or (p.role is Role.DISTANCE and p.low >= 0.0)
+    ]
     return (SHARE * sum(abs(machine.robot.parameters[p.name]) for p in lengths)) ** 2
 
 
@@ -62,10 +64,14 @@ def test_an_open_branch_is_the_nearest(machines: tuple[Machine, ...]) -> None:
             configuration = (byte,) * robot.BRANCHES + (0,) * len(robot.PERIOD_AXES)
             found, statuses = robot.inverse_batch(*frames, configuration, references)
             assert (statuses == Status.OK).all()
-            assert np.abs(found - nearest).max() < 1e-11  # but for rounding: what branches share is computed once for all
+            assert (
+                np.abs(found - nearest).max() < 1e-11
+            )  # but for rounding: what branches share is computed once for all
             for row in range(40):
                 frame = frames[0][row], frames[1][row]
-                assert np.abs(np.subtract(robot.inverse(frame, configuration, references[row]), found[row])).max() < 1e-10
+                assert (
+                    np.abs(np.subtract(robot.inverse(frame, configuration, references[row]), found[row])).max() < 1e-10
+                )
         nearest_slots = set(distances.argmin(axis=0))
         if machine.mechanism.rods:  # some working modes of a loop are rare on its side
             assert len(nearest_slots) >= len(answers) / 2
@@ -86,7 +92,9 @@ def test_a_tie_goes_to_the_lowest_slot(machines: tuple[Machine, ...]) -> None:
             width = np.sqrt(squared(machine, first, second))
             towards = (second - first) / width[:, None]
             at_middle = by_slot(machine, frames, np.nan_to_num(middle))
-            same = (np.abs(at_middle[low] - first).max(axis=1) < 1e-9) & (np.abs(at_middle[high] - second).max(axis=1) < 1e-9)
+            same = (np.abs(at_middle[low] - first).max(axis=1) < 1e-9) & (
+                np.abs(at_middle[high] - second).max(axis=1) < 1e-9
+            )
             away = np.nan_to_num([squared(machine, a, middle) for a in at_middle], nan=np.inf)
             same &= (away >= away[low] - tie / 10).all(axis=0) & ((away < away[low] + 10 * tie).sum(axis=0) == 2)
             seen |= same

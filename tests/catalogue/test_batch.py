@@ -25,7 +25,9 @@ def mixed(machine: Machine, rng: Generator) -> tuple[Array, Array, Array, Array]
     robot = machine.robot
     branches = rng.integers(0, 4, (ROWS, robot.BRANCHES))
     branches[::11] = 4
-    periods = np.where(rng.random((ROWS, len(robot.PERIOD_AXES))) < 0.5, 0, rng.integers(-2, 4, (ROWS, len(robot.PERIOD_AXES))))
+    periods = np.where(
+        rng.random((ROWS, len(robot.PERIOD_AXES))) < 0.5, 0, rng.integers(-2, 4, (ROWS, len(robot.PERIOD_AXES)))
+    )
     references = rng.uniform(-500, 500, axes.shape)
     references[::19, 0] = np.inf
     return positions, rotations, np.hstack([branches, periods]), references
@@ -125,8 +127,21 @@ def wrong_calls(robot: softkin.Mechanism) -> list[tuple[object, ...]]:
     wrong_positions: list[object] = [np.zeros(3), np.zeros((5, 2)), np.zeros((5, 4)), "abc", None]
     wrong_positions += [[[1, 2, 3], [1, 2]], [["a"] * 3] * 5]
     wrong_rotations: list[object] = [np.zeros((4, 3, 3)), np.zeros((5, 9)), np.zeros((5, 3, 2)), "abc", [["a"] * 3] * 3]
-    wrong_configurations = [np.zeros((4, size), int), np.zeros((5, size + 1), int), [0] * (size + 1), "abc", [[None] * size] * 5]
-    wrong_references = [np.zeros((4, width)), np.zeros((5, width + 1)), np.zeros(width + 1), 5.0, "abc", [["a"] * width] * 5]
+    wrong_configurations = [
+        np.zeros((4, size), int),
+        np.zeros((5, size + 1), int),
+        [0] * (size + 1),
+        "abc",
+        [[None] * size] * 5,
+    ]
+    wrong_references = [
+        np.zeros((4, width)),
+        np.zeros((5, width + 1)),
+        np.zeros(width + 1),
+        5.0,
+        "abc",
+        [["a"] * width] * 5,
+    ]
     calls: list[tuple[object, ...]] = [(wrong, rotations) for wrong in wrong_positions]
     if robot.READS_ROTATION:
         calls += [(positions, wrong) for wrong in wrong_rotations]

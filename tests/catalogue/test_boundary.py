@@ -79,7 +79,10 @@ def test_reach_and_hole(machines: tuple[Machine, ...]) -> None:
                     found, statuses = inverse(machine.robot, *frames, configuration)
                     for square, status in zip(squares, statuses, strict=True):
                         if abs(square + BOUNDARY) > BOUNDARY / 10:
-                            assert status == (Status.OK if square > -BOUNDARY else Status.UNREACHABLE), (relative, float(square))
+                            assert status == (Status.OK if square > -BOUNDARY else Status.UNREACHABLE), (
+                                relative,
+                                float(square),
+                            )
                             outcomes.add((np.sign(relative), int(status)))
                     answered = statuses == Status.OK
                     inside = tuple(f[answered] for f in frames)

@@ -1,7 +1,8 @@
 """Robots in space where several singularities coincide, exactly and nearly: every pose is answered, no branch is lost.
 
 The wrist centre on axis 1, the elbow stretched and folded, the wrist straight, each alone and all together, and every
-pose of a grid of right angles: with dimensions of arms that are sold, and with links that make all of it possible at once.
+pose of a grid of right angles: with dimensions of arms that are sold, and with links that make all of it possible at
+once.
 """
 
 from __future__ import annotations

@@ -30,7 +30,9 @@ def test_scalar_and_batch_agree(machines: tuple[Machine, ...]) -> None:
         positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
         for row, values in enumerate(axes):
             frame, configuration = machine.robot.forward(values)
-            assert np.allclose(frame.position, positions[row], rtol=0, atol=1e-14 * (machine.reach + np.abs(values).max()))
+            assert np.allclose(
+                frame.position, positions[row], rtol=0, atol=1e-14 * (machine.reach + np.abs(values).max())
+            )
             assert np.allclose(frame.rotation, rotations[row], rtol=0, atol=1e-14)
             assert configuration == tuple(configurations[row])
             assert machine.robot.orientation(values) == frame.rotation

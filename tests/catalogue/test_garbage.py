@@ -14,7 +14,17 @@ from tests.catalogue.refusals import refusal
 
 NUMBERS = (nan, inf, -inf, 1e300, -1e300, 1.1e9)
 """Not finite, or beyond what is allowed."""
-NO_NUMBERS: tuple[object, ...] = ("12345678", None, 5, 5.0, [None] * 4, ["1", "2", "3", "4"], [[1.0], [2.0]], {"a": 1}, 1j)
+NO_NUMBERS: tuple[object, ...] = (
+    "12345678",
+    None,
+    5,
+    5.0,
+    [None] * 4,
+    ["1", "2", "3", "4"],
+    [[1.0], [2.0]],
+    {"a": 1},
+    1j,
+)
 IDENTITY = np.eye(3)
 NO_ROTATIONS = {
     "scaled": 1.001 * IDENTITY,

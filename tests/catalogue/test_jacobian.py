@@ -64,7 +64,9 @@ def test_it_is_the_derivative_of_the_closure(machines: tuple[Machine, ...]) -> N
 
 
 def test_it_is_the_difference_of_forward(machines: tuple[Machine, ...]) -> None:
-    """Central differences of the package's own forward kinematics, position rows: the same motion, in the same units."""
+    """Central differences of the package's own forward kinematics, position rows: the same motion,
+    in the same units.
+    """
     step = 1e-4
     for machine in machines:
         axes = machine.draw(20, np.random.default_rng(2))

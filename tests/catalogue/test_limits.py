@@ -101,7 +101,9 @@ def test_quantities_that_no_axis_sees_have_limits(mechanism: Mechanism, machines
 def test_forward_does_not_test_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     for machine in fitting(machines):
         axes = machine.draw(20, np.random.default_rng(3))
-        limits = {f"{word}_{j.key}": value for j in mechanism.joints for word, value in (("lower", 1.0), ("upper", 2.0))}
+        limits = {
+            f"{word}_{j.key}": value for j in mechanism.joints for word, value in (("lower", 1.0), ("upper", 2.0))
+        }
         found = machine.changed(**limits).forward_batch(axes)
         for narrow, wide in zip(found, machine.robot.forward_batch(axes), strict=True):
             assert (narrow == wide).all()
@@ -129,7 +131,11 @@ def test_a_range_of_less_than_a_turn_takes_its_value_inside(machines: tuple[Mach
         positions, rotations = machine.closure.poses(axes[None])
         for i in turning:
             key = machine.mechanism.joints[i].key
-            for low, high in ((axes[i] - 10, axes[i] + 100), (axes[i] - 175, axes[i] + 175), (axes[i] - 100, axes[i] + 250)):
+            for low, high in (
+                (axes[i] - 10, axes[i] + 100),
+                (axes[i] - 175, axes[i] + 175),
+                (axes[i] - 100, axes[i] + 250),
+            ):
                 robot = machine.changed(**{f"lower_{key}": low, f"upper_{key}": high})
                 for turns in (-2, 0, 1):
                     near = axes.copy()

@@ -131,7 +131,9 @@ def test_zero_offset_is_the_inverse(machines: tuple[Machine, ...]) -> None:
 
 
 def test_an_effective_link_that_is_too_short_cannot_be_aimed(machines: tuple[Machine, ...]) -> None:
-    """The point on the axis of the last joint that moves: nothing turns it, unless it is more than 1e-9 of a link away."""
+    """The point on the axis of the last joint that moves: nothing turns it, unless it is more than
+    1e-9 of a link away.
+    """
     for machine in offered(machines):
         if machine.robot.BRANCHES == 0 or machine.mechanism.chain is None:
             continue

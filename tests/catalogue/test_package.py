@@ -35,11 +35,16 @@ print(seconds)
 
 
 def test_import_is_cheap_and_needs_no_numpy() -> None:
-    """Scalar calls run on the standard library; NumPy comes with the first batch. The best of three, on a shared machine."""
+    """Scalar calls run on the standard library; NumPy comes with the first batch. The best of three, on a shared
+    machine."""
     seconds = []
     for _ in range(3):
         done = subprocess.run(
-            [sys.executable, "-c", IMPORT], env={"PYTHONPATH": str(PACKAGE)}, capture_output=True, text=True, check=False
+            [sys.executable, "-c", IMPORT],
+            env={"PYTHONPATH": str(PACKAGE)},
+            capture_output=True,
+            text=True,
+            check=False,
         )
         assert done.returncode == 0, done.stderr
         seconds.append(float(done.stdout))
@@ -87,7 +92,9 @@ def test_the_example_of_the_documentation() -> None:
 def test_axes_are_those_of_the_description(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     robot = machines[0].robot
     assert mechanism.name == robot.NAME
-    described = [(j.name, j.kind.value, "deg" if j.kind is not Kind.LINEAR else "u", j.multi_turn) for j in mechanism.joints]
+    described = [
+        (j.name, j.kind.value, "deg" if j.kind is not Kind.LINEAR else "u", j.multi_turn) for j in mechanism.joints
+    ]
     assert [(a.name, a.kind, a.unit, a.multi_turn) for a in robot.AXES] == described
     assert all(a.meaning for a in robot.AXES)
 
@@ -120,5 +127,7 @@ def test_every_public_thing_is_documented(machines: tuple[Machine, ...]) -> None
     robot_class = type(machines[0].robot)
     public = [n for n in dir(robot_class) if not n.startswith("_")]
     methods = [getattr(robot_class, n) for n in public if callable(getattr(robot_class, n))]
-    assert {"forward", "inverse", "inverse_all", "jacobian", "singularity", "forward_batch", "inverse_batch"} <= set(public)
+    assert {"forward", "inverse", "inverse_all", "jacobian", "singularity", "forward_batch", "inverse_batch"} <= set(
+        public
+    )
     assert all(m.__doc__ for m in (robot_class, *methods))

@@ -122,8 +122,22 @@ def test_what_is_beyond_rounding_is_refused(beyond: float) -> None:
 def test_where_every_first_axis_gives_the_same_wrist_it_stays() -> None:
     """Two links and nothing else, the wrist on axis 1: what the later angle asks of A1 vanishes."""
     robot = softkin.Ac6ThreeParallel(a2=-0.425, a3=-0.39225)
-    axes = (-64.96055854774626, 90.0, -8.103500366233181e-25, -151.87194789911305, 179.99999999999997, 68.04331838698822)
-    reference = (-156.53950058712866, -24.24029420008918, 89.1797330998652, -165.0526600834, -69.0371358284223, 61.031977805744)
+    axes = (
+        -64.96055854774626,
+        90.0,
+        -8.103500366233181e-25,
+        -151.87194789911305,
+        179.99999999999997,
+        68.04331838698822,
+    )
+    reference = (
+        -156.53950058712866,
+        -24.24029420008918,
+        89.1797330998652,
+        -165.0526600834,
+        -69.0371358284223,
+        61.031977805744,
+    )
     frame, _ = robot.forward(axes)
     for slot in robot.inverse_all(frame, reference):
         assert slot.axes is not None
@@ -134,7 +148,9 @@ def test_where_every_first_axis_gives_the_same_wrist_it_stays() -> None:
 
 @pytest.mark.parametrize("reference", [0.0, 33.0, -120.0, 179.0])
 def test_the_first_axis_is_found_that_reaches(reference: float) -> None:
-    """Nothing shifts the arm, and the wrist is on axis 1: A1 is free, but with most of its values the elbow is too short."""
+    """Nothing shifts the arm, and the wrist is on axis 1: A1 is free, but with most of its values the elbow is too
+    short.
+    """
     robot = softkin.Ac6ThreeParallel(**{**UR5, "d4": 0.0})
     rng = np.random.default_rng(9)
     refused_elsewhere = 0

@@ -101,7 +101,9 @@ def test_through_a_limit(mechanism: Mechanism, machines: tuple[Machine, ...], wi
 
 
 def test_a_range_of_exactly_one_turn(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """Limits of ±180 leave no gap: the path is refused where it leaves them, until its other end is nearer to the last answer."""
+    """Limits of ±180 leave no gap: the path is refused where it leaves them, until its other end is nearer to the last
+    answer.
+    """
     machine = chosen(machines, "nominal")
     for i, joint in enumerate(mechanism.joints):
         if not joint.multi_turn or joint.coupling != 0:

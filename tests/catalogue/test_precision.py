@@ -1,7 +1,7 @@
 """Machines with lengths a million times apart, against the same formulas with sixty digits and against the closure.
 
-The error of an answer may be a small multiple of the change that the last digits of parameters and positions cause. A formula
-that squares lengths and then subtracts loses the square of their ratio, a thousand times as much and more.
+The error of an answer may be a small multiple of the change that the last digits of parameters and positions cause. A
+formula that squares lengths and then subtracts loses the square of their ratio, a thousand times as much and more.
 """
 
 from __future__ import annotations
@@ -26,7 +26,9 @@ from tests.text.controller import OK, Controller
 from tests.text.units import compiled
 
 NAMES = ("MC_KIN_TYPE_12_XY", "Kin_Tripod_Rotary", "Kin_ArticulatedRobot_6DOF", "Kin_P2X_Type1", "Kin_P2C_Type1")
-OTHERS = tuple(m.name for _, m in catalogue() if m.joints and not m.is_platform and m.search is None and m.name not in NAMES)
+OTHERS = tuple(
+    m.name for _, m in catalogue() if m.joints and not m.is_platform and m.search is None and m.name not in NAMES
+)
 EXECUTED = ("MC_KIN_TYPE_12_XY", "Kin_Tripod_Rotary")
 """Mechanisms whose Structured Text is asked, too."""
 DECADES = 3.0
@@ -38,7 +40,8 @@ ATTEMPTS, FEWEST = 1000, 5
 REGULAR = 0.01
 """The least margin."""
 ALLOWED = 40.0
-"""How many times what half a unit in the last place of the inputs does. Before: type 12 200 000, the robot 10 000, and of the
+"""How many times what half a unit in the last place of the inputs does. Before: type 12 200 000, the robot 10 000, and
+of the
 rotary delta 1 500 000 near its origin, where short arms turn long rods."""
 DIGIT = 2.0**-53
 Numbers = Mapping[str, Number]
@@ -87,7 +90,10 @@ class Exact:
         """The outputs of a program, and how far each moves; None where it refuses one of them."""
         program = getattr(self.kinematics, name)
         runs = [run_exactly(program, {**self.machine, **inputs, **exactly})]
-        runs += [run_exactly(program, {**m, **{n: self.jittered(v) for n, v in inputs.items()}, **exactly}) for m in self.others]
+        runs += [
+            run_exactly(program, {**m, **{n: self.jittered(v) for n, v in inputs.items()}, **exactly})
+            for m in self.others
+        ]
         if any(status is not Status.OK for _, status in runs):
             return None
         truth = runs[0][0]
@@ -118,7 +124,9 @@ def _check(name: str) -> None:
             continue
         exact, axes, position, moved = found
         least = min((abs(m) for m in robot.singularity(axes).margins.values()), default=1.0)
-        _close_to(robot.forward(axes)[0].position, position, [m / min(least, 1.0) for m in moved])  # rods in nearly one direction
+        _close_to(
+            robot.forward(axes)[0].position, position, [m / min(least, 1.0) for m in moved]
+        )  # rods in nearly one direction
         tried += _inverse(exact, robot, axes, controller)
     assert tried >= FEWEST
 
@@ -127,9 +135,7 @@ def _unchecked(mechanism: Mechanism) -> dict[str, float]:
     return {"check_limits": False} | ({"min_type2_margin": 0.0} if mechanism.assembly else {})
 
 
-def _pose(
-    exact: Exact, robot: softkin.Mechanism
-) -> tuple[Exact, list[float], list[Number], list[float]] | None:
+def _pose(exact: Exact, robot: softkin.Mechanism) -> tuple[Exact, list[float], list[Number], list[float]] | None:
     """Regular axis values, of every second machine near its origin; its position, and how far that moves."""
     scale = float(exact.machine["machine_scale"])
     near = 10.0 ** exact.rng.uniform(-6.0, 0.0) if exact.rng.integers(2) else 1.0
@@ -167,7 +173,9 @@ def _inverse(exact: Exact, robot: softkin.Mechanism, axes: list[float], controll
     inputs |= {f"r{i + 1}{k + 1}": Number(v) for i, row in enumerate(frame.rotation) for k, v in enumerate(row)}
     exactly = {j.reference.name: Number(v) for j, v in zip(mechanism.joints, axes, strict=True)}
     exactly |= {j.turn.name: Number(0) for j in mechanism.joints}
-    exactly |= {f"sigma_{b.name}": Number(3 - 2 * byte) for b, byte in zip(mechanism.branches, configuration, strict=False)}
+    exactly |= {
+        f"sigma_{b.name}": Number(3 - 2 * byte) for b, byte in zip(mechanism.branches, configuration, strict=False)
+    }
     found = exact.at("branch", inputs, exactly)
     if found is None:
         return False
@@ -196,7 +204,10 @@ def _closes(exact: Exact, axes: list[Number], position: Numbers) -> None:
     }
     largest = max(exact.machine["machine_scale"], *map(abs, position.values()))
     for equation in mechanism.equations:
-        assert abs(evaluate_exactly(equation, {**exact.machine, **joints, **position})) < Number(10) ** (20 - DIGITS) * largest**2
+        assert (
+            abs(evaluate_exactly(equation, {**exact.machine, **joints, **position}))
+            < Number(10) ** (20 - DIGITS) * largest**2
+        )
 
 
 def _close_to(found: object, truth: list[Number], moved: list[float]) -> None:

@@ -78,7 +78,9 @@ def test_the_period_of_a4_moves_a3() -> None:
 
 
 def test_the_zero_pose_is_stretched_along_x() -> None:
-    frame, configuration = softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0, pitch_zc=20.0).forward((0,) * 4)
+    frame, configuration = softkin.Scara4ZCcoupledType1(
+        link_length_1=325.0, link_length_2=225.0, pitch_zc=20.0
+    ).forward((0,) * 4)
     assert frame == ((550.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
     assert configuration == (3, 1, 1, 1)
 
@@ -95,7 +97,9 @@ def test_h_bot_is_corexy(motors: tuple[float, float], linuxcnc: tuple[float, flo
 
 
 def test_directions_of_the_belt_gantries() -> None:
-    """CODESYS: the H-gantry's first drive pulls to +X and -Y, the T-gantry's to +X and -Y with the second to +X and +Y."""
+    """CODESYS: the H-gantry's first drive pulls to +X and -Y, the T-gantry's to +X and -Y with the
+    second to +X and +Y.
+    """
     assert softkin.HGantry2().forward((10.0, 4.0))[0].position == (3.0, -7.0, 0.0)
     assert softkin.HGantry3().forward((10.0, 4.0, 5.0))[0].position == (3.0, -7.0, 5.0)
     assert softkin.TGantry2().forward((10.0, 4.0))[0].position == (7.0, -3.0, 0.0)
@@ -112,7 +116,9 @@ def test_spherical_crane_by_hand() -> None:
 
 
 def test_belt_arm_with_motors_in_the_base() -> None:
-    """With coupling -1 the motors turn the links absolutely: motor 2 alone bends link 2, motor 1 shifts it in parallel."""
+    """With coupling -1 the motors turn the links absolutely: motor 2 alone bends link 2, motor 1
+    shifts it in parallel.
+    """
     robot = softkin.SCCC(link_length_1=300.0, link_length_2=250.0, coupling_12=-1.0, coupling_23=-1.0)
     frame, configuration = robot.forward((90.0, 30.0, -50.0))
     assert frame.position == pytest.approx((250 * cos(radians(30)), 300 + 250 * sin(radians(30)), 0.0), abs=1e-12)

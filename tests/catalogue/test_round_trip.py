@@ -76,7 +76,9 @@ def test_inverse_all_holds_every_branch_in_its_slot(machines: tuple[Machine, ...
         for values, position, rotation in zip(axes, *machine.closure.poses(axes), strict=True):
             found = robot.inverse_all((position, rotation), values)
             assert [s.configuration[: robot.BRANCHES] for s in found] == slots(machine)
-            answered = [s for s, ok in zip(found, machine.answers(np.array([s.status for s in found])), strict=True) if ok]
+            answered = [
+                s for s, ok in zip(found, machine.answers(np.array([s.status for s in found])), strict=True) if ok
+            ]
             for solution in answered:
                 assert solution.axes is not None
                 again = robot.inverse((position, rotation), solution.configuration, strangers(machine, values))

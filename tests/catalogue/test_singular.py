@@ -56,7 +56,11 @@ def test_a_singular_pose_is_an_answer(machines: tuple[Machine, ...], around: str
     for machine in machines:
         robot = machine.changed(check_limits=False)
         axes = machine.draw(12, np.random.default_rng(2))
-        references = {"axes": axes, "zero": 0 * axes, "anywhere": np.random.default_rng(3).uniform(-400, 400, axes.shape)}
+        references = {
+            "axes": axes,
+            "zero": 0 * axes,
+            "anywhere": np.random.default_rng(3).uniform(-400, 400, axes.shape),
+        }
         for locus in loci(machine):
             there = np.concatenate([locus.moved(axes, shift) for shift in shifts(locus)])
             near = np.tile(references[around], (len(shifts(locus)), 1))
@@ -69,7 +73,9 @@ def test_a_singular_pose_is_an_answer(machines: tuple[Machine, ...], around: str
                 assert machine.miss(found[answered], positions[answered], rotations[answered]).max(initial=0.0) < NEAR
                 rows = [i for i in range(0, len(there), len(axes) + 1) if answered[i]]
                 if rows:
-                    scalar = [robot.inverse((positions[i], rotations[i]), configuration[i].tolist(), near[i]) for i in rows]
+                    scalar = [
+                        robot.inverse((positions[i], rotations[i]), configuration[i].tolist(), near[i]) for i in rows
+                    ]
                     assert machine.miss(np.array(scalar), positions[rows], rotations[rows]).max() < NEAR
             assert all(answers[i].all() for i in (0, -2, -1))  # as reported, and the two that leave every branch open
 
@@ -110,7 +116,9 @@ def scaled_indicator(machine: Machine, locus: Locus, axes: Array) -> Array:
     return machine.closure.indicators(machine.closure.joints(axes))[:, locus.branch] / unit
 
 
-def test_garbage_is_singular_and_nothing_else_without_margins(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+def test_garbage_is_singular_and_nothing_else_without_margins(
+    mechanism: Mechanism, machines: tuple[Machine, ...]
+) -> None:
     robot = machines[1].robot
     for value in (float("nan"), float("inf"), 1e300):
         axes = [value] * len(mechanism.joints)
@@ -158,7 +166,9 @@ def test_a_free_axis_stays_at_the_reference(machines: tuple[Machine, ...]) -> No
 
 
 def test_the_reference_decides_where_something_is_free_in_space(machines: tuple[Machine, ...]) -> None:
-    """At a self-motion some axis stays at its reference, or as near to it as the rest can be reached; else nothing moves."""
+    """At a self-motion some axis stays at its reference, or as near to it as the rest can be reached; else nothing
+    moves.
+    """
     free = 0
     for machine in machines[:5:2]:
         if not machine.is_spatial or machine.robot.BRANCHES == 0:
@@ -182,7 +192,9 @@ def test_the_reference_decides_where_something_is_free_in_space(machines: tuple[
             apart = machine.closure.joints(found) - machine.closure.joints(there)
             turns = np.where(machine.closure.angles, 2 * np.pi * np.round(apart / (2 * np.pi)), 0.0)
             assert np.abs(apart - turns)[~moves][:, machine.closure.angles].max(initial=0.0) < 1e-5
-    expected = any(m.closure.follows_rotation or m.label == "plain" for m in machines if m.is_spatial and m.robot.BRANCHES)
+    expected = any(
+        m.closure.follows_rotation or m.label == "plain" for m in machines if m.is_spatial and m.robot.BRANCHES
+    )
     assert bool(free) == expected
 
 

@@ -40,7 +40,9 @@ def test_the_slots_are_the_roots_of_the_closure(machines: tuple[Machine, ...]) -
 
 
 def test_where_the_closure_has_no_root_no_slot_answers(machines: tuple[Machine, ...]) -> None:
-    """Positions from the middle of the machine to twice its reach: two branches of a serial one answer together, or none."""
+    """Positions from the middle of the machine to twice its reach: two branches of a serial one answer together, or
+    none.
+    """
     counts = set()
     for machine in machines[::2]:
         axes = machine.draw(3, np.random.default_rng(32))

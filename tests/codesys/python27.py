@@ -23,7 +23,9 @@ def beyond_python27(source: str) -> list[str]:
     """What Python 2.7 would refuse or read differently, with the line; nothing where the source is both."""
     tree = ast.parse(source)
     found = [_problem(node) for node in ast.walk(tree)]
-    found += [f"line {t.start[0]}: {t.string}" for t in _tokens(source) if t.type == tokenize.NUMBER and "_" in t.string]
+    found += [
+        f"line {t.start[0]}: {t.string}" for t in _tokens(source) if t.type == tokenize.NUMBER and "_" in t.string
+    ]
     if not source.isascii() and "coding" not in "".join(source.split("\n")[:2]):
         found.append("letters that are not ASCII, without a line that says the coding")
     if not _imports_print(tree):

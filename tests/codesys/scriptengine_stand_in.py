@@ -1,8 +1,8 @@
 """A stand-in for the ScriptEngine of CODESYS V3.5: the documented calls, with the documented refusals.
 
-Its compiler is the harness that executes Structured Text: *Check all Pool Objects* composes the objects of the project to
-texts and compiles them. Names are as in the reference of the ScriptEngine; what that does not say is chosen so that a
-script that relies on it fails: `create_folder` returns nothing, lists are copies, an unknown category is an error.
+Its compiler is the harness that executes Structured Text: *Check all Pool Objects* composes the objects of the project
+to texts and compiles them. Names are as in the reference of the ScriptEngine; what that does not say is chosen so that
+a script that relies on it fails: `create_folder` returns nothing, lists are copies, an unknown category is an error.
 """
 
 from __future__ import annotations

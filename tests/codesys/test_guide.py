@@ -1,4 +1,5 @@
-"""The guide and the overview: their code is code, their names exist, and what they say of tools is what the blocks say."""
+"""The guide and the overview: their code is code, their names exist, and what they say of tools is what the blocks
+say."""
 
 from __future__ import annotations
 
@@ -71,10 +72,16 @@ def test_the_limits_of_a_drive_are_handed_over() -> None:
 
 
 def test_the_demo_moves_a_group() -> None:
-    """Its program, executed on stand-ins that are always done: power, then the moves in order, the other elbow, then jogging."""
+    """Its program, executed on stand-ins that are always done: power, then the moves in order, the other elbow, then
+    jogging.
+    """
     (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Demo"))
     needed = {name: text for name, text in FILES.items() if name.startswith("softkin/") or "/Softkin_Scara2_Z." in name}
-    texts = {"robotics": ROBOTICS, "Groups": "VAR_GLOBAL\n  Scara : AXIS_GROUP_REF_SM3;\nEND_VAR\n", "PRG_Demo": program}
+    texts = {
+        "robotics": ROBOTICS,
+        "Groups": "VAR_GLOBAL\n  Scara : AXIS_GROUP_REF_SM3;\nEND_VAR\n",
+        "PRG_Demo": program,
+    }
     library = compile_st({**needed, **texts})
     demo, group = library.new("PRG_Demo"), library.constant("Scara")
     done: list[tuple[int, float, float, int]] = []
@@ -98,7 +105,9 @@ def test_the_demo_moves_a_group() -> None:
 
 
 def test_every_choice_it_names_exists() -> None:
-    declared = {line.split()[0] for part in BLOCKS.values() for line in part.declaration.split("\n") if line.startswith("  ")}
+    declared = {
+        line.split()[0] for part in BLOCKS.values() for line in part.declaration.split("\n") if line.startswith("  ")
+    }
     for name in ("xElbowRight", "xElbowAutomatic", "xElbowSingular", "xTcpAbove", "dOffsetA1"):
         assert name in declared, name
     contract = load()
@@ -116,7 +125,9 @@ def test_links_lead_somewhere(page: str) -> None:
         where = (path.parent / file).resolve() if file else path
         assert where.exists(), target
         if anchor:
-            assert anchor in {_anchor(h) for h in re.findall(r"^#+ (.*)$", where.read_text(encoding="utf-8"), re.MULTILINE)}
+            assert anchor in {
+                _anchor(h) for h in re.findall(r"^#+ (.*)$", where.read_text(encoding="utf-8"), re.MULTILINE)
+            }
 
 
 def _anchor(heading: str) -> str:
@@ -126,7 +137,9 @@ def _anchor(heading: str) -> str:
 def test_the_overview_lists_every_block() -> None:
     row = r"^\| \[`(\w+)`\]\((\S+)\.st\) \| \[picture\]\(pictures/\1\.png\) \| ([^|]+) \| ([^|]+) \|"
     rows = re.findall(row, OVERVIEW, re.MULTILINE)
-    assert {f"{path}.st" for _, path, _, _ in rows} == {name for name in FILES if not name.startswith(("softkin/", "selftest/"))}
+    assert {f"{path}.st" for _, path, _, _ in rows} == {
+        name for name in FILES if not name.startswith(("softkin/", "selftest/"))
+    }
     for block, path, axes, tools in rows:
         (part,) = (p for p in all_parts({path: FILES[f"{path}.st"]}).values() if p.path == block)
         named = f"'sm_kin_axes' := '{axes.replace(' ', ', ')}'"

@@ -67,7 +67,13 @@ def test_descriptions_find_their_pictures(imported: tuple[Project, str]) -> None
 
 
 def _panes(nodes: list[Node]) -> dict[tuple[str, str], tuple[str, str]]:
-    kinds = {"FunctionBlock": "FUNCTION_BLOCK", "Function": "FUNCTION", "Enumeration": "TYPE", "Get": "GET", "Program": "PROGRAM"}
+    kinds = {
+        "FunctionBlock": "FUNCTION_BLOCK",
+        "Function": "FUNCTION",
+        "Enumeration": "TYPE",
+        "Get": "GET",
+        "Program": "PROGRAM",
+    }
     found = {}
     for node in nodes:
         if isinstance(node, Dut):
@@ -84,7 +90,9 @@ def _panes(nodes: list[Node]) -> dict[tuple[str, str], tuple[str, str]]:
 
 def test_references_are_placeholders_for_the_newest_library(imported: tuple[Project, str]) -> None:
     (manager,) = (one for one in imported[0].get_children() if isinstance(one, LibraryManager))
-    assert {t: (one.title, one.version) for t, one in manager.placeholders.items()} == {t: (t, (4, 20, 0, 0)) for t in TITLES}
+    assert {t: (one.title, one.version) for t, one in manager.placeholders.items()} == {
+        t: (t, (4, 20, 0, 0)) for t in TITLES
+    }
 
 
 def test_folders_by_family(imported: tuple[Project, str]) -> None:
@@ -103,7 +111,9 @@ def _copy(tmp_path: Path, old: str = "", new: str = "") -> Path:
     (tmp_path / "scara").mkdir()
     text = FILES["scara/Softkin_Scara2_Z.st"]
     assert old in text
-    (tmp_path / "scara" / "Softkin_Scara2_Z.st").write_text(text.replace(old, new, 1) if old else text, encoding="utf-8")
+    (tmp_path / "scara" / "Softkin_Scara2_Z.st").write_text(
+        text.replace(old, new, 1) if old else text, encoding="utf-8"
+    )
     return tmp_path / SCRIPT.name
 
 

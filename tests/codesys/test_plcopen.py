@@ -58,7 +58,9 @@ def test_the_schema_sees_what_is_wrong() -> None:
 
 
 def test_everything_reads_back_to_the_text_of_the_files() -> None:
-    """The same objects, and character for character the same text in every pane; of a getter CODESYS makes the upper one."""
+    """The same objects, and character for character the same text in every pane; of a getter CODESYS makes the upper
+    one.
+    """
     read = {(p.kind, p.path): p for whole in wholes(parse(EVERYTHING)).values() for p in (whole.own, *whole.members)}
     wanted = all_parts(FILES)
     assert {key for key, part in read.items() if part.kind == "GET" and part.declaration != _GETTER} == set()
@@ -146,7 +148,9 @@ def test_what_the_standard_has_no_element_for() -> None:
     assert pragmas == {"sm_kin_libdoc": "", "sm_kin_axes": "A1, A2, Z"}
     given = _only(pou, "p:interface/p:inputVars/p:variable[@name='dArmLength1']")
     assert [e.attrib["Value"] for e in given.iter("{*}Attribute")] == ["]0 .. +inf[", "u"]
-    private = [e.attrib["name"] for e in pou.iter("{*}Method") if e.find(".//{*}AccessModifiers[@Private='true']") is not None]
+    private = [
+        e.attrib["name"] for e in pou.iter("{*}Method") if e.find(".//{*}AccessModifiers[@Private='true']") is not None
+    ]
     assert private == ["LimitsOfAxis", "SolveBranch", "TestLimits", "SolveOffsetBranch"]
 
 

@@ -1,7 +1,9 @@
-"""The corpus: what the generated package answered, recorded once, so that a change inside the compiler changes no answer.
+"""The corpus: what the generated package answered, recorded once, so that a change inside the compiler changes no
+answer.
 
-Everything here knows the public calls of the package `softkin` alone, and none of the compiler. `recorded/<mechanism>.json.xz`
-holds questions (parameters, axes, frames, configurations, references; exact to the last bit) and the answers to them.
+Everything here knows the public calls of the package `softkin` alone, and none of the compiler.
+`recorded/<mechanism>.json.xz` holds questions (parameters, axes, frames, configurations, references; exact to the last
+bit) and the answers to them.
 
     python -m tests.corpus.record                        ask the recorded questions again, and keep the new answers
     python -m tests.corpus.record --anew                 draw new questions (always the same for the same package), too

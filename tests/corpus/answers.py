@@ -1,6 +1,7 @@
 """Questions and what the package answers, as plain data: a question is a dictionary, and so is an answer.
 
-A call that raises answers with its status and its message, in which numbers are hidden: they are compared where they are axes.
+A call that raises answers with its status and its message, in which numbers are hidden: they are compared where they
+are axes.
 """
 
 from __future__ import annotations
@@ -28,7 +29,16 @@ def answer(one: Robot, question: Question) -> Answer:
 def facts(one: Robot) -> Answer:
     """What a class says of itself."""
     made = one.made
-    names = ("NAME", "DEFAULT_CONFIGURATION", "JACOBIAN_ROWS", "MARGINS", "READS_ROTATION", "FREEDOM", "ROLE", "BRANCHES")
+    names = (
+        "NAME",
+        "DEFAULT_CONFIGURATION",
+        "JACOBIAN_ROWS",
+        "MARGINS",
+        "READS_ROTATION",
+        "FREEDOM",
+        "ROLE",
+        "BRANCHES",
+    )
     found = {name: getattr(made, name) for name in (*names, "PERIOD_AXES", "DISTANCE_AXES")}
     lists = {name: [str(one) for one in getattr(made, name)] for name in ("AXES", "PARAMETERS", "CONFIGURATION")}
     return plain(found | lists | {"text": repr(made)})
@@ -76,7 +86,9 @@ def _forward(one: Robot, question: Question) -> Answer:
 
 
 def _same(rows: Any, others: Any) -> bool:
-    return all(abs(a - b) <= 1e-12 for row, other in zip(rows, others, strict=True) for a, b in zip(row, other, strict=True))
+    return all(
+        abs(a - b) <= 1e-12 for row, other in zip(rows, others, strict=True) for a, b in zip(row, other, strict=True)
+    )
 
 
 def _inverse(one: Robot, question: Question) -> Answer:
@@ -150,7 +162,8 @@ def _on(one: Robot, question: Question) -> Answer:
 
 
 _CALLS: dict[str, Callable[[Robot, Question], Answer]] = {
-    "make": _made, "forward": _forward, "inverse": _inverse, "offset": _offset, "image": _image, "project": _projected, "on": _on,
+    "make": _made, "forward": _forward, "inverse": _inverse, "offset": _offset, "image": _image, "project": _projected,
+    "on": _on,
 }  # fmt: skip
 
 

@@ -17,7 +17,9 @@ Row = tuple[Question, Answer]
 def batches_differ(one: Robot, asked: list[Question], recorded: list[Answer]) -> Iterator[str]:
     """Every difference between batch calls and recorded answers, in words."""
     pairs = list(zip(asked, recorded, strict=True))
-    yield from _forward(one, [p for p in pairs if p[0]["call"] == "forward" and "start" not in p[0] and _fits(one, p[0]["axes"])])
+    yield from _forward(
+        one, [p for p in pairs if p[0]["call"] == "forward" and "start" not in p[0] and _fits(one, p[0]["axes"])]
+    )
     rows = [p for p in pairs if p[0]["call"] == "inverse" and _is_table(one, p[0])]
     if hasattr(one.made, "SIDES") and len(rows) < 3:
         return  # a search of few rows takes as long as of many
@@ -66,7 +68,9 @@ def _named(one: Robot, rows: list[Row]) -> Iterator[str]:
     configurations = np.array([c for _, c, _ in named]).reshape(len(named), bytes_)
     axes, statuses = one.made.inverse_batch(positions, rotations, configurations, references)
     for i, (row, configuration, was) in enumerate(named):
-        yield from _one(one, f"inverse_batch of {one.made!r}, {configuration}: asked {row[0]}", was, axes[i], statuses[i])
+        yield from _one(
+            one, f"inverse_batch of {one.made!r}, {configuration}: asked {row[0]}", was, axes[i], statuses[i]
+        )
 
 
 def _one(one: Robot, place: str, old: Answer, axes: Any, status: Any) -> Iterator[str]:
@@ -79,7 +83,11 @@ def _one(one: Robot, place: str, old: Answer, axes: Any, status: Any) -> Iterato
 def _tables(one: Robot, rows: list[Row]) -> tuple[Any, Any, Any]:
     frames = [question["frame"] for question, _ in rows]
     references = [question["reference"] or [0.0] * len(one.made.AXES) for question, _ in rows]
-    return np.array([f[0] for f in frames]), np.array([f[1] for f in frames]), np.array(references).reshape(len(rows), -1)
+    return (
+        np.array([f[0] for f in frames]),
+        np.array([f[1] for f in frames]),
+        np.array(references).reshape(len(rows), -1),
+    )
 
 
 def _is_table(one: Robot, question: Question) -> bool:

@@ -1,6 +1,7 @@
 """Compare packages: `python -m tests.corpus.compare [--package DIR] [--with DIR] [NAME ...]`.
 
-A package is held against what is recorded; or, with another package, against the answers of that one to the same questions.
+A package is held against what is recorded; or, with another package, against the answers of that one to the same
+questions.
 """
 
 from __future__ import annotations
@@ -22,7 +23,16 @@ def main() -> int:
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         if given.other:
-            command = [sys.executable, "-m", "tests.corpus.record", "--package", given.other, "--output", scratch, *given.names]
+            command = [
+                sys.executable,
+                "-m",
+                "tests.corpus.record",
+                "--package",
+                given.other,
+                "--output",
+                scratch,
+                *given.names,
+            ]
             subprocess.run(list(map(str, command)), check=True, stdout=subprocess.DEVNULL)
         use(given.package)
         from tests.corpus.recording import NAMES, RECORDED, compared, read

@@ -1,8 +1,8 @@
 """The answers of a package held against recorded ones.
 
 Axes: within 1e-9 of scale (180 degrees; the reach) over the smallest margin of the solution. Where that margin is below
-`SINGULAR`, the pose counts: forward kinematics brings both to the same frame. Everything else is equal: slots, statuses,
-reasons, turns, bytes; reals of frames, Jacobians and amounts within the digits that their margin leaves.
+`SINGULAR`, the pose counts: forward kinematics brings both to the same frame. Everything else is equal: slots,
+statuses, reasons, turns, bytes; reals of frames, Jacobians and amounts within the digits that their margin leaves.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ SINGULAR = 1e-4
 COINCIDENT = 1e-9
 """Branches with a margin below this may be written as coinciding or not."""
 ROUNDED = 1e-7
-"""What a singular pose makes of rounding: what it lacks is known to this share, and a margin below may have the other sign."""
+"""What a singular pose makes of rounding: what it lacks is known to this share, and a margin below may have the other
+sign."""
 Ask = Callable[[Robot, Question], Answer]
 
 
@@ -58,9 +59,14 @@ def _trusted(one: Robot, old: Answer, new: Answer) -> Iterator[str]:
         return
     for slot, (was, now) in enumerate(zip(old["trusted"], new["trusted"], strict=True)):
         if was is not None:
-            turns = [360.0 * round((a - b) / 360.0) * axis.multi_turn for a, b, axis in zip(was, now, one.made.AXES, strict=True)]
+            turns = [
+                360.0 * round((a - b) / 360.0) * axis.multi_turn
+                for a, b, axis in zip(was, now, one.made.AXES, strict=True)
+            ]
             margin = old["slots"][slot].get("margin", 0.0) if "slots" in old else 0.0
-            yield from axes_differ(one, f"trusted slot {slot}", was, [b + t for b, t in zip(now, turns, strict=True)], margin)
+            yield from axes_differ(
+                one, f"trusted slot {slot}", was, [b + t for b, t in zip(now, turns, strict=True)], margin
+            )
 
 
 def _solution(one: Robot, place: str, old: Answer, new: Answer, share: float) -> Iterator[str]:

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-_TRIANGLE = {"rail_x_1": 0.0, "rail_y_1": 150.0, "rail_x_2": -130.0, "rail_y_2": -75.0, "rail_x_3": 130.0, "rail_y_3": -75.0}
+_TRIANGLE = {
+    "rail_x_1": 0.0,
+    "rail_y_1": 150.0,
+    "rail_x_2": -130.0,
+    "rail_y_2": -75.0,
+    "rail_x_3": 130.0,
+    "rail_y_3": -75.0,
+}
 _DELTA = {
     f"{name}_{i}": value
     for name, value in {"base_radius": 140.0, "inner_arm": 200.0, "outer_arm": 450.0, "tcp_radius": 45.0}.items()
@@ -26,7 +33,8 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     },
     "Kin_Ac6_ThreeParallel": {"d1": 89.159, "a2": -425.0, "a3": -392.25, "d4": 109.15, "d5": 94.65, "d6": 82.3},
     "Kin_Ac6_TXTYTZRYRXRZ": {"flange_x": 40.0, "flange_y": -25.0, "flange_z": -120.0},
-    "Kin_ArticulatedRobot_6DOF": {"d1": 350.0, "a1": 80.0, "a2": 310.0, "d3": 50.0, "a3": 30.0, "d4": 290.0, "d6": 75.0},
+    "Kin_ArticulatedRobot_6DOF": {"d1": 350.0, "a1": 80.0, "a2": 310.0, "d3": 50.0, "a3": 30.0, "d4": 290.0,
+        "d6": 75.0},
     "Kin_Bipod_Rotary": {"inner_arm": 250.0, "outer_arm": 500.0, "displacement": 120.0, "tcp_displacement": 40.0},
     "Kin_CAxis": {},
     "Kin_CAxis_Tool": {"tool_x": 15.0, "tool_y": -8.0, "tool_z": -60.0},
@@ -67,24 +75,28 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     "Kin_TGantry3": {},
     "Kin_Tool": {"tool_x": 15.0, "tool_y": -8.0, "tool_z": -60.0},
     "Kin_Tripod_Linear": {
-        "outer_radius": 300.0, "inner_radius": 60.0, "arm_length": 400.0, "rail_angle": 30.0, "max_angle_ball_joint": 45.0,
+        "outer_radius": 300.0, "inner_radius": 60.0, "arm_length": 400.0, "rail_angle": 30.0,
+        "max_angle_ball_joint": 45.0,
     },
     "Kin_Tripod_P3Z": {"arm_length": 269.0, "tcp_displacement": 20.0, **_TRIANGLE},
     "Kin_Tripod_Rotary": {
         "arm_length_1": 200.0, "arm_length_2": 450.0, "arm_1_radius": 140.0, "stewart_radius": 50.0, "distance": 40.0,
         "max_angle_ball_joint": 45.0,
     },
-    "Kin_Wrist2": {"tool_length": 90.0, "roll_axis_offset_x": 12.0, "roll_axis_offset_y": -7.0, "roll_axis_offset_z": -40.0},
+    "Kin_Wrist2": {"tool_length": 90.0, "roll_axis_offset_x": 12.0, "roll_axis_offset_y": -7.0,
+        "roll_axis_offset_z": -40.0},
     "Kin_Wrist3": {"tool_offset_x": 10.0, "tool_offset_y": -6.0, "tool_offset_z": 75.0},
     "MC_KIN_TYPE_12_XY": {
-        "link_length_1": 300.0, "link_length_2": 350.0, "link_length_3": 110.0, "link_length_4": 280.0, "link_length_5": 90.0,
+        "link_length_1": 300.0, "link_length_2": 350.0, "link_length_3": 110.0, "link_length_4": 280.0,
+        "link_length_5": 90.0,
     },
 }  # fmt: skip
 
 ALSO: dict[str, tuple[dict[str, float], ...]] = {
     "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": ({"j6_offset_x": 0.0}, {"j6_offset_x": -20.0, "a3": -50.0}),
     "Kin_Ac6_ThreeParallel": ({"d4": 0.0}, {"a3": -425.0, "d4": 0.0}),
-    "Kin_ArticulatedRobot_6DOF": ({"d1": 400.0, "a1": 25.0, "a2": 455.0, "d3": 0.0, "a3": 35.0, "d4": 420.0, "d6": 80.0},
+    "Kin_ArticulatedRobot_6DOF": ({"d1": 400.0, "a1": 25.0, "a2": 455.0, "d3": 0.0, "a3": 35.0, "d4": 420.0,
+        "d6": 80.0},
                                   {"a1": 0.0, "d3": 0.0, "a3": 0.0, "a2": 290.0}),
     "Kin_Pos_RRR": ({"a1": 0.0, "d3": 0.0, "a3": 0.0, "a2": 290.0},),
     "Kin_Scara3_CCZ": ({"link_length_2": 325.0},),

@@ -31,7 +31,11 @@ def questions(name: str) -> Iterator[Asked]:
         axes = poses.regular(one, REGULAR // _fewer(one), rng)
         asked = [*_facts(one), *_regular(one, axes, rng), *_singular(one, rng, PLACES if number < 2 else 1)]
         if number == 0:
-            asked += [*_garbage(one, axes[0]), *_out_of_reach(one, axes[: 3 - min(2, _fewer(one))], rng), *_parameters(one)]
+            asked += [
+                *_garbage(one, axes[0]),
+                *_out_of_reach(one, axes[: 3 - min(2, _fewer(one))], rng),
+                *_parameters(one),
+            ]
         yield recipe, asked
     chosen = robot(every[-2] if len(every) > 1 else every[0])
     yield from limits.questions(chosen, poses.regular(chosen, 3 - min(2, _fewer(chosen)), np.random.default_rng(11)))
@@ -79,7 +83,11 @@ def _regular(one: Robot, chosen: list[Axes], rng: np.random.Generator) -> Iterat
 
 def _singular(one: Robot, rng: np.random.Generator, places: int) -> Iterator[Question]:
     """Right angles, margins that vanish, and where assembly ends."""
-    chosen = [*poses.right_angles(one, RIGHT // _fewer(one), rng), *poses.singular(one, places, rng), *poses.ends(one, 2, rng)]
+    chosen = [
+        *poses.right_angles(one, RIGHT // _fewer(one), rng),
+        *poses.singular(one, places, rng),
+        *poses.ends(one, 2, rng),
+    ]
     for number, axes in enumerate(dict.fromkeys(chosen)):
         yield {"call": "forward", "kind": "singular", "axes": list(axes)}
         try:
@@ -180,7 +188,14 @@ def _offsets(one: Robot, axes: Axes, frame: softkin.Frame, number: int) -> Itera
         arm = [[0.0, 0.0, 0.0], [0.0, 0.0, -0.1], [0.05, -0.03, 0.07]][number % 3]
         offset = [one.reach * a for a in arm]
         point = (np.array(frame.position) + np.array(frame.rotation) @ offset).tolist()
-        yield {"call": "offset", "kind": "offset", "axes": list(axes), "offset": offset, "point": point, "reference": list(axes)}
+        yield {
+            "call": "offset",
+            "kind": "offset",
+            "axes": list(axes),
+            "offset": offset,
+            "point": point,
+            "reference": list(axes),
+        }
 
 
 def _configurations(one: Robot, frame: softkin.Frame, own: Any, number: int) -> list[Any]:

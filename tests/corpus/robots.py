@@ -34,7 +34,9 @@ class Robot:
 
     def changed(self, **parameters: float) -> Robot:
         """The same robot with other parameters of its last part that knows them."""
-        return robot([part | {"parameters": part["parameters"] | _known(part["name"], parameters)} for part in self.recipe])
+        return robot(
+            [part | {"parameters": part["parameters"] | _known(part["name"], parameters)} for part in self.recipe]
+        )
 
 
 def robot(recipe: Recipe) -> Robot:
@@ -45,7 +47,9 @@ def robot(recipe: Recipe) -> Robot:
 
 
 def recipes(name: str) -> Iterator[Recipe]:
-    """The machines of a mechanism (or of a coupling): as it is drawn, special ones, an unequal one with offsets, in metres."""
+    """The machines of a mechanism (or of a coupling): as it is drawn, special ones, an unequal one with offsets, in
+    metres.
+    """
     if name in COUPLED:
         yield [{"name": part, "parameters": dict(given)} for part, given in COUPLED[name]]
         return
@@ -79,7 +83,10 @@ def _unequal(name: str, nominal: dict[str, float]) -> dict[str, float]:
     """No two lengths alike, every axis with an offset, the assembly mode the other one, where parameters allow it."""
     rng = np.random.default_rng(31)
     for _ in range(100):
-        given = {k: v * float(rng.uniform(0.85, 1.2)) if parameter(name, k).kind in LENGTHS else v for k, v in nominal.items()}
+        given = {
+            k: v * float(rng.uniform(0.85, 1.2)) if parameter(name, k).kind in LENGTHS else v
+            for k, v in nominal.items()
+        }
         for p in softkin.catalogue()[name].PARAMETERS:
             if p.name in ("tcp_above", "tcp_below"):
                 given[p.name] = 1.0

@@ -119,8 +119,13 @@ def test_a_planted_fault_is_found(name: str, fault: Callable[[Answer], None]) ->
     if name.startswith("Coupled"):
         recording = recording[:1] + recording[-8:]
     parts: list[dict[str, Any]] = recording[:2] + recording[-12:]
-    found = [text for part in parts for text in differences(robot(part["recipe"]), part["asked"], part["answers"], wrong)]
-    is_asked = name.startswith("Kin") or fault not in (permitted, turned)  # garbage and turns of pairs are asked of parts
+    found = [
+        text for part in parts for text in differences(robot(part["recipe"]), part["asked"], part["answers"], wrong)
+    ]
+    is_asked = name.startswith("Kin") or fault not in (
+        permitted,
+        turned,
+    )  # garbage and turns of pairs are asked of parts
     assert bool(found) or not is_asked, f"{fault.__name__} is not found"
 
 

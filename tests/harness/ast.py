@@ -102,7 +102,9 @@ class ArrayValues:
     at: Place
 
 
-Expression = Literal | Name | Member | Index | Dereference | This | Super | AddressOf | Unary | Binary | Call | ArrayValues
+Expression = (
+    Literal | Name | Member | Index | Dereference | This | Super | AddressOf | Unary | Binary | Call | ArrayValues
+)
 
 
 # ---- statements ----------------------------------------------------------------------------

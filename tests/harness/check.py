@@ -59,7 +59,8 @@ def _check_members(block: types.Block) -> None:
         check_name(member.name, member.at)
         key = member.name.lower()
         inherited = block.base is not None and (
-            block.base.variable(key) is not None or (isinstance(member, ast.VariableDeclaration) and _has_member(block.base, key))
+            block.base.variable(key) is not None
+            or (isinstance(member, ast.VariableDeclaration) and _has_member(block.base, key))
         )
         if key in seen or inherited or key == written.name.lower():
             raise StError(member.at, f"duplicate name {member.name}")

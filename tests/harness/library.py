@@ -99,19 +99,23 @@ class Library:
             if isinstance(found, types.Block):
                 made = self._names[python_names.type_class(found)]
                 made.routines = self._routines(found)
-                made.cells = frozenset(p.name for p in block_parameters(found) if p.is_reference and types.is_scalar(p.type))
+                made.cells = frozenset(
+                    p.name for p in block_parameters(found) if p.is_reference and types.is_scalar(p.type)
+                )
 
     def _routines(self, block: types.Block) -> dict[str, Entry]:
         inherited = self._routines(block.base) if block.base else {}
         made = self._names[python_names.type_class(block)]
         own = {
-            key: self._entry(getattr(made, python_names.method(routine.name)), routine) for key, routine in block.methods.items()
+            key: self._entry(getattr(made, python_names.method(routine.name)), routine)
+            for key, routine in block.methods.items()
         }
         return inherited | own
 
     def _entry(self, function: Any, routine: types.Routine) -> Entry:
         defaults = [
-            eval(f"lambda: {initial(parameter, self._universe.meaning)}", self._names) for parameter in routine.parameters
+            eval(f"lambda: {initial(parameter, self._universe.meaning)}", self._names)
+            for parameter in routine.parameters
         ]
         return Entry(function, routine, defaults)
 

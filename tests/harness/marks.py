@@ -13,7 +13,9 @@ NOTE = "_note"
 
 
 def marked_code(source: str, filename: str) -> dict[str, CodeType]:
-    """The code of every function of a translation by its qualified name, with a note of the line before every statement."""
+    """The code of every function of a translation by its qualified name, with a note of the line before every
+    statement.
+    """
     tree = ast.parse(source, filename)
     for node in ast.walk(tree):
         if isinstance(node, ast.FunctionDef):
@@ -48,7 +50,9 @@ def _collect(code: CodeType, found: dict[str, CodeType]) -> None:
 
 @contextmanager
 def marked(names: dict[str, Any], codes: Mapping[str, CodeType], note: Callable[[int], object]) -> Iterator[None]:
-    """The functions among the names of a translation, and those of its classes, with these codes; afterwards as before."""
+    """The functions among the names of a translation, and those of its classes, with these codes;
+    afterwards as before.
+    """
     before = {function: function.__code__ for function in _functions(names) if function.__code__.co_qualname in codes}
     names[NOTE] = note
     for function in before:

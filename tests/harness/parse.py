@@ -24,7 +24,9 @@ def _object(piece: Piece, file: str) -> list[ast.Declaration]:
     if piece.kind == "VAR_GLOBAL":
         name = file.rsplit("/", 1)[-1].removesuffix(".st")
         return [
-            ast.Globals(piece.kind, name, section.constant, section.variables, piece.pragmas, piece.comment, tree.at(node))
+            ast.Globals(
+                piece.kind, name, section.constant, section.variables, piece.pragmas, piece.comment, tree.at(node)
+            )
             for section in sections(tree, node)
         ]
     if piece.kind == "FUNCTION":
@@ -80,7 +82,9 @@ def _property(tree: Tree, node: Node, piece: Piece) -> ast.PropertyDeclaration:
     if len(accessors) != 1 or not tree.text(accessors[0]).upper().startswith("GET"):
         raise tree.refuse(node, f"property {name} must have a GET part and nothing else")
     accessor = accessors[0]
-    getter = ast.Routine("GET", name, access, returns, sections(tree, accessor), body(tree, accessor), (), "", tree.at(accessor))
+    getter = ast.Routine(
+        "GET", name, access, returns, sections(tree, accessor), body(tree, accessor), (), "", tree.at(accessor)
+    )
     return ast.PropertyDeclaration(name, access, returns, getter, piece.pragmas, piece.comment, tree.at(node))
 
 

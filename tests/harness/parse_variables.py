@@ -23,7 +23,8 @@ def type_text(tree: Tree, node: Node) -> ast.TypeText:
         return ast.StringText(f"STRING({match.group(1)})", int(match.group(1)), at)
     if node.type == "array_type":
         bounds = tuple(
-            (expression(tree, field(part, "lower")), expression(tree, field(part, "upper"))) for part in fields(node, "range")
+            (expression(tree, field(part, "lower")), expression(tree, field(part, "upper")))
+            for part in fields(node, "range")
         )
         return ast.ArrayText(text, bounds, type_text(tree, field(node, "element_type")), at)
     if node.type == "pointer_type":
@@ -75,13 +76,18 @@ def variables(tree: Tree, parent: Node, kind: str, initial: str) -> tuple[ast.Va
     )
 
 
-def _declared(tree: Tree, node: Node, initial: str, pragmas: tuple[str, ...], comment: str) -> list[ast.VariableDeclaration]:
+def _declared(
+    tree: Tree, node: Node, initial: str, pragmas: tuple[str, ...], comment: str
+) -> list[ast.VariableDeclaration]:
     if node.child_by_field_name("address") is not None:
         raise tree.refuse(node, "AT addresses are not part of the dialect")
     names = fields(node, "names") or fields(node, "name")
     declared_type = type_text(tree, field(node, "type"))
     value = _initial(tree, fields(node, initial))
-    return [ast.VariableDeclaration(tree.text(name), declared_type, value, pragmas, comment, tree.at(name)) for name in names]
+    return [
+        ast.VariableDeclaration(tree.text(name), declared_type, value, pragmas, comment, tree.at(name))
+        for name in names
+    ]
 
 
 _SECTIONS = {

@@ -137,7 +137,21 @@ class Block:
         return self is other or (self.base is not None and self.base.is_a(other))
 
 
-Type = Boolean | Integer | Real | String | Array | Pointer | Opaque | IntegerLiteral | Address | NoResult | Struct | Enum | Block
+Type = (
+    Boolean
+    | Integer
+    | Real
+    | String
+    | Array
+    | Pointer
+    | Opaque
+    | IntegerLiteral
+    | Address
+    | NoResult
+    | Struct
+    | Enum
+    | Block
+)
 
 BOOL = Boolean()
 BYTE = Integer("BYTE", 0, 255, 1, is_bits=True)

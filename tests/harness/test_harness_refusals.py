@@ -175,7 +175,10 @@ MEMBERS = {
     "write to an input through THIS": (method("THIS^.dIn := 1.0;"), "a method writes the input dIn"),
     "write to the instance": (method("nOwn := 1;"), "only Initialize and AxisSettings may write"),
     "write to the instance through THIS": (method("THIS^.nOwn := 1;"), "only Initialize and AxisSettings may write"),
-    "FOR over an instance variable": (method("FOR nOwn := 0 TO 1 DO ; END_FOR"), "only Initialize and AxisSettings may write"),
+    "FOR over an instance variable": (
+        method("FOR nOwn := 0 TO 1 DO ; END_FOR"),
+        "only Initialize and AxisSettings may write",
+    ),
     "body of a block with methods writes": ("nOwn := 1;\n" + method(";"), "the body of a block with methods"),
     "a local hides a variable": (method(";", "VAR NOWN : DINT; END_VAR"), "hides a member"),
     "a local hides a method": (TAKES + method(";", "VAR takes : DINT; END_VAR"), "hides a member"),
@@ -186,7 +189,10 @@ MEMBERS = {
     "SUPER without a base": (method("SUPER^.Act();"), "SUPER"),
     "METHOD without an end": ("METHOD Act\n;\n", "METHOD without END_METHOD"),
     "property without GET": ("PROPERTY PUBLIC Q : UDINT\nEND_PROPERTY", "syntax error"),
-    "getter that writes": ("PROPERTY PUBLIC Q : DINT\nGET\nnOwn := 1;\nQ := 1;\nEND_GET\nEND_PROPERTY", "only Initialize"),
+    "getter that writes": (
+        "PROPERTY PUBLIC Q : DINT\nGET\nnOwn := 1;\nQ := 1;\nEND_GET\nEND_PROPERTY",
+        "only Initialize",
+    ),
 }
 
 

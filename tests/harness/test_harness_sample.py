@@ -117,7 +117,9 @@ def test_pragmas_comments_and_initial_values_are_kept() -> None:
 
 
 def test_a_contract_can_be_kept_by_the_base() -> None:
-    derived = "FUNCTION_BLOCK Derived EXTENDS Kin_Sample_Planar IMPLEMENTS TRAFO.ISMKinematicWithInfo2\nEND_FUNCTION_BLOCK"
+    derived = (
+        "FUNCTION_BLOCK Derived EXTENDS Kin_Sample_Planar IMPLEMENTS TRAFO.ISMKinematicWithInfo2\nEND_FUNCTION_BLOCK"
+    )
     lib = compile_st({FILE.name: TEXT, "derived.st": derived})
     assert lib.new("Derived").call("GetKinematicsName") == "Planar sample"
 
@@ -128,7 +130,11 @@ CONTRACT = {
     "the property is missing": ("NumAxes", "NumberAxes", "lacks the property NumAxes"),
     "the property has another type": ("NumAxes : UDINT", "NumAxes : UINT", "is a UDINT"),
     "another result": ("GetConfigurationDataSize : INT", "GetConfigurationDataSize : DINT", "returns INT, not DINT"),
-    "another length of a string": ("GetKinematicsName : STRING(255)", "GetKinematicsName : STRING(80)", "returns STRING"),
+    "another length of a string": (
+        "GetKinematicsName : STRING(255)",
+        "GetKinematicsName : STRING(80)",
+        "returns STRING",
+    ),
     "a private method": ("METHOD PUBLIC IsInitialized", "METHOD PRIVATE IsInitialized", "must be public"),
     "another parameter name": ("cdSrc", "cdSource", "cdsrc"),
     "another parameter type": ("    udiAxis : UDINT;", "    udiAxis : UINT;", "UDINT"),
@@ -137,7 +143,11 @@ CONTRACT = {
         "    cd : TRAFO.CONFIGDATA;\n    aRef : TRAFO.AXISPOS_REF;",
         "is wanted",
     ),
-    "one parameter more": ("    udiAxis : UDINT;", "    udiAxis : UDINT;\n    udiMore : UDINT;", "has 2 parameters, not 3"),
+    "one parameter more": (
+        "    udiAxis : UDINT;",
+        "    udiAxis : UDINT;\n    udiMore : UDINT;",
+        "has 2 parameters, not 3",
+    ),
     "another scope": ("VAR_IN_OUT CONSTANT\n    cd1 :", "VAR_IN_OUT\n    cd1 :", "is wanted"),
 }
 

@@ -75,7 +75,9 @@ def test_rounding(given: float, nearest: int, cut: int) -> None:
     ],
 )  # fmt: skip
 def test_conditions(expression: str, value: bool) -> None:
-    variables = "b : BOOL := TRUE; e : SMC_Error; d : OrientationDOF; p : POINTER TO ARRAY[0..8] OF LREAL; y : BYTE := 6;"
+    variables = (
+        "b : BOOL := TRUE; e : SMC_Error; d : OrientationDOF; p : POINTER TO ARRAY[0..8] OF LREAL; y : BYTE := 6;"
+    )
     # NOT binds tighter than =, as the operators of a sign do.
     assert function(f"Probe := {expression};", "BOOL", variables=variables)() is value
 
@@ -117,7 +119,9 @@ END_CASE"""
 
 
 def test_return_leaves_at_once() -> None:
-    assert function("Probe := 1.0; IF b THEN RETURN; END_IF Probe := 2.0;", inputs="b : BOOL;", variables="")(True) == 1.0
+    assert (
+        function("Probe := 1.0; IF b THEN RETURN; END_IF Probe := 2.0;", inputs="b : BOOL;", variables="")(True) == 1.0
+    )
 
 
 def test_structures_are_copied_by_assignment() -> None:
@@ -127,7 +131,9 @@ f.vT := v; v.dX := 5.0; Probe := Probe + f.vT.dX;"""
 
 
 def test_arrays() -> None:
-    variables = "a : ARRAY[0..1, 1..3] OF LREAL; c : ARRAY[0..1, 1..3] OF LREAL; k : ARRAY[0..2] OF DINT := [3(7)]; i : INT;"
+    variables = (
+        "a : ARRAY[0..1, 1..3] OF LREAL; c : ARRAY[0..1, 1..3] OF LREAL; k : ARRAY[0..2] OF DINT := [3(7)]; i : INT;"
+    )
     text = """FOR i := 0 TO 1 DO a[i, i + 2] := 5.0; a[i, 1] := 1.0; END_FOR
 c := a; a[0, 2] := 0.0;
 Probe := 100 * c[0, 2] + 10 * c[1, 3] + c[1, 1] + DINT_TO_LREAL(k[0] + k[2]);"""

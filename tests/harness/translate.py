@@ -11,7 +11,9 @@ from .translate_statements import Source, Statements
 from .universe import Universe
 
 
-def translate(universe: Universe, declarations: list[ast.Declaration], facts: Facts, extra: dict[str, list[str]]) -> Source:
+def translate(
+    universe: Universe, declarations: list[ast.Declaration], facts: Facts, extra: dict[str, list[str]]
+) -> Source:
     """The source of a whole library; `extra` adds lines to the start of a structure's life."""
     translator = _Translator(universe, facts, extra)
     for declaration in declarations:

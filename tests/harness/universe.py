@@ -57,7 +57,9 @@ class Universe:
         if isinstance(text, ast.PointerText):
             return types.Pointer(self.type_of(text.target))
         if isinstance(text, ast.ArrayText):
-            bounds = tuple((constants.whole(low, self.meaning), constants.whole(high, self.meaning)) for low, high in text.bounds)
+            bounds = tuple(
+                (constants.whole(low, self.meaning), constants.whole(high, self.meaning)) for low, high in text.bounds
+            )
             if any(low > high for low, high in bounds):
                 raise StError(text.at, f"empty array {text.text}")
             return types.Array(bounds, self.type_of(text.element))
@@ -119,7 +121,9 @@ class Universe:
             target = declaration.name
             self.spaces.setdefault(target.lower(), types.Namespace(target, {}))
         for part in declaration.variables:
-            variable = types.Variable(part.name, self.type_of(part.type), "VAR_GLOBAL", declaration.constant, None, part.initial)
+            variable = types.Variable(
+                part.name, self.type_of(part.type), "VAR_GLOBAL", declaration.constant, None, part.initial
+            )
             self.globals.append(variable)
             self.declare(target, part.name, variable, part.at)
 
@@ -139,7 +143,9 @@ class Universe:
             getter = self.routine(prop.getter, block)
             block.properties.setdefault(prop.name.lower(), types.Property(prop.name, getter.returns, getter))
 
-    def variable(self, part: ast.VariableDeclaration, section: ast.Section, block: types.Block | None) -> types.Variable:
+    def variable(
+        self, part: ast.VariableDeclaration, section: ast.Section, block: types.Block | None
+    ) -> types.Variable:
         return types.Variable(part.name, self.type_of(part.type), section.scope, section.constant, block, part.initial)
 
     def routine(self, declaration: ast.Routine, block: types.Block | None) -> types.Routine:

@@ -27,7 +27,9 @@ def texts(change: Break | None = None, mechanism: Mechanism = MECHANISM) -> Mapp
     """The unit of a mechanism and the shared objects, with a change to one of them."""
     found = {**shared_texts(), file_of(mechanism): text_of(mechanism)}
     if change is not None:
-        (file,) = [file for file, text in found.items() if change.where in text and f"{change.where}\n" in declared(text)]
+        (file,) = [
+            file for file, text in found.items() if change.where in text and f"{change.where}\n" in declared(text)
+        ]
         start = found[file].index(change.where)
         end = found[file].index(f"END_{change.where.split()[0]}", start)
         head, own, rest = found[file][:start], found[file][start:end], found[file][end:]
@@ -64,15 +66,21 @@ REFUSED = {
         "VAR_IN_OUT CONSTANT rot",
     ),
     "a write outside Initialize": Break(_SINGULAR, "sinA2 := ", "machineScale := ", "Initialize"),
-    "a write to an input of the block": Break(_FORWARD, "f.vT.dX := x;", "dLinkLength1 := x;", "writes the input dLinkLength1"),
+    "a write to an input of the block": Break(
+        _FORWARD, "f.vT.dX := x;", "dLinkLength1 := x;", "writes the input dLinkLength1"
+    ),
     "a missing method": Break(_BLOCK, "PUBLIC IsConfigSingular", "PUBLIC Other", "IsConfigSingular"),
     "a missing property": Break("PROPERTY PUBLIC NumAxes", "NumAxes", "Axes", "NumAxes"),
     "parameters in another order": Break(
         "METHOD PUBLIC CPConnectible", "  cd1 : TRAFO.CONFIGDATA;\n  cd2", "  cd2 : TRAFO.CONFIGDATA;\n  cd1", "cd1"
     ),
     "a parameter of another scope": Break(_SINGULAR, "VAR_IN_OUT CONSTANT", "VAR_IN_OUT", "VAR_IN_OUT CONSTANT"),
-    "a parameter of another type": Break("METHOD PUBLIC GetAxisProperties", "udiAxis : UDINT", "udiAxis : UINT", "UDINT"),
-    "a result that is never given": Break("METHOD PUBLIC GetKinematicsName", "GetKinematicsName := ", "// ", "never assigns"),
+    "a parameter of another type": Break(
+        "METHOD PUBLIC GetAxisProperties", "udiAxis : UDINT", "udiAxis : UINT", "UDINT"
+    ),
+    "a result that is never given": Break(
+        "METHOD PUBLIC GetKinematicsName", "GetKinematicsName := ", "// ", "never assigns"
+    ),
     "the same name twice": Break(_FORWARD, "  x : LREAL;", "  x : LREAL;\n  X : LREAL;", "duplicate name"),
     "a name of a method": Break(_BRANCH, "  reach : LREAL;", "  jacobian : LREAL;", "hides a member"),
     "an error that does not exist": Break(_FORWARD, "SMC_TRAFO_NOT_INITIALIZED", "SMC_FINE", "no member"),
@@ -94,13 +102,19 @@ WRONG = {
     "CartesianToAxes: a sign": Break(_BRANCH, "f.vT.dY - armAcrossA1*f.vT.dX", "f.vT.dY + armAcrossA1*f.vT.dX"),
     "AxesToCartesian: a sign": Break(_FORWARD, "z := a3 - ", "z := a3 + "),
     "CartesianToAxes: an offset": Break(_BRANCH, "axisA3 := a3 + offsetA3;", "axisA3 := a3;"),
-    "CartesianToAxes: two axes exchanged": Break(_BRANCH, "a.a0 := axisA1;\na.a1 := axisA2;", "a.a0 := axisA2;\na.a1 := axisA1;"),
+    "CartesianToAxes: two axes exchanged": Break(
+        _BRANCH, "a.a0 := axisA1;\na.a1 := axisA2;", "a.a0 := axisA2;\na.a1 := axisA1;"
+    ),
     "CartesianToAxes: an unused axis": Break(_BRANCH, "a.a5 := 0.0;", "a.a5 := 1.0;"),
     "AxesToCartesian: two bytes exchanged": Break(_FORWARD, "Softkin_PeriodNumber(a.a3)", "Softkin_PeriodNumber(a.a1)"),
     "AxesToCartesian: a byte without a meaning": Break(_FORWARD, "cd := ", "configuration.abyData[30] := 7;\ncd := "),
     "CartesianToAxes: a tie": Break(_INVERSE, "least - 1.0E-6", "least + 1.0E6"),
-    "CartesianToAxes: a tolerance": Break(_BRANCH, ">= -scaleA2SquaredTimesRounding", ">= 1.0E10*scaleA2SquaredTimesRounding"),
-    "CartesianToAxes: an error": Break(_BRANCH, "SMC_AXIS_INVERSE_TRAFO_EXCEEDING_POSLIMITS", "SMC_TRAFO_INVALID_COUPLING"),
+    "CartesianToAxes: a tolerance": Break(
+        _BRANCH, ">= -scaleA2SquaredTimesRounding", ">= 1.0E10*scaleA2SquaredTimesRounding"
+    ),
+    "CartesianToAxes: an error": Break(
+        _BRANCH, "SMC_AXIS_INVERSE_TRAFO_EXCEEDING_POSLIMITS", "SMC_TRAFO_INVALID_COUPLING"
+    ),
     "CartesianToAxes: a limit": Break(_LIMITS, "(a.a3 <= highestA4)", "(a.a3 <= 2.0*highestA4)"),
     "CartesianToAxes: an output before a refusal": Break(
         _INVERSE, "status := TestLimits(", "a := solution;\nstatus := TestLimits("
@@ -109,14 +123,20 @@ WRONG = {
     "CartesianToAxes: byte 3": Break("FUNCTION Softkin_AdmitsBranch", "(byConfigured = 3)", "(byConfigured = 7)"),
     "Jacobian: a column": Break(_JACOBIAN, "J[3, 3] := 1.0;", "J[3, 3] := 0.0;"),
     "Jacobian: an element outside": Break(_JACOBIAN, "J[row, column] := 0.0;", "J[row, 0] := 0.0;"),
-    "AxesToOrientation: an element": Break("METHOD PUBLIC AxesToOrientation", "rot[2, 1] := sinA124", "rot[2, 1] := cosA124"),
+    "AxesToOrientation: an element": Break(
+        "METHOD PUBLIC AxesToOrientation", "rot[2, 1] := sinA124", "rot[2, 1] := cosA124"
+    ),
     "IsSingularity: a threshold": Break(_SINGULAR, "< 0.001", "< 0.9"),
     "GetAxisProperties: a type": Break("METHOD PUBLIC GetAxisProperties", "Axis_Type.Rotary", "Axis_Type.Linear"),
-    "GetOrientationImage: a freedom": Break("METHOD PUBLIC GetOrientationImage", "OrientationDOF.one", "OrientationDOF.zero"),
+    "GetOrientationImage: a freedom": Break(
+        "METHOD PUBLIC GetOrientationImage", "OrientationDOF.one", "OrientationDOF.zero"
+    ),
     "GetFlangeOrientationImageWithOri: an axis": Break(
         "METHOD PUBLIC GetFlangeOrientationImageWithOri", "vRot.dZ := projected[3, 3]", "vRot.dZ := projected[1, 1]"
     ),
-    "AxesToConfiguration_Offset: a sign": Break("METHOD PUBLIC AxesToConfiguration_Offset", "toolX*sinA2", "toolY*sinA2"),
+    "AxesToConfiguration_Offset: a sign": Break(
+        "METHOD PUBLIC AxesToConfiguration_Offset", "toolX*sinA2", "toolY*sinA2"
+    ),
     "CartesianToAxes_Offset: a sign": Break("METHOD PRIVATE SolveOffsetBranch", "v_MCS.dZ - toolZ", "v_MCS.dZ + toolZ"),
     "GetKinematicsName: a name": Break("METHOD PUBLIC GetKinematicsName", "'Kin_Scara4_ZCcoupled'", "'Kin_Scara4'"),
     "GetPeriods: an axis": Break("METHOD PUBLIC GetPeriods", "aPeriods[3]", "aPeriods[2]"),

@@ -70,7 +70,9 @@ def _properties(twins: Twins, joint: Joint) -> tuple[str, bool, float, float]:
 
 
 def axis_settings(twins: Twins, sample: Sample) -> None:
-    """Limits of all drives around a pose narrow those of the machine: the machine with both answers the same in Python."""
+    """Limits of all drives around a pose narrow those of the machine: the machine with both answers
+    the same in Python.
+    """
     rng = np.random.default_rng(list(sample.data) or 5)
     controller = Controller(twins.library, twins.mechanism)
     drives = [drive_around(value, joint, rng) for value, joint in zip(sample.axes, twins.mechanism.joints, strict=True)]
@@ -141,8 +143,12 @@ def assert_same_pose(twins: Twins, found: Answer, expected: Answer, command: obj
     first, second = (twins.robot.forward(answer[1][:count])[0] for answer in (found, expected))
     apart = [abs(a - b) for a, b in zip(first.position, second.position, strict=True)]
     assert max(apart) < ROUNDING * twins.machine.reach, f"{found} is not {expected}: {twins} {command}"
-    turned = [abs(a - b) for p, q in zip(first.rotation, second.rotation, strict=True) for a, b in zip(p, q, strict=True)]
-    assert max(turned) < ROUNDING or not twins.machine.closure.follows_rotation, f"{found} is not {expected}: {twins} {command}"
+    turned = [
+        abs(a - b) for p, q in zip(first.rotation, second.rotation, strict=True) for a, b in zip(p, q, strict=True)
+    ]
+    assert max(turned) < ROUNDING or not twins.machine.closure.follows_rotation, (
+        f"{found} is not {expected}: {twins} {command}"
+    )
 
 
 def diagnose(twins: Twins, sample: Sample) -> None:
@@ -228,7 +234,9 @@ def point_at(twins: Twins, sample: Sample, offset: Iterable[float]) -> tuple[flo
     """Where a point of the flange is."""
     (position, rotation), _ = twins.robot.forward(sample.axes)
     arm = tuple(offset)
-    return tuple(p + sum(r * o for r, o in zip(row, arm, strict=True)) for p, row in zip(position, rotation, strict=True))
+    return tuple(
+        p + sum(r * o for r, o in zip(row, arm, strict=True)) for p, row in zip(position, rotation, strict=True)
+    )
 
 
 def configuration_size(twins: Twins, sample: Sample) -> None:

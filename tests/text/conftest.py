@@ -1,4 +1,5 @@
-"""Every test that asks for pairs runs for machines of every kind; one that asks for twins, for those of serial mechanisms."""
+"""Every test that asks for pairs runs for machines of every kind; one that asks for twins, for those of serial
+mechanisms."""
 
 from __future__ import annotations
 

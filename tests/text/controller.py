@@ -69,7 +69,9 @@ class Controller:
         status = self._call("AxesToCartesian", {"f": frame, "cd": data}, a=values.axes(self.library, axes))
         return self._answer(status, lambda: (values.vector_of(frame.vT), self._rows(frame.mR), tuple(data.abyData)))
 
-    def inverse(self, position: Numbers, rows: Iterable[Numbers], configuration: Iterable[int], reference: Numbers) -> Answer:
+    def inverse(
+        self, position: Numbers, rows: Iterable[Numbers], configuration: Iterable[int], reference: Numbers
+    ) -> Answer:
         """CartesianToAxes: all entries of the axis values."""
         found = self._new(values.AXES_TYPE)
         status = self._call(
@@ -99,7 +101,9 @@ class Controller:
         )
         return reason, outputs["dMissing"], outputs["iTurn"]
 
-    def inverse_offset(self, point: Numbers, offset: Numbers, configuration: Iterable[int], reference: Numbers) -> Answer:
+    def inverse_offset(
+        self, point: Numbers, offset: Numbers, configuration: Iterable[int], reference: Numbers
+    ) -> Answer:
         """CartesianToAxes_Offset: all entries of the axis values."""
         found = self._new(values.AXES_TYPE)
         status = self._call(
@@ -146,7 +150,9 @@ class Controller:
     def image_with_orientation(self, rows: Iterable[Numbers]) -> Answer:
         """GetFlangeOrientationImageWithOri; reference and configuration are never read."""
         axes, data = values.axes(self.library, ()), values.configuration(self.library, ())
-        return self.image("GetFlangeOrientationImageWithOri", mR_Flange=values.matrix(self.library, rows), aRef=axes, cd=data)
+        return self.image(
+            "GetFlangeOrientationImageWithOri", mR_Flange=values.matrix(self.library, rows), aRef=axes, cd=data
+        )
 
     def configuration(self, data: Iterable[int]) -> Any:
         """Configuration bytes as an argument."""

@@ -58,7 +58,9 @@ class CountingMath:
 
 
 class _Instrument(ast.NodeTransformer):
-    """`left + right` → `_binary("additions", l := left, r := right, l + r)`, except in the harness's own tests of a result."""
+    """`left + right` → `_binary("additions", l := left, r := right, l + r)`, except in the harness's own tests of a
+    result.
+    """
 
     def __init__(self) -> None:
         self.depth = 0
@@ -78,7 +80,11 @@ class _Instrument(ast.NodeTransformer):
 
 def _is_test(node: ast.BinOp) -> bool:
     """`(_t := result) - _t == 0.0` asks whether a result is finite."""
-    return isinstance(node.left, ast.NamedExpr) and isinstance(node.right, ast.Name) and node.left.target.id == node.right.id
+    return (
+        isinstance(node.left, ast.NamedExpr)
+        and isinstance(node.right, ast.Name)
+        and node.left.target.id == node.right.id
+    )
 
 
 def _instrumented(source: str) -> str:

@@ -31,7 +31,9 @@ def limited_machines(mechanism: Mechanism) -> tuple[Machine, ...]:
 
 def has_limits(machine: Machine) -> bool:
     """Whether limits are given and checked."""
-    return machine.robot.checks_limits and any(machine.robot.parameters[f"upper_{j.key}"] for j in machine.mechanism.joints)
+    return machine.robot.checks_limits and any(
+        machine.robot.parameters[f"upper_{j.key}"] for j in machine.mechanism.joints
+    )
 
 
 def is_inside(machine: Machine, axes: Array) -> Array:

@@ -19,7 +19,9 @@ TURNS = (-3, -2, -1, 1, 2, 3)
 
 
 def check_other_turns(one: Any, sample: Sample) -> int:
-    """For every axis of a machine (`Twins` or a loop) that turns, and for all turns; the number of those that were named."""
+    """For every axis of a machine (`Twins` or a loop) that turns, and for all turns; the number of those that were
+    named.
+    """
     tried = 0
     for joint in one.mechanism.period_joints:
         value = sample.axes[one.mechanism.joints.index(joint)]
@@ -44,7 +46,9 @@ def check_other_turns(one: Any, sample: Sample) -> int:
 
 def _check(one: Any, sample: Sample, limits: dict[str, float], joint: Joint | None, turns: int, expected: str) -> None:
     """With these limits the turn refuses, or what has no other turn; the turn inside is answered."""
-    free = {name: 0.0 if name.startswith(("lower_", "upper_")) else value for name, value in one.robot.parameters.items()}
+    free = {
+        name: 0.0 if name.startswith(("lower_", "upper_")) else value for name, value in one.robot.parameters.items()
+    }
     robot = type(one.robot)(**{**free, **limits})
     controller = Controller(one.library, one.mechanism)
     assert controller.initialise(robot.parameters) == OK
@@ -66,7 +70,9 @@ def _check(one: Any, sample: Sample, limits: dict[str, float], joint: Joint | No
 
 
 def _quantities(one: Any, sample: Sample) -> Iterator[tuple[str, str, float, list[tuple[Joint, int]]]]:
-    """Angles with limits of their own: what they are called, their values, and the axes that turn them, the last one first."""
+    """Angles with limits of their own: what they are called, their values, and the axes that turn them, the last one
+    first.
+    """
     limited = [q for q in one.mechanism.limited if q.is_angle]
     if not limited:
         return

@@ -31,8 +31,8 @@ def abridged(text: str, seen: set[str]) -> str:
     """The text without what has a shape that is in `seen`, and the new shapes are then in it.
 
     Variables are left out, an empty statement stands for a statement, a name for a condition. Lines, or groups of
-    lines, that repeat the shape of those before them are left out too, and comments, and in a list of values those of the
-    shape of two others.
+    lines, that repeat the shape of those before them are left out too, and comments, and in a list of values those of
+    the shape of two others.
     """
     found: list[str] = []
     for statement in _statements(text):

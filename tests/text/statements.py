@@ -35,5 +35,7 @@ class Statements:
         for library in self._libraries:
             places = library.origin.places
             every.update(place for place in places if place is not None and place.file in self._files)
-            ran.update(place for line in self._lines[library.origin.filename] if (place := places[line - 1]) is not None)
+            ran.update(
+                place for line in self._lines[library.origin.filename] if (place := places[line - 1]) is not None
+            )
         return sorted(every - ran, key=lambda place: (place.file, place.line))

@@ -1,7 +1,7 @@
 """AxisSettings: limits that only the drives know narrow those of a block, whichever comes first, or are refused.
 
-For every block with turns to choose from, positions, loops and orientation kinematics alike. What a block and its drives
-allow together is a machine in Python with the common limits.
+For every block with turns to choose from, positions, loops and orientation kinematics alike. What a block and its
+drives allow together is a machine in Python with the common limits.
 """
 
 from __future__ import annotations
@@ -99,7 +99,9 @@ def test_the_example_of_a_scara() -> None:
 
 @EVERY
 def test_the_drive_decides_the_turn(mechanism: Mechanism) -> None:
-    """Of every axis with turns, both ways round; what the machine with these limits answers in Python, digit by digit."""
+    """Of every axis with turns, both ways round; what the machine with these limits answers in
+    Python, digit by digit.
+    """
     for joint, value in product(mechanism.period_joints, (-160.0, 160.0)):
         index = mechanism.joints.index(joint)
         robot, axes = at(mechanism, joint, value)
@@ -122,7 +124,9 @@ def test_the_drive_decides_the_turn(mechanism: Mechanism) -> None:
 
 @EVERY
 def test_the_order_of_the_calls_does_not_matter(mechanism: Mechanism) -> None:
-    """Before Initialize, after it, repeated, through several: the last settings count, and all that is kept is the same."""
+    """Before Initialize, after it, repeated, through several: the last settings count, and all that is kept is the
+    same.
+    """
     last = [(-100.0 - k, 170.0 + k) if j.is_angle else (-900.0, 900.0 + k) for k, j in enumerate(mechanism.joints)]
     first: list[Range] = [(-5.0, 5.0), None, (-1e6, 1e6)]
     robot = robot_of(mechanism)
@@ -180,7 +184,9 @@ def test_initialize_refuses_what_the_drives_exclude(mechanism: Mechanism) -> Non
 
 @EVERY
 def test_wider_limits_are_none(mechanism: Mechanism) -> None:
-    """Any wider ones: what is tested is as without. GetAxisProperties reports the limits of the block whatever the drives say."""
+    """Any wider ones: what is tested is as without. GetAxisProperties reports the limits of the block whatever the
+    drives say.
+    """
     limits: dict[str, float] = {}
     for joint in mechanism.joints:
         low, high = joint.limit_range or (-1e9, 1e9)
@@ -208,7 +214,9 @@ def test_without_limits_in_the_block_those_of_the_drives_are_all(mechanism: Mech
             assert block.axis_settings(axis, limits) == OK
             state = heard(block)
             ends = (max(-1e9, low, limits[0]), min(1e9, high, limits[1]))
-            assert (state[f"lowest{joint.name}"], state[f"highest{joint.name}"]) == pytest.approx(ends, rel=1e-8, abs=2.0)
+            assert (state[f"lowest{joint.name}"], state[f"highest{joint.name}"]) == pytest.approx(
+                ends, rel=1e-8, abs=2.0
+            )
             if joint.multi_turn:
                 assert state[f"single{joint.name}"] == (ends[1] - ends[0] <= 350.0)
     assert [block.axis_properties(axis) for axis in range(6)] == own
@@ -216,7 +224,9 @@ def test_without_limits_in_the_block_those_of_the_drives_are_all(mechanism: Mech
 
 @EVERY
 def test_every_axis_is_tested_against_both(mechanism: Mechanism) -> None:
-    """The pose itself, just inside and just outside what the drive allows; xCheckLimits leaves the test to SoftMotion."""
+    """The pose itself, just inside and just outside what the drive allows; xCheckLimits leaves the
+    test to SoftMotion.
+    """
     axes = poses(mechanism)[0]
     robot, unchecked = robot_of(mechanism), robot_of(mechanism, check_limits=False)
     for index, value in enumerate(axes):
@@ -261,7 +271,15 @@ def test_limits_of_block_and_drive_decide_together(mechanism: Mechanism) -> None
         assert moved(block, robot, axes, reference)[0] == UNREACHABLE, "limits refuse, they never choose another turn"
 
 
-CHANGES: tuple[Range, ...] = (None, DRIVE, (100.0, 440.0), (-720.0, 720.0), (-40.0, 20.0), (-250.0, -150.0), (-180.0, 180.0))
+CHANGES: tuple[Range, ...] = (
+    None,
+    DRIVE,
+    (100.0, 440.0),
+    (-720.0, 720.0),
+    (-40.0, 20.0),
+    (-250.0, -150.0),
+    (-180.0, 180.0),
+)
 
 
 @pytest.mark.parametrize("name", ["Kin_Scara2_Z", "Kin_Scara4_ZCcoupled_Type1", "Kin_Wrist3", "Kin_SCCC"])

@@ -14,7 +14,9 @@ from tests.harness import ast
 from tests.harness.contract import INTERFACES, plain
 from tests.harness.library import Library, compile_st
 
-FILES = {str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))}
+FILES = {
+    str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))
+}
 UNITS = [name for name in FILES if not name.startswith(("softkin/", "selftest/"))]
 CONTRACT = load()
 PRIVATE = {"SolveBranch", "SolveOffsetBranch", "TestLimits", "FindPlatform", "EndPointOnFlange", "LimitsOfAxis"}
@@ -92,7 +94,9 @@ def test_the_newest_interfaces_that_fit(file: str) -> None:
     assert sum(name in ORIENTATION for name in names) == (3 if is_orientation else 0)
     assert is_position or is_orientation or "ISMKinematicsWithOrientationImage2" in names
     assert "ISMKinPeriodHandling" not in names or has_configuration
-    assert "ISMOrientationKinematicsWithOriImage" not in names  # it declares another GetOrientationImage than a position does
+    assert (
+        "ISMOrientationKinematicsWithOriImage" not in names
+    )  # it declares another GetOrientationImage than a position does
     assert not (is_orientation and (is_position or "ISMKinematicsWithOrientationImage2" in names))
 
 
@@ -147,13 +151,17 @@ def test_names_inside_a_block_are_unique_ignoring_case(file: str) -> None:
 
 @pytest.mark.parametrize("file", UNITS)
 def test_only_initialize_and_the_settings_write_the_instance(file: str) -> None:
-    """AxisSettings in its last statements, and nothing but the limits that count; Initialize not what drives have handed over."""
+    """AxisSettings in its last statements, and nothing but the limits that count; Initialize not what drives have
+    handed over.
+    """
     block = blocks()[file]
     members = {v.name.lower() for s in block.sections for v in s.variables}
     for method in block.methods:
         written = members & set(_written(method.body))
         if method.name == "AxisSettings":
-            assert all(re.fullmatch(r"(lowest|highest|single|mid|drive(limited|lower|upper)).*", name) for name in written)
+            assert all(
+                re.fullmatch(r"(lowest|highest|single|mid|drive(limited|lower|upper)).*", name) for name in written
+            )
             assert not members & set(_written(method.body[:-2])), file
             assert isinstance(method.body[-2], ast.Case) and isinstance(method.body[-1], ast.Assign)
         elif method.name == "Initialize":
@@ -194,7 +202,14 @@ def test_inputs_are_documented(file: str) -> None:
     axes = [p for p in block.pragmas if "'sm_kin_axes'" in p]
     assert len(axes) == (file != "orientation/Softkin_Tool.st")
     assert all(re.fullmatch(r"\{attribute 'sm_kin_axes' := '\w+(, \w+)*'\}", a) for a in axes)
-    for title in ("**Axes**", "**Parameters**", "**Configuration**", "**Singularities**", "**Workspace**", "**Verification**"):
+    for title in (
+        "**Axes**",
+        "**Parameters**",
+        "**Configuration**",
+        "**Singularities**",
+        "**Workspace**",
+        "**Verification**",
+    ):
         assert title in block.comment
     for given in (v for s in block.sections if s.scope == "VAR_INPUT" for v in s.variables):
         assert given.comment and given.initial is not None
@@ -207,7 +222,9 @@ def test_inputs_are_documented(file: str) -> None:
             assert "-inf" not in pragma or "']-inf" in pragma
             assert "+inf" not in pragma or "+inf['" in pragma
         unit = [p.split("'")[3] for p in given.pragmas if "'sm_kin_param_unit'" in p]
-        assert unit or kind != "LREAL" or given.name == "dMinType2Margin" or given.name.startswith("dCoupling"), "a number"
+        assert unit or kind != "LREAL" or given.name == "dMinType2Margin" or given.name.startswith("dCoupling"), (
+            "a number"
+        )
         if given.name.startswith(("dLinkLength", "dArmLength")):
             assert unit == ["u"]
 

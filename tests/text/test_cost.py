@@ -116,7 +116,9 @@ def _machine(mechanism: Mechanism) -> tuple[Controller, Mapping[str, float]]:
     return machine, parameters
 
 
-def _costs(mechanism: Mechanism, machine: Controller, poses: list[Numbers]) -> tuple[list[Cost], list[Cost], list[Cost]]:
+def _costs(
+    mechanism: Mechanism, machine: Controller, poses: list[Numbers]
+) -> tuple[list[Cost], list[Cost], list[Cost]]:
     """What forward, inverse, and inverse with every branch open cost at these poses."""
     opened = len(mechanism.branches)
     forward, inverse, automatic = list[Cost](), list[Cost](), list[Cost]()
@@ -147,7 +149,9 @@ def test_linear_equations(size: int) -> None:
     solve = counting_units().function("Softkin_Solve")
     for columns in range(7):
         for shift in (0, 1):
-            matrix = [0.1 * (r * c % 5) + 9.0 * ((r + shift) % size == c) if max(r, c) < size else 0.0 for r, c in CELLS]
+            matrix = [
+                0.1 * (r * c % 5) + 9.0 * ((r + shift) % size == c) if max(r, c) < size else 0.0 for r, c in CELLS
+            ]
             found = counted(solve, aMatrix=matrix, aRight=[1.0] * 36, iSize=size, iColumns=columns)
             assert found == solve_cost(size, columns)
 
@@ -156,7 +160,10 @@ PRIMITIVES = {
     "Softkin_Root": (Root(X), {"dValue": (2.0,)}),
     "Softkin_Atan2": (Atan2(Y, X), {"dY": (1.0, -2.0), "dX": (-1.5, -3.0)}),
     "Softkin_NearestPeriod": (NearestPeriod(X, Y), {"dValue": (-200.0, 10.0), "dCentre": (0.0, 300.0)}),
-    "Softkin_NearestOnArc": (NearestOnArc(X, Y, Z), {"dAngle": (-9.0, 1.0), "dCentre": (0.0, 2.0), "dHalf": (0.1, 1.0)}),
+    "Softkin_NearestOnArc": (
+        NearestOnArc(X, Y, Z),
+        {"dAngle": (-9.0, 1.0), "dCentre": (0.0, 2.0), "dHalf": (0.1, 1.0)},
+    ),
 }
 
 
@@ -166,7 +173,9 @@ def test_primitives(name: str) -> None:
     expression, given = PRIMITIVES[name]
     function = counting_units().function(name)
     choices = product(*given.values())
-    assert most([counted(function, **dict(zip(given, values, strict=True))) for values in choices]) == expression_cost(expression)
+    assert most([counted(function, **dict(zip(given, values, strict=True))) for values in choices]) == expression_cost(
+        expression
+    )
 
 
 @pytest.mark.parametrize(
@@ -195,7 +204,9 @@ def test_statements() -> None:
     shared = Program("shared", (X,), (Let(half, X / 2),), (Output("half", half + 1),))
     body = (
         Call(shared, ((X, Y * Z),), (half,)),
-        Iterate((total,), (X + Y,), (Let(real("step"), total * X),), (total - 1,), sp.Le(total + X, 0), 9, Status.IMPOSSIBLE),
+        Iterate(
+            (total,), (X + Y,), (Let(real("step"), total * X),), (total - 1,), sp.Le(total + X, 0), 9, Status.IMPOSSIBLE
+        ),
         Solve((real("answer"),), (X * Y,), (Z,)),
         Require(sp.Gt(X + Y, 0), Status.UNREACHABLE),
     )

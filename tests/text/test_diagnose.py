@@ -11,7 +11,14 @@ from tests.text.samples import NO_TURN
 from tests.text.units import compiled
 
 SCARA = load(MECHANISMS / "kin_scara2_z.py")
-GIVEN = {"arm_length_1": 300.0, "arm_length_2": 200.0, "lower_a1": -10.0, "upper_a1": 40.0, "lower_z": 0.0, "upper_z": 100.0}
+GIVEN = {
+    "arm_length_1": 300.0,
+    "arm_length_2": 200.0,
+    "lower_a1": -10.0,
+    "upper_a1": 40.0,
+    "lower_z": 0.0,
+    "upper_z": 100.0,
+}
 ROBOT = Scara2Z(**GIVEN)
 REFERENCE = (0.0, 0.0, 0.0)
 NAN = float("nan")
@@ -66,7 +73,12 @@ def test_what_is_no_number() -> None:
 
 
 def test_a_byte_without_a_meaning() -> None:
-    assert both((400.0, 0.0, 50.0), (7, 0, 0)) == (Status.BAD_INPUT, "byte 0 of the configuration means nothing", 0.0, 0)
+    assert both((400.0, 0.0, 50.0), (7, 0, 0)) == (
+        Status.BAD_INPUT,
+        "byte 0 of the configuration means nothing",
+        0.0,
+        0,
+    )
 
 
 def test_before_initialize() -> None:

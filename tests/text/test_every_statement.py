@@ -42,7 +42,10 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
     with statements.watched():
         run_the_tests(mechanism, twins)
         for one in (one for one in twins if one.machine.label in MACHINES):
-            for sample in (*few(one.regular, FEW), *(few(one.grid, FEW_OF_THE_GRID) if one.machine.label == "equal" else ())):
+            for sample in (
+                *few(one.regular, FEW),
+                *(few(one.grid, FEW_OF_THE_GRID) if one.machine.label == "equal" else ()),
+            ):
                 compare_all(one, sample)
         if twins[0].machine.is_spatial and mechanism.branches:
             for one in (*twins[:3], twins_from(bare_machine(mechanism))):
@@ -82,7 +85,9 @@ def left_out(mechanism: Mechanism, statements: Statements) -> list[str]:
     """The statements of a unit that did not run, but for those that no input reaches."""
     lines = text_of(mechanism).split("\n")
     missing = {place.line for place in statements.left_out()}
-    missing = {line for line in missing - unreachable(mechanism, lines) if not lines[line - 1].startswith("FUNCTION_BLOCK")}
+    missing = {
+        line for line in missing - unreachable(mechanism, lines) if not lines[line - 1].startswith("FUNCTION_BLOCK")
+    }
     return [f"{line}: {lines[line - 1].strip()}" for line in sorted(missing)]
 
 
@@ -132,7 +137,9 @@ def unreachable(mechanism: Mechanism, lines: list[str]) -> set[int]:
     """The lines that no input reaches: an axis whose closure allows only an interval always has limits, a CONFIGDATA
     without bytes does not exist, and a divisor that has been refused is not replaced."""
     keys = [capitalized(joint.key) for joint in mechanism.joints if joint.domain is not None]
-    dead = {f"{word}{key} := {value};" for key in keys for word, value in (("lowest", "-1.0E12"), ("highest", "1.0E12"))}
+    dead = {
+        f"{word}{key} := {value};" for key in keys for word, value in (("lowest", "-1.0E12"), ("highest", "1.0E12"))
+    }
     found = {number for number, line in enumerate(lines, 1) if line.strip() in dead}
     empty = [number for number, line in enumerate(lines, 1) if line == "IF SIZEOF(configuration) < 1 THEN"]
     return found.union(replaced_after_a_refusal(lines), *({number + 1, number + 2} for number in empty))

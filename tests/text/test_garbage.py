@@ -1,4 +1,5 @@
-"""Invalid values in every input of every method: refused with outputs unchanged, or not read; nothing stops a controller."""
+"""Invalid values in every input of every method: refused with outputs unchanged, or not read; nothing stops a
+controller."""
 
 from __future__ import annotations
 
@@ -123,7 +124,9 @@ def test_garbage_in_a_command_as_in_python(pairs: tuple[Pair, ...]) -> None:
         for data in (own, (0,) * len(own)):
             command = numbers[:3], rotation, data, numbers[3:]
             status, axes = asked(one.robot.inverse, command[:2], *command[2:])
-            assert_same(one.controller.inverse(*command), (status, axes and axes + (0.0,) * (6 - len(axes))), one, command)
+            assert_same(
+                one.controller.inverse(*command), (status, axes and axes + (0.0,) * (6 - len(axes))), one, command
+            )
             if index < 3 and "xyz"[index] in one.mechanism.task.position:
                 assert status == BAD_INPUT, f"{one} {command}"
 

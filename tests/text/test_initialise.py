@@ -121,7 +121,9 @@ def test_a_configuration_that_is_too_small_is_refused(mechanism: Mechanism) -> N
 
 
 def without_index_checks(mechanism: Mechanism) -> Library:
-    """A unit and a CONFIGDATA that is one byte too small, for a compiler that cannot know it: no index is a constant."""
+    """A unit and a CONFIGDATA that is one byte too small, for a compiler that cannot know it: no
+    index is a constant.
+    """
     size = len(softkin.catalogue()[mechanism.name].CONFIGURATION)
     text, count = re.subn(r"(abyData\[)(\d+\])", r"\1origin + \2", text_of(mechanism))
     assert count > 0
@@ -134,7 +136,9 @@ def test_inputs_have_no_influence_after_initialize(twins: tuple[Twins, ...]) -> 
     for one in twins[-3:]:
         controller = Controller(one.library, one.mechanism)
         assert controller.initialise(one.robot.parameters) == OK
-        controller.set_inputs({p.name: spoiled(p, one.robot.parameters[p.name]) for p in machine_parameters(one.mechanism)})
+        controller.set_inputs(
+            {p.name: spoiled(p, one.robot.parameters[p.name]) for p in machine_parameters(one.mechanism)}
+        )
         for method in methods_of(controller):
             for sample in one.regular[:5]:
                 expected = call_of(one, one.controller, method, sample).run()

@@ -61,7 +61,11 @@ def test_a_rod_would_have_to_be_so_much_longer_or_shorter(mechanism: Mechanism) 
     size = sum(abs(p.nominal) for p in mechanism.parameters if p.unit == "u")
     legs = set()
     for _ in range(150):
-        position = rng.uniform(0.1, 1.0) * rng.uniform(-size, size, 3) * ["xyz"[k] in mechanism.task.position for k in range(3)]
+        position = (
+            rng.uniform(0.1, 1.0)
+            * rng.uniform(-size, size, 3)
+            * ["xyz"[k] in mechanism.task.position for k in range(3)]
+        )
         found = said(robot, tuple(position.tolist()))
         if "reach" in found.reason:
             rod = _rod_of(mechanism, found.reason)

@@ -21,7 +21,9 @@ REMEDY = "choose another name for the mechanism, parameter, joint or branch that
 
 
 def block(name: str, variable: str = "x") -> tuple[Object, ...]:
-    return objects_of(f"FUNCTION_BLOCK {name}\nVAR_INPUT\n  {variable} : LREAL := 0.0;  // One\nEND_VAR\nEND_FUNCTION_BLOCK\n")
+    return objects_of(
+        f"FUNCTION_BLOCK {name}\nVAR_INPUT\n  {variable} : LREAL := 0.0;  // One\nEND_VAR\nEND_FUNCTION_BLOCK\n"
+    )
 
 
 def test_every_name_that_the_harness_refuses_is_known() -> None:
@@ -55,7 +57,8 @@ def test_a_clash_is_one_sentence(objects: tuple[Object, ...], message: str) -> N
 
 
 def test_a_name_in_a_method_is_seen_too() -> None:
-    text = "FUNCTION_BLOCK Mine\nVAR\n  x : LREAL;\nEND_VAR\n\nMETHOD PUBLIC Run\nVAR\n  nan : LREAL;\nEND_VAR\n\nnan := x;\n"
+    head = "FUNCTION_BLOCK Mine\nVAR\n  x : LREAL;\nEND_VAR\n\n"
+    text = head + "METHOD PUBLIC Run\nVAR\n  nan : LREAL;\nEND_VAR\n\nnan := x;\n"
     with pytest.raises(DescriptionError, match=r"Mine\.Run declares nan, which is a macro"):
         refuse_clashes({"a/b.st": objects_of(text + "END_METHOD\nEND_FUNCTION_BLOCK\n")})
 
@@ -63,8 +66,6 @@ def test_a_name_in_a_method_is_seen_too() -> None:
 def test_two_objects_of_one_name() -> None:
     with pytest.raises(DescriptionError, match=r"b\.st: the name MINE is taken by a\.st"):
         refuse_clashes({"a.st": block("Mine"), "b.st": block("MINE")})
-
-
 
 
 def generated(tmp_path: Path, capsys: pytest.CaptureFixture[str], **changes: str) -> str:
@@ -90,5 +91,7 @@ def test_a_mechanism_with_the_name_of_a_block_of_softmotion(tmp_path: Path, caps
 def test_a_parameter_whose_input_is_a_keyword(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A length `int` is the input dInt, and DINT is a type."""
     said = generated(tmp_path, capsys, arm_length_1="int")
-    assert said.startswith("error: scara/Softkin_Scara2_Z.st: Softkin_Scara2_Z declares dInt, which is a word of IEC 61131-3")
+    assert said.startswith(
+        "error: scara/Softkin_Scara2_Z.st: Softkin_Scara2_Z declares dInt, which is a word of IEC 61131-3"
+    )
     assert said.count("\n") == 1

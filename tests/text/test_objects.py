@@ -104,7 +104,9 @@ def test_no_closing_line_stands_between_two_rulers() -> None:
         if line.startswith("// ===="):
             inside = line.strip("/= ")
         elif inside:
-            assert line != "GET" and not line.startswith(("END_METHOD", "END_GET", "END_PROPERTY", "END_FUNCTION")), line
+            assert line != "GET" and not line.startswith(("END_METHOD", "END_GET", "END_PROPERTY", "END_FUNCTION")), (
+                line
+            )
 
 
 def test_declarations() -> None:
@@ -125,14 +127,20 @@ def test_declarations() -> None:
 
 def test_declarations_that_no_block_has_yet() -> None:
     """A base block, a structure, numbered enumerators, and an initial value of several lines."""
-    derived = declaration_of("FUNCTION_BLOCK Robot EXTENDS SPACE.Base IMPLEMENTS\n  SPACE.One\nVAR\n  x : INT;\nEND_VAR")
+    derived = declaration_of(
+        "FUNCTION_BLOCK Robot EXTENDS SPACE.Base IMPLEMENTS\n  SPACE.One\nVAR\n  x : INT;\nEND_VAR"
+    )
     assert (derived.extends, derived.interfaces) == ("SPACE.Base", ("SPACE.One",))
     assert declaration_of("FUNCTION_BLOCK Robot EXTENDS Base\nVAR\nEND_VAR").extends == "Base"
-    pair = declaration_of("{attribute 'a'}\nTYPE Pair :\nSTRUCT\n  x : LREAL;  // One\n  y : LREAL := 1.0;\nEND_STRUCT\nEND_TYPE")
+    pair = declaration_of(
+        "{attribute 'a'}\nTYPE Pair :\nSTRUCT\n  x : LREAL;  // One\n  y : LREAL := 1.0;\nEND_STRUCT\nEND_TYPE"
+    )
     assert (list(pair.names()), pair.attributes, pair.enumerators) == (["x", "y"], (("a", ""),), ())
     order = declaration_of("TYPE Order :\n(\n  First := 3,\n  Second\n);\nEND_TYPE")
     assert order.enumerators == (("First", 3), ("Second", 4))
-    (table,) = declaration_of("PROGRAM P\nVAR\n  t : ARRAY[0..2] OF LREAL := [\n    1.0,\n    2.0, 3.0];\nEND_VAR").sections
+    (table,) = declaration_of(
+        "PROGRAM P\nVAR\n  t : ARRAY[0..2] OF LREAL := [\n    1.0,\n    2.0, 3.0];\nEND_VAR"
+    ).sections
     assert table.variables[0].initial == "[ 1.0, 2.0, 3.0]"
 
 

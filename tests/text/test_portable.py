@@ -12,7 +12,9 @@ from tests.harness.contract import INTERFACES
 from tests.harness.parse import parse
 from tests.harness.portable import Violation, violations
 
-FILES = {str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))}
+FILES = {
+    str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))
+}
 _OWN = parse(FILES["softkin/Softkin_MatrixOrder.st"], "Softkin_MatrixOrder")
 LIBRARY = [declared for space, text in stubs.texts(31).items() for declared in parse(text, space)]
 
@@ -76,7 +78,11 @@ PLANTED = {
     "a bare enumerator": ("x := y;", "IF order = Unknown THEN", "without its type Softkin_MatrixOrder"),
     "an enumerator of another type": ("x := y;", "x := Softkin_MatrixOrder.zero;", "without its type OrientationDOF"),
     "a bound that is a name": ("x : LREAL;", "x : ARRAY[0..LAST] OF LREAL;", "no literals"),
-    "a structured initial value": ("x : LREAL;", "x : TRAFO.AXISLIMITS := (dLower := 1.0);", "structured initial value"),
+    "a structured initial value": (
+        "x : LREAL;",
+        "x : TRAFO.AXISLIMITS := (dLower := 1.0);",
+        "structured initial value",
+    ),
     "an array of initial values": ("x : LREAL;", "x : ARRAY[0..1] OF LREAL := [1.0, 2.0];", "structured initial value"),
     "a nested comment": ("x := y;", "(* a (* b *) *)", "a comment in a comment"),
     "a comment behind a comment": ("x := y;", "x := y; // a (* b", "a comment in a comment"),

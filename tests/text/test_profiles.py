@@ -1,4 +1,5 @@
-"""Profiles of the SoftMotion contract: which interfaces an older library gets, and one line that changes one spelling."""
+"""Profiles of the SoftMotion contract: which interfaces an older library gets, and one line that changes one
+spelling."""
 
 from __future__ import annotations
 
@@ -142,7 +143,9 @@ def test_what_is_not_documented_says_so() -> None:
 
 
 @pytest.mark.parametrize("command", ["generate", "check"])
-def test_an_unknown_profile_is_refused_at_once(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unknown_profile_is_refused_at_once(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     arguments = [command, "--output", str(tmp_path / "out"), "--profile", "4.99"]
     assert main(arguments) == 1
     printed = capsys.readouterr()

@@ -50,7 +50,16 @@ def test_atan2(y: float, x: float) -> None:
 
 def test_atan2_in_every_quadrant() -> None:
     quarter = math.pi / 4
-    for y, x, eighths in ((0, 1, 0), (1, 1, 1), (1, 0, 2), (1, -1, 3), (0, -1, 4), (-1, -1, -3), (-1, 0, -2), (-1, 1, -1)):
+    for y, x, eighths in (
+        (0, 1, 0),
+        (1, 1, 1),
+        (1, 0, 2),
+        (1, -1, 3),
+        (0, -1, 4),
+        (-1, -1, -3),
+        (-1, 0, -2),
+        (-1, 1, -1),
+    ):
         assert LIBRARY.function("Softkin_Atan2")(float(y), float(x)) == pytest.approx(eighths * quarter, rel=ROUNDING)
     assert LIBRARY.function("Softkin_Atan2")(0.0, 0.0) == 0.0
 
@@ -73,7 +82,9 @@ def test_nearest_period(value: float, centre: float) -> None:
 @given(angle=ANGLES, centre=ANGLES, half=st.floats(0.0, math.pi))
 def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
     expected = reference(NearestOnArc, angle, centre, half)
-    assert LIBRARY.function("Softkin_NearestOnArc")(angle, centre, half) == pytest.approx(expected, rel=1e-14, abs=1e-14)
+    assert LIBRARY.function("Softkin_NearestOnArc")(angle, centre, half) == pytest.approx(
+        expected, rel=1e-14, abs=1e-14
+    )
 
 
 @given(value=st.floats(-2e9, 2e9) | st.integers(-(2**31), 2**31).map(float))
@@ -134,7 +145,9 @@ def test_the_turn_inside(axis: float, low: float, width: float) -> None:
     numbers = [n for n in range(-127, 128) if n != 0]
     turns = {n: axis + 360.0 * round((_centre(n) - axis) / 360.0) for n in numbers}
     inside = [n for n, value in turns.items() if low <= value <= high]
-    edges = ((value, edge) for n, value in turns.items() for edge in (low, high, _centre(n) - 180.0, _centre(n) + 180.0))
+    edges = (
+        (value, edge) for n, value in turns.items() for edge in (low, high, _centre(n) - 180.0, _centre(n) + 180.0)
+    )
     if any(abs(value - edge) < 1e-6 for value, edge in edges):
         return  # where rounding decides
     expected = (max(inside) if axis > high else min(inside)) if inside else 0
@@ -159,7 +172,9 @@ _NUMBERS = st.floats(-10.0, 10.0)
 @example((1.0, 0.0, 2.0, 0.0), 1.0)
 def test_what_hides_two_roots(ends: tuple[float, float, float, float], width: float) -> None:
     """Where the search cuts a cell: as on plain numbers in Python."""
-    assert LIBRARY.function("Softkin_TangentsMeet")(*ends, width) == pytest.approx(_root._between(*ends, width), rel=1e-12)
+    assert LIBRARY.function("Softkin_TangentsMeet")(*ends, width) == pytest.approx(
+        _root._between(*ends, width), rel=1e-12
+    )
     assert LIBRARY.function("Softkin_ComesBack")(*ends, width) == _root._comes_back(*ends, width)
     assert LIBRARY.function("Softkin_HidesRoots")(*ends, width) == _root._hides_roots(*ends, width)
 
@@ -263,7 +278,9 @@ def test_make_rotation() -> None:
 
 
 def test_make_rotation_refuses_what_is_none() -> None:
-    """Untouched where it is stretched, sheared or mirrored, or holds no numbers; the reason and the amount as in Python."""
+    """Untouched where it is stretched, sheared or mirrored, or holds no numbers; the reason and the amount as in
+    Python.
+    """
     make, reason = (LIBRARY.function(f"Softkin_{name}") for name in ("MakeRotation", "RotationReason"))
     for turned in rotations(5):
         wrong = [*orthonormal.too_far_off(turned), *orthonormal.mirrored(turned), 0.0 * turned, 1e9 * turned]

@@ -40,7 +40,9 @@ def text_of(mechanism: Mechanism) -> str:
 
 @cache
 def public_methods(mechanism: Mechanism) -> tuple[str, ...]:
-    """The methods of a mechanism's unit that are not private, read from their first lines: nothing is parsed for a list."""
+    """The methods of a mechanism's unit that are not private, read from their first lines: nothing is parsed for a
+    list.
+    """
     return tuple(re.findall(r"^METHOD PUBLIC (\w+)", text_of(mechanism), re.MULTILINE))
 
 
@@ -50,7 +52,9 @@ def compiled(mechanism: Mechanism, order: str = "rows", matrix_size: int = 72, m
 
 
 @cache
-def compiled_text(file: str, text: str, order: str = "rows", matrix_size: int = 72, max_config_data: int = 31) -> Library:
+def compiled_text(
+    file: str, text: str, order: str = "rows", matrix_size: int = 72, max_config_data: int = 31
+) -> Library:
     """A text, compiled together with the shared objects."""
     return compile_st({**shared_texts(), file: text}, order, matrix_size, max_config_data)
 

@@ -86,7 +86,9 @@ class Machine:
             name_turn(sheet, view, turn, self._spelled(turn.label), at, radius)
         for slide, marks in zip(scene.slides, arrows, strict=True):
             tips = [np.array(mark.points[0]) for mark in marks if isinstance(mark, Area)]
-            name_slide(sheet, view, slide, self._spelled(slide.label), tips[0] if tips else view.page(self._rails[slide][1]))
+            name_slide(
+                sheet, view, slide, self._spelled(slide.label), tips[0] if tips else view.page(self._rails[slide][1])
+            )
         name_axes(sheet, "XYZ", base)
         name_axes(sheet, "xyz", tool)
         places = around(view.page(scene.tool.position), (24.0, 34.0, 46.0, 60.0))

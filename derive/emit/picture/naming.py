@@ -28,14 +28,18 @@ def name_turn(sheet: Sheet, view: View, turn: Turn, text: str, at: Vector, radiu
 
 
 def name_slide(sheet: Sheet, view: View, slide: Slide, text: str, tip: Vector) -> None:
-    """The name of a linear axis at the tip of its arrow; of a rail that drives share, what they make of it at its end."""
+    """The name of a linear axis at the tip of its arrow; of a rail that drives share, what they
+    make of it at its end.
+    """
     along = view.direction(slide.axis)
     toward = along / max(float(np.linalg.norm(along)), 1e-9)
     reach = 14.0 + abs(float(toward[0])) * max(0.0, 3.4 * len(text) - 8.0)
     size, colour = (style.NAME, style.SLIDE) if slide.has_arrow else (style.LABEL, style.FAINT)
     if not slide.has_arrow and max(slide.axis) > 0.999:
         text = f"{'XYZ'[int(np.argmax(slide.axis))]} = {text}"
-    sheet.label(text, size, colour, around(tip, (reach, reach + 10.0, reach + 24.0), toward=toward), is_bold=slide.has_arrow)
+    sheet.label(
+        text, size, colour, around(tip, (reach, reach + 10.0, reach + 24.0), toward=toward), is_bold=slide.has_arrow
+    )
 
 
 def name_axes(sheet: Sheet, letters: str, tips: Sequence[tuple[Vector, list[Mark]]]) -> None:
@@ -68,7 +72,9 @@ def name_length(sheet: Sheet, view: View, dimension: Dimension, text: str) -> No
     """A dimension line beside what it measures; a leader to the middle where that is too short."""
     start, end = view.page(dimension.start), view.page(dimension.end)
     length = float(np.linalg.norm(end - start))
-    sheet.label(text, style.LABEL, style.INK, _lines(start, end) if length > _SHORT else _leaders(start, end, len(text)))
+    sheet.label(
+        text, style.LABEL, style.INK, _lines(start, end) if length > _SHORT else _leaders(start, end, len(text))
+    )
 
 
 def _lines(start: Vector, end: Vector) -> list[Place]:

@@ -53,7 +53,9 @@ def _words(drawing: Drawing, shown: Sequence[Choice], names: Mapping[str, str]) 
     if drawing.is_zero:
         yield "Zero pose: all axes at their offsets. Arrows show the positive direction of every axis."
     else:
-        values = ", ".join(f"{joint.name} = {value:.6g}{'°' if joint.is_angle else ''}" for joint, value in drawing.axes)
+        values = ", ".join(
+            f"{joint.name} = {value:.6g}{'°' if joint.is_angle else ''}" for joint, value in drawing.axes
+        )
         where = "Home pose, where" if drawing.is_home else "Drawn where"
         yield from wrap(f"{where} {values}. Arrows show the positive direction of every axis.", _LETTERS)
     if any(turn.zero is not None for turn in drawing.scene.turns):
@@ -63,6 +65,8 @@ def _words(drawing: Drawing, shown: Sequence[Choice], names: Mapping[str, str]) 
     hidden = ", ".join(spelled(label, names) for label in drawing.scene.hidden)
     if hidden:
         yield f"Zero here: {hidden}."
-    others = [f"byte {k}, {c.name}: 1 {c.names[0]}, 2 {c.names[1]}" for k, c in enumerate(drawing.choices) if c not in shown]
+    others = [
+        f"byte {k}, {c.name}: 1 {c.names[0]}, 2 {c.names[1]}" for k, c in enumerate(drawing.choices) if c not in shown
+    ]
     if others:
         yield from wrap(f"Bytes of the configuration without a picture: {'; '.join(others)}.", _LETTERS)

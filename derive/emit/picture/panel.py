@@ -29,7 +29,9 @@ def panels(choices: Sequence[tuple[str, Choice]], box: Box, *, is_planar: bool) 
     """The small pictures, one below the other."""
     marks: list[Mark] = []
     if choices:
-        marks.append(line([(box.left - 8.0, box.top), (box.left - 8.0, box.top - HEIGHT * len(choices))], style.LINK, 0.8))
+        marks.append(
+            line([(box.left - 8.0, box.top), (box.left - 8.0, box.top - HEIGHT * len(choices))], style.LINK, 0.8)
+        )
     for row, (heading, choice) in enumerate(choices):
         top = box.top - row * HEIGHT
         marks += _panel(heading, choice, Box(box.left, top - HEIGHT, box.right, top), is_planar)

@@ -49,7 +49,9 @@ class Sheet:
         def at(place: Place) -> Text:
             return Text(text, spot(place.at), size, colour, is_bold=is_bold)
 
-        best = min(places, key=lambda place: round(place.cost + self._cost(at(place), place.marks), 3))  # the first of equals
+        best = min(
+            places, key=lambda place: round(place.cost + self._cost(at(place), place.marks), 3)
+        )  # the first of equals
         self.draw((*best.marks, at(best)))
 
     def _cost(self, text: Text, marks: Sequence[Mark]) -> float:

@@ -41,14 +41,18 @@ def ground(at: Vector, view: View) -> list[Mark]:
     foot = at + np.array([0.0, -20.0])
     marks: list[Mark] = [area([at, foot + [-13.0, 0.0], foot + [13.0, 0.0]], style.BASE, style.FAINT)]
     marks.append(line([foot + [-19.0, 0.0], foot + [19.0, 0.0]], style.INK, 1.4))
-    return marks + [line([foot + [x, 0.0], foot + [x - 6.0, -6.0]], style.INK, 1.0) for x in (-12.0, -4.0, 4.0, 12.0, 19.0)]
+    return marks + [
+        line([foot + [x, 0.0], foot + [x - 6.0, -6.0]], style.INK, 1.0) for x in (-12.0, -4.0, 4.0, 12.0, 19.0)
+    ]
 
 
 def basis(axis: Sequence[float], toward: Sequence[float] | Vector | None) -> tuple[Vector, Vector, Vector]:
     """The axis, a direction across it, and the one a quarter turn on."""
     z = np.array(axis, dtype=float)
     z /= np.linalg.norm(z)
-    guess = np.array(toward if toward is not None else ([1.0, 0.0, 0.0] if abs(z[0]) < 0.9 else [0.0, 1.0, 0.0]), dtype=float)
+    guess = np.array(
+        toward if toward is not None else ([1.0, 0.0, 0.0] if abs(z[0]) < 0.9 else [0.0, 1.0, 0.0]), dtype=float
+    )
     x = guess - (guess @ z) * z
     x /= np.linalg.norm(x)
     return z, x, np.cross(z, x)
@@ -75,7 +79,10 @@ def turning(turn: Turn, at: Vector, radius: float, view: View) -> list[Mark]:
     """A rotary joint: its body, its axis, and an arrow in its positive direction."""
     if view.is_planar:
         r = style.JOINT_RADIUS - 2.0
-        marks: list[Mark] = [area(_circle(at, r), style.JOINT, style.TURN, 1.6), area(_circle(at, 2.0), style.TURN, style.TURN)]
+        marks: list[Mark] = [
+            area(_circle(at, r), style.JOINT, style.TURN, 1.6),
+            area(_circle(at, 2.0), style.TURN, style.TURN),
+        ]
         marks += _reference(turn, turn.zero or turn.toward, at, radius + 14.0, view)
         return [*marks, *arrow(arc(turn, at, radius, view), style.TURN, 2.2)]
     z = view.axes @ np.array(turn.axis)
@@ -100,20 +107,26 @@ def opening(arc_: Arc, radius: float, view: View) -> list[Vector]:
     across = end - (end @ start) * start
     across /= np.linalg.norm(across)
     at = view.page(arc_.at)
-    return [at + radius * (view.axes @ (np.cos(a) * start + np.sin(a) * across)) for a in np.linspace(0.0, angle, STEPS)]
+    return [
+        at + radius * (view.axes @ (np.cos(a) * start + np.sin(a) * across)) for a in np.linspace(0.0, angle, STEPS)
+    ]
 
 
 def angle_lines(arc_: Arc, radius: float, view: View) -> list[Mark]:
     """An angle of the machine: both directions, and an arrow from the first to the second."""
     at, points = view.page(arc_.at), opening(arc_, radius, view)
-    sides: list[Mark] = [line([at, at + 1.25 * (p - at)], style.FAINT, 0.9, (3.0, 3.0)) for p in (points[0], points[-1])]
+    sides: list[Mark] = [
+        line([at, at + 1.25 * (p - at)], style.FAINT, 0.9, (3.0, 3.0)) for p in (points[0], points[-1])
+    ]
     return [*sides, *arrow(points, style.FAINT, 1.2, 0.8)]
 
 
 def _cylinder(turn: Turn, at: Vector, view: View) -> list[Area]:
     z, x, y = basis(turn.axis, view.eye)
     half = 12.0 * (view.axes @ z)
-    ring = [style.JOINT_RADIUS * (view.axes @ (np.cos(a) * x + np.sin(a) * y)) for a in np.linspace(0, 2 * np.pi, 25)[:-1]]
+    ring = [
+        style.JOINT_RADIUS * (view.axes @ (np.cos(a) * x + np.sin(a) * y)) for a in np.linspace(0, 2 * np.pi, 25)[:-1]
+    ]
     near = half if float(z @ view.eye) >= 0 else -half
     body = hull([at + side + p for side in (half, -half) for p in ring])
     return [area(body, style.JOINT, style.TURN, 1.4), area([at + near + p for p in ring], "#eef4fb", style.TURN, 1.2)]

@@ -123,7 +123,9 @@ def _structure(root: ET.Element, folders: Folders) -> None:
         folder = ET.SubElement(root, "Folder", Name=name)
         for one in objects:
             entry = ET.SubElement(folder, "Object", Name=one.name, ObjectId=_identifier(one.name))
-            for member in one.members:  # a tool of another vendor imports the members that are listed here, and no other
+            for (
+                member
+            ) in one.members:  # a tool of another vendor imports the members that are listed here, and no other
                 ET.SubElement(entry, "Object", Name=member.name, ObjectId=_identifier(one.name, member.name))
 
 

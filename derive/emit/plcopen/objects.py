@@ -33,7 +33,9 @@ class Object:
 
 
 def objects_of(text: str) -> tuple[Object, ...]:
-    """The objects of a text in their order; raises `ValueError` for one without an end, and for text that is in none."""
+    """The objects of a text in their order; raises `ValueError` for one without an end, and for
+    text that is in none.
+    """
     return tuple(_Reader(text).objects())
 
 

@@ -36,7 +36,8 @@ from derive.ir.tree import If, Item
 from derive.lowering.scheduling import scheduled
 
 CALLED = frozenset((
-    "DEGREE", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc", "nearest_period",
+    "DEGREE", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc",
+    "nearest_period",
     "opposite", "passed", "reasonable", "require", "root", "select", "settled", "sin", "solve", "sqrt",
 ))  # fmt: skip
 """What programs on arrays call."""
@@ -71,7 +72,9 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
         if isinstance(item, If):
             return array_arm_lines(item, alike, bound, printer)
         assert isinstance(item, Let | Solve)
-        return binding_lines(item, turns if isinstance(item, Let) and isinstance(item.value, NearestPeriod) else printer)
+        return binding_lines(
+            item, turns if isinstance(item, Let) and isinstance(item.value, NearestPeriod) else printer
+        )
 
     for item, same in grouped(scheduled(_refused_late(program.body), [o.value for o in program.outputs])):
         if isinstance(item, Iterate):
@@ -90,7 +93,8 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
 
 
 def _refused_late(body: Iterable[Statement]) -> list[Statement]:
-    """The statements, conditions behind values: all rows are computed anyhow, and a choice gathers what stands together.
+    """The statements, conditions behind values: all rows are computed anyhow, and a choice gathers what stands
+    together.
 
     The first check the inputs, and stay. What iterates, searches or is shared asks which rows are refused before it.
     """

@@ -1,4 +1,5 @@
-"""Calls of programs that several programs share: values go in and come out as one tuple, in the order of the program."""
+"""Calls of programs that several programs share: values go in and come out as one tuple, in the order of the
+program."""
 
 from __future__ import annotations
 
@@ -15,7 +16,8 @@ from derive.ir.symbols import (
 )
 
 GIVEN, FOUND = "given", "found"
-"""The argument of a shared program, and what it answered: its values or, on plain numbers, the status of its refusal."""
+"""The argument of a shared program, and what it answered: its values or, on plain numbers, the status of its
+refusal."""
 
 
 def scalar_lines(call: Call, printer: ScalarPrinter, refused: str = f"return {FOUND}") -> list[str]:

@@ -10,8 +10,8 @@
     sin_q1 = across_q1/length_q1
     cos_q1, sin_q1 = elsewhere(length_q1 > 1e-11, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
 
-Programs are total, so that the first side does no harm in rows that are on the second, which are few as a rule. Where nothing
-has to be computed on the second side:
+Programs are total, so that the first side does no harm in rows that are on the second, which are few as a rule. Where
+nothing has to be computed on the second side:
 
     turn_q1 = select(absolute(rate_q1) > 1e-12, excess_q1/rate_q1, 0.0)
 """
@@ -58,10 +58,17 @@ def array_arm_lines(
         first, held = _side(arms.holds, arms.names, printer, is_written_out=len(results) == 1)
         name, named = (condition, []) if len(results) == 1 else ("holds", fold(f"holds = {condition}"))
         chosen = [f"{r} = select({name}, {a}, {b})" for r, a, b in zip(results, held, other, strict=True)]
-        return [*(line for item in first for line in lines(item)), *named, *said, *(x for text in chosen for x in fold(text))]
+        return [
+            *(line for item in first for line in lines(item)),
+            *named,
+            *said,
+            *(x for text in chosen for x in fold(text)),
+        ]
     holds = [line for item in first for line in lines(item)]
     fails = [line for item in second for line in lines(item)]
-    kinds = {spelled(s.name): _kind(s) for s in sorted(_read(arms.fails) - set(constants), key=lambda s: spelled(s.name))}
+    kinds = {
+        spelled(s.name): _kind(s) for s in sorted(_read(arms.fails) - set(constants), key=lambda s: spelled(s.name))
+    }
     function = _unused(f"elsewhere_{results[0]}", holds)
     return [
         "",
@@ -81,7 +88,10 @@ def _side(
 
     is_written_out: whether a result that nothing else on the side reads stands where it is chosen.
     """
-    items, results = [replace(i, note="", turn_of="") if isinstance(i, Let) and i.name in names else i for i in side], []
+    items, results = (
+        [replace(i, note="", turn_of="") if isinstance(i, Let) and i.name in names else i for i in side],
+        [],
+    )
     for name in names:
         let = next((i for i in items if isinstance(i, Let) and i.name == name), None)
         others = [i for i in items if i is not let]
@@ -133,7 +143,9 @@ def _read(items: Sequence[Item]) -> set[sp.Symbol]:
     """What statements read that they do not bind."""
     found, bound = set[sp.Symbol](), set[sp.Symbol]()
     for item in items:
-        read = symbols_of(item.condition) | _read(item.holds) | _read(item.fails) if isinstance(item, If) else reads(item)
+        read = (
+            symbols_of(item.condition) | _read(item.holds) | _read(item.fails) if isinstance(item, If) else reads(item)
+        )
         found |= read - bound
         bound |= set(item.names if isinstance(item, If) else binds(item))
     return found

@@ -68,8 +68,12 @@ def _parameter(p: Parameter) -> str:
 
 def configuration(kin: Kinematics) -> list[str]:
     """The bytes: branches first, then periods."""
-    branches = [_call("ConfigurationByte", name=b.name, kind="branch", branches=b.names, default=1) for b in kin.branches]
-    periods = [_call("ConfigurationByte", name=j.name, kind="period", branches=(), default=0) for j in kin.period_joints]
+    branches = [
+        _call("ConfigurationByte", name=b.name, kind="branch", branches=b.names, default=1) for b in kin.branches
+    ]
+    periods = [
+        _call("ConfigurationByte", name=j.name, kind="period", branches=(), default=0) for j in kin.period_joints
+    ]
     return _tuple([*branches, *periods])
 
 

@@ -28,8 +28,8 @@ class Function:
 def finish(kin: Kinematics, trusted: Program) -> Function | None:
     """What makes answers of the axes that trusted input gives.
 
-    trusted: one branch for such input. None where an axis alone does not know its turn or its limits: with gear coupling the
-    reference is compared joint by joint, and a limited quantity is one of several axes.
+    trusted: one branch for such input. None where an axis alone does not know its turn or its limits: with gear
+    coupling the reference is compared joint by joint, and a limited quantity is one of several axes.
     """
     if kin.limited or any(joint.coupling != 0 for joint in kin.period_joints):
         return None
@@ -58,7 +58,10 @@ def _every_slot(joints: tuple[Joint, ...], open_joints: list[Joint]) -> list[str
     turned: list[str] = []
     for joint in open_joints:
         axis, near = joint.axis.name, f"near_{joint.key}"
-        turned += [f"if not FIRST_TURN <= {axis} - {near} < SECOND_TURN:", f"    {axis} = nearest_period({axis}, {near})"]
+        turned += [
+            f"if not FIRST_TURN <= {axis} - {near} < SECOND_TURN:",
+            f"    {axis} = nearest_period({axis}, {near})",
+        ]
     inside = " and ".join(f"lowest_{joint.key} <= {joint.axis.name} <= highest_{joint.key}" for joint in joints)
     every = [
         f"{', '.join(names)}{',' if len(names) == 1 else ''} = axes",

@@ -77,7 +77,9 @@ def _assignment(values: Mapping[str, str]) -> str:
 
 
 def fits(line: str, comment: str) -> bool:
-    """Whether a comment can stand behind a statement in a method, one choice deep: the layout puts spaces around operators."""
+    """Whether a comment can stand behind a statement in a method, one choice deep: the layout puts spaces around
+    operators.
+    """
     spaced = len(line) + 2 * (line.count("*") + line.count("/"))
     return _INDENT + 4 + spaced + len(f"  # {comment}") <= WIDTH
 

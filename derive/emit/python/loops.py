@@ -1,4 +1,5 @@
-"""Systems of linear equations and iterations as Python: the same text on plain numbers and on arrays, but for the end."""
+"""Systems of linear equations and iterations as Python: the same text on plain numbers and on arrays, but for the
+end."""
 
 from __future__ import annotations
 
@@ -50,7 +51,9 @@ def array_end(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     following = [f"{value}," for value in _values(loop, loop.following, printer)]
     return [
         *_indented([*fold(f"done = {printer.print(loop.done)}"), "if settled(done, status):", "    break"]),
-        *_indented([f"{state} = advanced(", "    done,", f"    ({state}),", "    (", *_indented(following, 2), "    ),", ")"]),
+        *_indented(
+            [f"{state} = advanced(", "    done,", f"    ({state}),", "    (", *_indented(following, 2), "    ),", ")"]
+        ),
         f"require(status, done, Status.{loop.otherwise.name})",
     ]
 

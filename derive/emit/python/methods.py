@@ -48,7 +48,9 @@ def methods(kin: Kinematics) -> list[Method]:
     if kin.offset_branch is not None:
         text = "The axes of one branch for a point off the flange."
         arguments = (Argument("point", "Vector", POSITION), offset, *_choice(kin))
-        found.append(Method("offset_branch", text, kin.offset_branch, arguments, "Reals", axis_values, is_explained=True))
+        found.append(
+            Method("offset_branch", text, kin.offset_branch, arguments, "Reals", axis_values, is_explained=True)
+        )
     if kin.offset_configuration is not None:
         text = "The signed margin of every branch for a point off the flange."
         found.append(Method("offset_measures", text, kin.offset_configuration, (axes, offset), "Reals", measures))
@@ -75,7 +77,14 @@ def every_root(kin: Kinematics) -> list[Method]:
     given = tuple(o.name for o in kin.search_given.outputs)
     return [
         Method("search_given", "What the search is given.", kin.search_given, (*pose, *_choice(kin)), "Values", given),
-        Method("from_joints", "The axes of joints.", kin.from_joints, (joints, *_choice(kin)[1:]), "Reals", _axes(kin).shape),
+        Method(
+            "from_joints",
+            "The axes of joints.",
+            kin.from_joints,
+            (joints, *_choice(kin)[1:]),
+            "Reals",
+            _axes(kin).shape,
+        ),
     ]
 
 
@@ -92,7 +101,9 @@ def forwards(kin: Kinematics) -> list[Method]:
         return [forward(kin)]
     start = (
         Argument("start_position", "Vector", tuple(f"start_{c}" for c in "xyz")),
-        Argument("start_rotation", "Rotation", tuple(tuple(f"start_r{row}{column}" for column in "123") for row in "123")),
+        Argument(
+            "start_rotation", "Rotation", tuple(tuple(f"start_r{row}{column}" for column in "123") for row in "123")
+        ),
     )
     text = "The same, found from a given start."
     result = (POSITION, ROTATION, _measures(kin))

@@ -212,7 +212,9 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "core_types": sorted({"Image", "Mechanism", "Pose"}),
         "types": _types(kin, scalar),
         "primitives": primitives_in(line for body in texts for line in body),
-        "of_limits": [n for n in ("beyond", "beyond_turn", "turn_inside") if any(f"{n}(" in line for b in bodies for line in b)],
+        "of_limits": [
+            n for n in ("beyond", "beyond_turn", "turn_inside") if any(f"{n}(" in line for b in bodies for line in b)
+        ],
         "searches": any(map(has_search, kin.shared)),
         "lean": lean,
         "trusted": trusted,
@@ -221,7 +223,9 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "has_folds": has_folds(kin),
         "margins": tuple(m.name for m in kin.margins),
         "every_root": _every_root(scalar),
-        "methods": [{"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)],
+        "methods": [
+            {"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)
+        ],
     }
     array_methods = [{"head": _array_head(m), "summary": m.summary, "body": array_body(m)} for m in arrays]
     array_lines = [line for m in array_methods for line in (*m["head"], *m["body"])]
@@ -243,9 +247,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     return files
 
 
-def _constants_read(
-    kin: Kinematics, programs: Iterable[Method], lean: Unrolled | Function | None
-) -> set[str]:
+def _constants_read(kin: Kinematics, programs: Iterable[Method], lean: Unrolled | Function | None) -> set[str]:
     """The constants that a program reads, or the text around the programs."""
     found = {name for method in programs for name in constants_of(method)} | set(lean.constants if lean else ())
     found |= {TIE_OF_LENGTHS.name} if chooses_by_lengths(kin.mechanism) else set()

@@ -54,7 +54,9 @@ def primitives_in(lines: Iterable[str]) -> list[str]:
 
 def words(lines: Iterable[str]) -> set[str]:
     """The words of statements, without texts and comments."""
-    return {word for line in lines for word in re.findall(r"[A-Za-z_]\w*", re.sub(r'"[^"]*"', "", line).partition("#")[0])}
+    return {
+        word for line in lines for word in re.findall(r"[A-Za-z_]\w*", re.sub(r'"[^"]*"', "", line).partition("#")[0])
+    }
 
 
 def is_sum_of_squares(value: sp.Expr) -> bool:
@@ -73,15 +75,15 @@ def _numbers_checked(node: sp.Basic) -> list[sp.Basic]:
 class ScalarPrinter(ExpressionPrinter):
     """Plain numbers: a choice is a conditional expression, and only one arm of it is evaluated.
 
-    What is short is written out instead of called, because a call takes longer: the root of a sum of squares or of a name, and
-    the size of a name.
-    Of an angle, zeros lose their signs by adding 0.
+    What is short is written out instead of called, because a call takes longer: the root of a sum of squares or of a
+    name, and the size of a name. Of an angle, zeros lose their signs by adding 0.
     """
 
     def __init__(self, *, modulo_turns: bool = False, is_trusted: bool = False) -> None:
         """modulo_turns: whether -180 degrees are as good as 180, so that the sign of a zero sine does not matter.
 
-        is_trusted: whether there is a direction at all, so that not both are zero; and quotients are products, which are faster.
+        is_trusted: whether there is a direction at all, so that not both are zero; and quotients are products, which
+        are faster.
         """
         self.modulo_turns, self.is_trusted = modulo_turns, is_trusted
 
@@ -92,10 +94,19 @@ class ScalarPrinter(ExpressionPrinter):
             return self._spell(node.args[0])
         if self.is_trusted and node.is_Mul and 1 / DEGREE in node.args:
             return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT
-        if isinstance(node, sp.LessThan) and isinstance(node.lhs, sp.Abs) and node.lhs.args[0].is_Symbol and node.rhs.is_positive:
+        if (
+            isinstance(node, sp.LessThan)
+            and isinstance(node.lhs, sp.Abs)
+            and node.lhs.args[0].is_Symbol
+            and node.rhs.is_positive
+        ):
             bound, value = self.print(node.rhs), self.print(node.lhs.args[0])
             return f"-{bound} <= {value} <= {bound}", COMPARE
-        if isinstance(node, Select) and isinstance(node.args[1], Root) and node.args[0] == sp.Gt(node.args[1].args[0], 0):
+        if (
+            isinstance(node, Select)
+            and isinstance(node.args[1], Root)
+            and node.args[0] == sp.Gt(node.args[1].args[0], 0)
+        ):
             condition, (radicand,), otherwise = node.args[0], node.args[1].args, node.args[2]
             return f"(sqrt({self.print(radicand)}) if {self.print(condition)} else {self.print(otherwise)})", ATOM
         if isinstance(node, Root):
@@ -119,7 +130,9 @@ class ScalarPrinter(ExpressionPrinter):
             return f"({first} if {condition} else {second})"
         if key == "atan2":
             sine, cosine = arguments
-            return f"arctan2({sine}{'' if self.modulo_turns else ' + 0.0'}, {cosine}{'' if self.is_trusted else ' + 0.0'})"
+            return (
+                f"arctan2({sine}{'' if self.modulo_turns else ' + 0.0'}, {cosine}{'' if self.is_trusted else ' + 0.0'})"
+            )
         return f"{key}({', '.join(arguments)})"
 
     def logic(self, word: str) -> str:
@@ -127,7 +140,9 @@ class ScalarPrinter(ExpressionPrinter):
 
 
 class ArrayPrinter(ScalarPrinter):
-    """Arrays: a choice evaluates both arms, and conditions are masks. Constants are read where they are: `k.arm_length`."""
+    """Arrays: a choice evaluates both arms, and conditions are masks. Constants are read where they are:
+    `k.arm_length`.
+    """
 
     def __init__(self, constants: Collection[str] = (), *, modulo_turns: bool = False) -> None:
         """constants: their names; modulo_turns: as on plain numbers."""

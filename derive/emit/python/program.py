@@ -118,7 +118,9 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
 def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """A binding, or a choice between two sides that bind the same or refuse."""
     if isinstance(item, If):
-        notes = dict.fromkeys(i.comment for i in item.holds if isinstance(i, Let) and i.name in item.names and i.comment)
+        notes = dict.fromkeys(
+            i.comment for i in item.holds if isinstance(i, Let) and i.name in item.names and i.comment
+        )
         head = [*(line for note in notes for line in note_lines(note)), *fold(f"if {conjunction([item.condition])}:")]
         sides = [[_unnoted(i, item.names) for i in side] for side in (item.holds, item.fails)]
         holds, fails = (_side(side, refusals, printer) for side in sides)
@@ -159,7 +161,9 @@ def has_search(program: Program) -> bool:
 
 def without_conversions(program: Program) -> Program:
     """The program with whole numbers where they multiply: Python converts them by itself."""
-    own = {let.name: let.value for let in program.lets() if isinstance(let.value, ToReal) and let.value.args[0].is_Symbol}
+    own = {
+        let.name: let.value for let in program.lets() if isinstance(let.value, ToReal) and let.value.args[0].is_Symbol
+    }
     body = [rewritten(s, lambda e: e.xreplace(own)) for s in program.body if not (isinstance(s, Let) and s.name in own)]
     outputs = tuple(replace(o, value=o.value.xreplace(own)) for o in program.outputs)
     return verify(replace(program, body=tuple(body), outputs=outputs)) if own else program
@@ -187,7 +191,9 @@ def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
 
 
 def grouped(body: Sequence[Item]) -> Iterator[tuple[Item, tuple[Require, ...]]]:
-    """Statements in order; conditions that follow each other and refuse alike, about the same subject, come together."""
+    """Statements in order; conditions that follow each other and refuse alike, about the same
+    subject, come together.
+    """
 
     def key(indexed: tuple[int, Item]) -> tuple[object, ...]:
         index, statement = indexed

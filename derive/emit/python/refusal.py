@@ -1,4 +1,5 @@
-"""How a body on plain numbers refuses: with a status, or with a diagnosis: which axis or leg, why, and how much is missing."""
+"""How a body on plain numbers refuses: with a status, or with a diagnosis: which axis or leg, why, and how much is
+missing."""
 
 from __future__ import annotations
 
@@ -92,7 +93,9 @@ class Explained(Refusals):
 
 @dataclass(frozen=True)
 class Limits:
-    """Two conditions that a value is between two limits, with the reasons to tell: below the one, or above the other."""
+    """Two conditions that a value is between two limits, with the reasons to tell: below the one,
+    or above the other.
+    """
 
     value: sp.Expr
     lowest: sp.Expr
@@ -103,7 +106,13 @@ class Limits:
     def of(cls, below: Require, above: Require) -> Limits | None:
         """What two conditions say; None where they say something else."""
         low, high, reason, other = below.condition, above.condition, below.reason, above.reason
-        if not (isinstance(low, sp.GreaterThan) and isinstance(high, sp.LessThan) and low.lhs == high.lhs and reason and other):
+        if not (
+            isinstance(low, sp.GreaterThan)
+            and isinstance(high, sp.LessThan)
+            and low.lhs == high.lhs
+            and reason
+            and other
+        ):
             return None
         found = cls(low.lhs, low.rhs, high.rhs, reason)
         told = (Why.BELOW, low.rhs - low.lhs), (Why.ABOVE, high.lhs - high.rhs)

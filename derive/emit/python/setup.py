@@ -1,7 +1,7 @@
 """The setup program as what makes the constants of a machine from its parameters.
 
-The range of each parameter is tested by the table of parameters, and where an axis may be is made by one call an axis: both are
-the same for every machine.
+The range of each parameter is tested by the table of parameters, and where an axis may be is made by one call an axis:
+both are the same for every machine.
 """
 
 from __future__ import annotations
@@ -48,7 +48,9 @@ def setup_body(kin: Kinematics, read: Collection[str]) -> list[str]:
     lines: list[str] = []
     for statement in program.body:
         if isinstance(statement, Iterate | Call | FindRoot):
-            raise TypeError("what depends on parameters alone is straight-line: a setup program neither iterates nor calls")
+            raise TypeError(
+                "what depends on parameters alone is straight-line: a setup program neither iterates nor calls"
+            )
         window = by_refusal.get(statement.reason) if isinstance(statement, Require) and statement.reason else None
         if window:
             lines += _window(window, read)

@@ -135,13 +135,19 @@ def _constants(kin: Kinematics) -> frozenset[str]:
 
 
 def unrolled(kin: Kinematics) -> Unrolled:
-    """The functions on plain numbers. Near a fold they have no answer, an empty tuple: one branch after the other has."""
+    """The functions on plain numbers. Near a fold they have no answer, an empty tuple: one branch
+    after the other has.
+    """
     kin = replace(kin, branch=untold(far_from_folds(kin.derived_branch)))
     one = _trusted(kin)
     methods, parts = _shorter(kin, _methods(kin, one))
     known = (*kin.setup.lets(), *parts)
     last = finish(kin, one)
-    functions = (_directions(kin, methods[0], known), _direction(kin, methods[1], known, parts), *((last,) if last else ()))
+    functions = (
+        _directions(kin, methods[0], known),
+        _direction(kin, methods[1], known, parts),
+        *((last,) if last else ()),
+    )
     read = {c for f in functions for c in f.constants} | {s.name for p in parts for s in symbols_of(p.value)}
     constants = sorted(read - {p.name.name for p in parts})
     lines = [line for part in parts for line in let_lines(part, _SCALAR)]

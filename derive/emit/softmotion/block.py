@@ -211,9 +211,7 @@ def _axis(joint: Joint, field: str, contract: Contract) -> Axis:
     word = "rotary" if joint.kind is Kind.ROTARY else "linear"
     unlimited, lower, upper = (stored_name(f"{w}_{joint.key}") for w in ("unlimited", "lower", "upper"))
     kind = contract.spelling["enumerators"][word]
-    return Axis(
-        joint.name, field, kind, joint.meaning, unlimited, lower, upper, joint.axis.name, settings_of(joint)
-    )
+    return Axis(joint.name, field, kind, joint.meaning, unlimited, lower, upper, joint.axis.name, settings_of(joint))
 
 
 def _branch_byte(byte: int, name: str, names: tuple[str, str]) -> BranchByte:

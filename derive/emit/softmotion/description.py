@@ -26,17 +26,22 @@ _MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "
 _PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 open"
 _BRANCH = "0 automatic, 3 where both solutions coincide"
 _READ = (
-    f"A commanded rotation may have few exact digits, as from REAL. Where its transpose times itself differs from the identity "
+    f"A commanded rotation may have few exact digits, as from REAL. Where its transpose times itself differs from the "
+    f"identity "
     f"by more than {float(EXACT_ROTATION):g} it is repaired (z, the direction of the tool, is kept); by more than "
     f"{float(ROTATION):g} it is refused."
 )
 _NOT_READ = "The commanded rotation is not read."
 _COST_HEAD = ("Method", "Additions", "Multiplications", "Divisions", "Square roots", "Sines")
 _OPEN_TURN = (
-    f"Without a commanded turn, an axis whose limits in the block are at most {ONE_TURN} degrees apart takes its one value "
-    "inside them, wherever the reference is. Any other axis takes the value nearest to the reference, and its limits only "
-    f"refuse: they never choose another turn. So enter the limits of a range of up to {ONE_TURN} degrees in the block, too. For "
-    "an axis with a wider range command the turn of a point-to-point movement. Where another turn would be inside the limits, "
+    f"Without a commanded turn, an axis whose limits in the block are at most {ONE_TURN} degrees apart takes its one "
+    f"value "
+    "inside them, wherever the reference is. Any other axis takes the value nearest to the reference, and its limits "
+    "only "
+    f"refuse: they never choose another turn. So enter the limits of a range of up to {ONE_TURN} degrees in the "
+    f"block, too. For "
+    "an axis with a wider range command the turn of a point-to-point movement. Where another turn would be inside the "
+    "limits, "
     "Diagnose says so, and iTurn is its number."
 )
 _KINDS = {
@@ -46,7 +51,8 @@ _KINDS = {
 }
 """By whether it is a position kinematics, and whether an orientation kinematics."""
 _WITHOUT_LENGTH = (
-    f"where an axis is free: within {float(FREE_ANGLE):g} of your unit of length. The machine has no length to compare this "
+    f"where an axis is free: within {float(FREE_ANGLE):g} of your unit of length. The machine has no length to "
+    f"compare this "
     "distance with: the margin is 1 everywhere else, and IsSingularity gives no warning before"
 )
 _AUTOMATIC = (
@@ -54,8 +60,10 @@ _AUTOMATIC = (
     "limits refuse a solution, they never choose another one."
 )
 _DRIVES = (
-    "The limits that SoftMotion hands over (AxisSettings) narrow those of the block: the range inside both decides which turn "
-    "of an axis is taken, and which poses are refused. Where none are handed over, the limits of the block alone decide."
+    "The limits that SoftMotion hands over (AxisSettings) narrow those of the block: the range inside both decides "
+    "which turn "
+    "of an axis is taken, and which poses are refused. Where none are handed over, the limits of the block alone "
+    "decide."
 )
 
 
@@ -109,7 +117,9 @@ def _configuration(block: Block) -> Iterator[str]:
     for period in block.periods:
         yield from _item(f"Byte {period.byte}, turn of {period.axis} (signed): {_PERIOD}.")
     yield ""
-    yield from wrap(f"{block.name}_Config sets a configuration, {block.name}_ReadConfig reads one. {_AUTOMATIC}", _WIDTH)
+    yield from wrap(
+        f"{block.name}_Config sets a configuration, {block.name}_ReadConfig reads one. {_AUTOMATIC}", _WIDTH
+    )
     if block.periods:
         yield ""
         yield from wrap(_OPEN_TURN, _WIDTH)
@@ -153,13 +163,17 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
     if (inverted := found.inverted) is not None:
         text += (
             f", inverse after forward {inverted.round_trip:.0e}, Jacobian against automatic differentiation "
-            f"{inverted.jacobian:.0e}; {inverted.solutions} solutions were found by multi-start root finding, each of them a "
+            f"{inverted.jacobian:.0e}; {inverted.solutions} solutions were found by multi-start root finding, each of "
+            f"them a "
             "solution of these formulas"
         )
     yield from wrap(f"{text}. No run on a controller.", _WIDTH)
     if inverted is not None and inverted.missed is not None:
         missed, total = inverted.missed
-        text = f"A root scan is no proof: of {total} solutions, most of them close to where branches meet, it missed {missed}."
+        text = (
+            f"A root scan is no proof: of {total} solutions, most of them close to where branches meet, "
+            f"it missed {missed}."
+        )
         yield from wrap(text, _WIDTH)
 
 
@@ -191,7 +205,9 @@ def _item(text: str) -> list[str]:
 
 
 def _table(head: Sequence[str], rows: Iterator[Sequence[str]]) -> list[str]:
-    """A simple table of reStructuredText; what the last column has no room for stands on lines that begin with nothing."""
+    """A simple table of reStructuredText; what the last column has no room for stands on lines that
+    begin with nothing.
+    """
     cells = [head, *rows]
     widths = [max(len(row[column]) for row in cells) for column in range(len(head) - 1)]
     last = _WIDTH - sum(width + 1 for width in widths)

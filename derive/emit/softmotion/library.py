@@ -50,7 +50,8 @@ _PREAMBLE = f"""\
 
 @dataclass(frozen=True)
 class StructuredTextFiles:
-    """The language: text, PLCopenXML and the import script, for a profile of the SoftMotion contract (its own if `None`)."""
+    """The language: text, PLCopenXML and the import script, for a profile of the SoftMotion contract (its own if
+    `None`)."""
 
     profile: str | None = None
     name: ClassVar[str] = _FOLDER
@@ -71,7 +72,9 @@ class StructuredTextFiles:
         return found
 
     def files(self, parts: Sequence[Part]) -> dict[str, str]:
-        """All files of the language: path below its folder → text. Raises `DescriptionError` for a name that clashes."""
+        """All files of the language: path below its folder → text. Raises `DescriptionError` for a
+        name that clashes.
+        """
         contract, templates = load(self.profile), _templates()
         objects = dict(_objects(parts, contract, templates))
         refuse_clashes({f"{path}.st": inside for path, inside in objects.items()})
@@ -83,7 +86,9 @@ class StructuredTextFiles:
         return dict(sorted(files.items()))
 
 
-def _objects(parts: Sequence[Part], contract: Contract, templates: Environment) -> Iterator[tuple[str, tuple[Object, ...]]]:
+def _objects(
+    parts: Sequence[Part], contract: Contract, templates: Environment
+) -> Iterator[tuple[str, tuple[Object, ...]]]:
     """The objects of every file, by its path without the ending."""
     rotation = rotation_function(contract)
     for path in sorted((TEMPLATES / _FOLDER / _SHARED).glob("*.st.j2")):

@@ -71,7 +71,9 @@ class _Source:
 
 def methods_of(kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> tuple[Method, ...]:
     """All methods in the order of the contract, private ones behind the method that calls them."""
-    return tuple(_method(source, kinematics, block, contract, templates) for source in _sources(kinematics, block, contract))
+    return tuple(
+        _method(source, kinematics, block, contract, templates) for source in _sources(kinematics, block, contract)
+    )
 
 
 def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
@@ -82,7 +84,10 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
         spelled[joint.reference.name] = f"aRef.a{index}"
         spelled[joint.turn.name] = joined(joint.turn.name)
     for axis in "xyz":
-        spelled[f"flange_axis_{axis}"], spelled[f"base_axis_{axis}"] = f"flangeAxis.d{axis.upper()}", f"baseAxis.d{axis.upper()}"
+        spelled[f"flange_axis_{axis}"], spelled[f"base_axis_{axis}"] = (
+            f"flangeAxis.d{axis.upper()}",
+            f"baseAxis.d{axis.upper()}",
+        )
     spelled |= {f"sigma_{b.name}": joined(f"sigma_{b.name}") for b in kinematics.branches}
     return spelled | {f"r{r}{c}": f"rot[{r}, {c}]" for r in (1, 2, 3) for c in (1, 2, 3)}
 
@@ -111,7 +116,11 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
     for name in names:
         program = solved.get(name)
         if program is None:
-            call = branch_call(known["CartesianToAxes"], kinematics.branch, kinematics, block) if name == "Diagnose" else None
+            call = (
+                branch_call(known["CartesianToAxes"], kinematics.branch, kinematics, block)
+                if name == "Diagnose"
+                else None
+            )
             yield _Source(known[name], programs.get(name), call)
             yield from _shared(programs.get(name), kinematics, contract, ready)
             if name == "Initialize" and block.has_settings:
@@ -169,7 +178,9 @@ def _end_point(public: Signature, contract: Contract) -> Signature:
     return Signature("EndPointOnFlange", public.returns, tuple(ordered), "PRIVATE")
 
 
-def _method(source: _Source, kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> Method:
+def _method(
+    source: _Source, kinematics: Kinematics, block: Block, contract: Contract, templates: Environment
+) -> Method:
     name = source.signature.name
     reads = kinematics.reads_rotation
     context: dict[str, object] = {"block": block, "method": name, "call": source.call, "reads_rotation": reads}

@@ -94,7 +94,9 @@ def load(profile: str | None = None, file: Path = _FILE) -> Contract:
     interfaces = {key: _interface(key, table) for key, table in data.pop("interfaces").items()}
     newest = _version(profiles[name]["library"])
     newer = {interface.name for interface in interfaces.values() if interface.since > newest}
-    return Contract(interfaces, _signatures(data.pop("own")), frozenset(newer) | frozenset(profiles[name]["omits"]), data)
+    return Contract(
+        interfaces, _signatures(data.pop("own")), frozenset(newer) | frozenset(profiles[name]["omits"]), data
+    )
 
 
 def _interface(name: str, table: Mapping[str, Any]) -> Interface:
@@ -107,4 +109,7 @@ def _version(text: str) -> tuple[int, ...]:
 
 
 def _signatures(methods: Mapping[str, Any]) -> dict[str, Signature]:
-    return {name: Signature(name, m["returns"], tuple(Parameter(*p) for p in m["parameters"])) for name, m in methods.items()}
+    return {
+        name: Signature(name, m["returns"], tuple(Parameter(*p) for p in m["parameters"]))
+        for name, m in methods.items()
+    }

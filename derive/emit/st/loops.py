@@ -39,7 +39,9 @@ def solve_lines(system: Solve, printer: StructuredText) -> Iterator[str]:
 
 def elements(system: Solve) -> dict[str, str]:
     """Where the solution stands, by the names of the unknowns."""
-    return {n.name: f"{_RIGHT}[{k // system.columns + 1}, {k % system.columns + 1}]" for k, n in enumerate(system.names)}
+    return {
+        n.name: f"{_RIGHT}[{k // system.columns + 1}, {k % system.columns + 1}]" for k, n in enumerate(system.names)
+    }
 
 
 def kept(body: Sequence[Statement]) -> dict[str, str]:

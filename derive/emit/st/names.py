@@ -16,9 +16,9 @@ _PREFIX = {Role.FLAG: "x", Role.SIGN: "i"}
 
 TEMPLATE_LOCALS = frozenset(
     """
-    apart baseaxis branch candidate column configuration distance drivelimited drivelower driveupper failure flange flangeaxis
-    found frame highest identity least lowest middle nothing order ownlower ownunlimited ownupper projected relative rot
-    rotation row single slot solution space status total tried
+    apart baseaxis branch candidate column configuration distance drivelimited drivelower driveupper failure flange
+    flangeaxis found frame highest identity least lowest middle nothing order ownlower ownunlimited ownupper projected
+    relative rot rotation row single slot solution space status total tried
     """.split()
 )
 """Variables that the templates of methods declare."""

@@ -116,7 +116,9 @@ def _sides(choice: If, printer: StructuredText, refusal: Refusal, width: int) ->
     yield from wrapped(f"IF {printer.print(choice.condition)} THEN", width)
     yield from side(choice.holds)
     match choice.fails:
-        case (If() as other,) if not (note := _note_of(other, printer.names)) or note == _note_of(choice, printer.names):
+        case (If() as other,) if not (note := _note_of(other, printer.names)) or note == _note_of(
+            choice, printer.names
+        ):
             first, *others = _sides(other, printer, refusal, width - INSIDE)
             yield from (f"ELS{first}", *others)
         case _:

@@ -15,7 +15,8 @@ from derive.ir.reason import OtherTurn
 from derive.report.reasons import Reasons
 
 REASON, MISSING, TURN = "iReason", "dMissing", "iTurn"
-"""The outputs of a method that explains its refusals: a number, for which Diagnose has the text, an amount, and the number of a
+"""The outputs of a method that explains its refusals: a number, for which Diagnose has the text, an amount, and the
+number of a
 turn that is inside."""
 
 
@@ -38,7 +39,9 @@ class Refusal:
         return self.of(loop.otherwise)
 
     def answering(self, error: str) -> tuple[str, ...]:
-        """Refuse with an error that an expression gives. What allows no pose is singular; any other question is answered no."""
+        """Refuse with an error that an expression gives. What allows no pose is singular; any other question is
+        answered no.
+        """
         if not self.signature.returns:
             return ("RETURN;",)
         answer = "TRUE" if self.signature.name == "IsSingularity" else "FALSE"

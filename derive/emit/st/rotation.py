@@ -1,4 +1,5 @@
-"""The commanded rotation in Structured Text: the body of the function that all blocks call, and the texts of its reasons."""
+"""The commanded rotation in Structured Text: the body of the function that all blocks call, and the texts of its
+reasons."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """The search for a root in Structured Text: a private method around the two programs that it calls.
 
-`FindRoot` is the same text for every mechanism, but for what is handed on; `TryAt` calls the trial at a place of a cell.
+`FindRoot` is the same text for every mechanism, but for what is handed on; `TryAt` calls the trial at a place of a
+cell.
 """
 
 from __future__ import annotations
@@ -88,7 +89,12 @@ def search_text(search: FindRoot) -> SearchText:
     numbers = {name: f"aGiven[{k}]" for k, name in enumerate(given, 1)}
     numbers |= {name: f"aSigns[{k}]" for k, name in enumerate(chosen, 1)}
     cell = {"tried": "place", "side": "SEL(xCurved AND (dS < 0.0), 1, -1)", "freed": "iFreed", "freed_angle": "dAngle"}
-    root = {"tried": "joints[nearest]", "side": "sides[nearest]", "freed": "freedAt[nearest]", "freed_angle": "angles[nearest]"}
+    root = {
+        "tried": "joints[nearest]",
+        "side": "sides[nearest]",
+        "freed": "freedAt[nearest]",
+        "freed_angle": "angles[nearest]",
+    }
     outputs = [joined(o.name) for o in search.trial.outputs]
     found = [joined(o.name) for o in search.finish.outputs]
     targets = [joined(n.name) for n in search.names]

@@ -33,8 +33,12 @@ def signature_of(program: Program, spelled: Mapping[str, str], contract: Contrac
     whole = {re.split(r"\W", text)[0] for text in parts if not text.isidentifier()}
     axes = contract.signatures["Jacobian"].parameters[1]
     if not whole <= {axes.name}:
-        raise TypeError(f"{program.name}: a shared program reads axis values and its own arguments, not {sorted(whole)}")
-    arguments = [Parameter("VAR_INPUT", joined(s.name), type_name(type_of(s))) for s in program.inputs if s.name not in spelled]
+        raise TypeError(
+            f"{program.name}: a shared program reads axis values and its own arguments, not {sorted(whole)}"
+        )
+    arguments = [
+        Parameter("VAR_INPUT", joined(s.name), type_name(type_of(s))) for s in program.inputs if s.name not in spelled
+    ]
     results = [Parameter("VAR_OUTPUT", joined(o.name), type_name(type_of(o.value))) for o in program.outputs]
     given = (axes, *arguments) if whole else tuple(arguments)
     return Signature(method_name(program), contract.spelling["types"]["error"], (*given, *results), "PRIVATE")

@@ -1,7 +1,7 @@
 """Affine pair:  k1 v + m1 w = e1,  k2 v + m2 w = e2  with k1 m2 - k2 m1 never zero.
 
-One root, by Cramer's rule. Slope k1 m2 - k2 m1. There is no degenerate case: equations whose slope can vanish are not taken.
-A single coefficient may vanish: a table turned by 90 degrees exchanges its axes.
+One root, by Cramer's rule. Slope k1 m2 - k2 m1. There is no degenerate case: equations whose slope can vanish are not
+taken. A single coefficient may vanish: a table turned by 90 degrees exchanges its axes.
 """
 
 from __future__ import annotations
@@ -18,7 +18,11 @@ def affine_pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[B
     """Every two lengths that two equations determine together."""
     for first, second in combinations(equations, 2):
         unknowns = problem.unknowns_of(first.expression)
-        if len(unknowns) != 2 or problem.unknowns_of(second.expression) != unknowns or not set(unknowns) <= set(problem.lengths):
+        if (
+            len(unknowns) != 2
+            or problem.unknowns_of(second.expression) != unknowns
+            or not set(unknowns) <= set(problem.lengths)
+        ):
             continue
         row1, row2 = (linear_coefficients(e.expression, unknowns) for e in (first, second))
         if row1 is None or row2 is None:
@@ -27,7 +31,8 @@ def affine_pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[B
         slope = problem.reduce(k1 * m2 - k2 * m1)
         if not problem.is_never_zero(slope):
             continue
-        note = f"{unknowns[0].name} and {unknowns[1].name} from the {first.label} and {second.label} equations, linear in both"
+        names = " and ".join(unknown.name for unknown in unknowns)
+        note = f"{names} from the {first.label} and {second.label} equations, linear in both"
         inverse = slope if slope in problem.signs or -slope in problem.signs else 1 / slope
         values = [problem.tidy(v * inverse) for v in (m1 * rest2 - m2 * rest1, k2 * rest1 - k1 * rest2)]
         lets = (Let(unknowns[0], values[0], note), Let(unknowns[1], values[1]))

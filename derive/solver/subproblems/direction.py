@@ -1,7 +1,8 @@
 """Direction:  cos u : sin u = along : across.
 
-One root. Where the measure (the length of the vector that turns) vanishes nothing determines u: it takes the value of the
-reference. Cosine and sine are divided by the length of (along, across) itself, so that sin^2 + cos^2 = 1 to rounding.
+One root. Where the measure (the length of the vector that turns) vanishes nothing determines u: it takes the value of
+the reference. Cosine and sine are divided by the length of (along, across) itself, so that sin^2 + cos^2 = 1 to
+rounding.
 """
 
 from __future__ import annotations
@@ -42,7 +43,8 @@ def direction(
 ) -> tuple[Statement, ...]:
     """Bind cosine and sine of the angle; `measure` decides whether they are determined.
 
-    `is_length`: the measure is the length of (along, across) itself. `scale`: what it is compared with, a length of the machine.
+    `is_length`: the measure is the length of (along, across) itself. `scale`: what it is compared with, a length of the
+    machine.
     """
     determined = sp.Gt(measure, FREE_ANGLE * (problem.scale if scale is None else scale))
     cos_free, sin_free = free_angle(problem, angle)

@@ -1,10 +1,10 @@
 """Lateral:  a cos u + b sin u = e  with a commanded point (a, b), which an arm with the lateral offset e must reach.
 
-This is Paden and Kahan's subproblem 4 with a point that moves. Two roots: let h = |(a, b)| be the distance of the point from
-the axis of u, and s = sigma sqrt((h - e)(h + e)) how far ahead of the axis the point is. Then cos u = (a e - b s) / h^2 and
-sin u = (b e + a s) / h^2. The radicand stays a product. Slope a sin u - b cos u = s: sigma is its sign.
-Guard: |e| <= h, else the point is closer to the axis than the lateral offset is long. Degenerate case: the point is on the
-axis, h = 0. It cannot be reached unless e is zero too, and then u is free. So h is the measure where e is zero.
+This is Paden and Kahan's subproblem 4 with a point that moves. Two roots: let h = |(a, b)| be the distance of the point
+from the axis of u, and s = sigma sqrt((h - e)(h + e)) how far ahead of the axis the point is. Then cos u = (a e - b s)
+/ h^2 and sin u = (b e + a s) / h^2. The radicand stays a product. Slope a sin u - b cos u = s: sigma is its sign.
+Guard: |e| <= h, else the point is closer to the axis than the lateral offset is long. Degenerate case: the point is on
+the axis, h = 0. It cannot be reached unless e is zero too, and then u is free. So h is the measure where e is zero.
 """
 
 from __future__ import annotations
@@ -45,7 +45,9 @@ def aimed_at_point(problem: Problem, equation: Equation, angle: sp.Symbol, row: 
     a, b, e = row
     naming = Naming(problem, equation.lets)
     along, across = naming.named(a, f"point_x_{angle.name}"), naming.named(b, f"point_y_{angle.name}")
-    distance = naming.length(f"distance_{angle.name}", along, across, note=f"distance of the point from the axis of {angle.name}")
+    distance = naming.length(
+        f"distance_{angle.name}", along, across, note=f"distance of the point from the axis of {angle.name}"
+    )
     scale = equation.scales.get(angle, problem.scale)
     slope = Slope(angle, a * sine(angle) - b * cosine(angle), scale)
     note = f"rotation by {angle.name} that points the arm at the point"

@@ -1,10 +1,12 @@
-"""From the origin: the right side e of a law of cosines, without cancellation, as its value at the origin plus an increment.
+"""From the origin: the right side e of a law of cosines, without cancellation, as its value at the origin plus an
+increment.
 
-Some machines state their lengths by the angles at which they stand at the origin, so that lengths are roots. At the origin
-these roots cancel, and e is a multiple of the arm that turns. Where the arm is short, the single terms of e are larger than e
-by the ratio of rod and arm, and their sum loses as many digits. So e is written as its value at the origin plus what the
-commanded position adds. Let v be the known names that depend on the position, and v0 their values at the origin. For e of at
-most the second degree in v the trapezoidal rule is exact: e = e(v0) + sum (v - v0) (e_v(v) + e_v(v0)) / 2.
+Some machines state their lengths by the angles at which they stand at the origin, so that lengths are roots. At the
+origin these roots cancel, and e is a multiple of the arm that turns. Where the arm is short, the single terms of e are
+larger than e by the ratio of rod and arm, and their sum loses as many digits. So e is written as its value at the
+origin plus what the commanded position adds. Let v be the known names that depend on the position, and v0 their values
+at the origin. For e of at most the second degree in v the trapezoidal rule is exact: e = e(v0) + sum (v - v0) (e_v(v) +
+e_v(v0)) / 2.
 """
 
 from __future__ import annotations

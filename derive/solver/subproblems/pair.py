@@ -2,7 +2,8 @@
 
 One root, by Cramer's rule. Slope D = a1 b2 - a2 b1. Two kinds are taken:
 
-* A rotation by u takes the vector (A, B) to (e1, e2): Paden and Kahan's subproblem 1. Here a1 = s b2 = A and a2 = -s b1 = B;
+* A rotation by u takes the vector (A, B) to (e1, e2): Paden and Kahan's subproblem 1. Here a1 = s b2 = A and a2 = -s b1
+  = B;
   s is +1, or -1 where u turns the other way, or a sign that is a parameter of the machine.
   D = s (A^2 + B^2), cos u : sin u = A e1 + B e2 : s (A e2 - B e1).
 * Any other pair with a slope that never vanishes: divided by D.
@@ -69,14 +70,14 @@ def _solve(problem: Problem, angle: sp.Symbol, used: tuple[Equation, Equation], 
     if not problem.is_never_zero(slope):
         return None
     inverse = slope if slope**2 in (1, *(s**2 for s in problem.signs)) else 1 / slope  # ±1 is its own inverse
-    cos_value, sin_value = (
-        problem.tidy(value * inverse) for value in (e1 * b2 - e2 * b1, a1 * e2 - a2 * e1)
-    )
+    cos_value, sin_value = (problem.tidy(value * inverse) for value in (e1 * b2 - e2 * b1, a1 * e2 - a2 * e1))
     return _bound(angle, naming, cos_value, sin_value, note)
 
 
 def _sense(problem: Problem, row1: Row, row2: Row) -> sp.Expr | None:
-    """s where the rows are one vector rotated by the angle: +1, -1 where it turns the other way, or a sign of the machine."""
+    """s where the rows are one vector rotated by the angle: +1, -1 where it turns the other way, or a sign of the
+    machine.
+    """
     (a1, b1, _), (a2, b2, _) = row1, row2
     for sense in (sp.Integer(1), sp.Integer(-1), *problem.signs):
         if problem.reduce(a1 - sense * b2) == 0 and problem.reduce(b1 + sense * a2) == 0:

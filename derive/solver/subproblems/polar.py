@@ -1,8 +1,8 @@
 """Polar:  f cos v = a,  f sin v = b  with both f and v unknown.
 
-v is the polar angle of (sigma a, sigma b), and f = sigma |(a, b)| the polar radius. Two roots, or one where f is known to be
-positive. Slope det = f: its sign is the branch. Where |(a, b)| vanishes v is free (degenerate case); it is the measure.
-f is an unknown length, or a product with the sine or cosine of another angle, which then becomes known.
+v is the polar angle of (sigma a, sigma b), and f = sigma |(a, b)| the polar radius. Two roots, or one where f is known
+to be positive. Slope det = f: its sign is the branch. Where |(a, b)| vanishes v is free (degenerate case); it is the
+measure. f is an unknown length, or a product with the sine or cosine of another angle, which then becomes known.
 """
 
 from __future__ import annotations
@@ -67,7 +67,13 @@ def _solve(
         slope = Slope(angle, radius, problem.scale_of(along[0]))
         sigma = slope.sigma
     known = direction(
-        problem, angle, along=sigma * a, across=sigma * b, measure=distance, note=note, is_length=True,
+        problem,
+        angle,
+        along=sigma * a,
+        across=sigma * b,
+        measure=distance,
+        note=note,
+        is_length=True,
         scale=problem.scale_of(along[0]),
     )
     measure = _measure(problem, angle, radius, distance, problem.scale_of(along[0]))
@@ -79,7 +85,9 @@ def _solve(
 
 
 def _measure(problem: Problem, angle: sp.Symbol, radius: sp.Expr, distance: sp.Expr, scale: sp.Expr) -> Measure:
-    """For a product such as r sin(phi) the sine alone, which has no unit: the step that finds r has a measure of its own."""
+    """For a product such as r sin(phi) the sine alone, which has no unit: the step that finds r has a measure of its
+    own.
+    """
     functions = [f for f in sp.Mul.make_args(radius) if f not in problem.lengths and f.is_Symbol]
     if len(functions) == 0 or len(functions) == len(sp.Mul.make_args(radius)):
         return Measure(angle, distance, scale)

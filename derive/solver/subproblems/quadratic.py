@@ -1,8 +1,8 @@
 """Quadratic:  a v^2 + b v + c = 0  in an unknown length, with a never zero.
 
-Two roots, v = p + sigma root(D) with p = -b / 2a and the discriminant D = p^2 - c / a, kept factored. Slope 2 a (v - p):
-sigma is its sign times that of a. One root where a quantity known to be positive is a multiple of the slope.
-Guard: D >= 0; where it vanishes both roots meet (degenerate case).
+Two roots, v = p + sigma root(D) with p = -b / 2a and the discriminant D = p^2 - c / a, kept factored. Slope 2 a (v -
+p): sigma is its sign times that of a. One root where a quantity known to be positive is a multiple of the slope. Guard:
+D >= 0; where it vanishes both roots meet (degenerate case).
 """
 
 from __future__ import annotations
@@ -70,7 +70,9 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
 
 
 def _known_sign(problem: Problem, slope: sp.Expr, unknown: sp.Symbol) -> int | None:
-    """The sign of a slope that is a multiple of a positive quantity, with other unknowns eliminated by affine equations."""
+    """The sign of a slope that is a multiple of a positive quantity, with other unknowns eliminated by affine
+    equations.
+    """
     for quantity in problem.positive:
         value = _through(problem, quantity, unknown)
         ratio = sp.cancel(slope / value) if value != 0 else sp.Integer(0)

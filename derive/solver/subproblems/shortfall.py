@@ -1,7 +1,7 @@
 """How much is missing where the radicand of a two-root step is negative: the amount of its reason.
 
-For a product of lengths, (l1 + l2 - r)(l1 + l2 + r)(l1 - l2 + r)(l2 + r - l1) or (r - l)(r + l), this is the size of the
-smallest factor, whatever signs the lengths have. For a length that occurs only as its square, such as the rod l in
+For a product of lengths, (l1 + l2 - r)(l1 + l2 + r)(l1 - l2 + r)(l2 + r - l1) or (r - l)(r + l), this is the size of
+the smallest factor, whatever signs the lengths have. For a length that occurs only as its square, such as the rod l in
 l^2 - x^2 - y^2, it is by how much the rod is too short or too long.
 """
 
@@ -70,7 +70,9 @@ def _least_factor(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], leng
 
 
 def _of_rod(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr | None:
-    """By how much a length that occurs only as its square is too short or too long; names of products are written out."""
+    """By how much a length that occurs only as its square is too short or too long; names of
+    products are written out.
+    """
     expanded = [sp.expand(_written_out(f, values)) for f in sums]
     for rod in sorted({s for f in expanded for s in f.free_symbols if s in lengths}, key=str):
         signs = [f.coeff(rod, 2) for f in expanded]

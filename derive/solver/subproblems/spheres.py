@@ -1,9 +1,10 @@
 """Spheres, or trilateration:  |P - C_i| = r_i  for two circles in the plane, or three spheres in space.
 
-Two roots, mirror images in the line or plane of the centres. Let n be normal to it, and p0 the foot of the perpendicular from
-P, seen from C_1: P = C_1 + p0 + sigma root(r_1^2 - |p0|^2) n / |n|. The only division is by |n|^2, which vanishes where the
-centres coincide or lie on a line: nothing determines P then, and the pose is refused. Slope: the determinant of the rod
-vectors P - C_i; its sign is sigma. Guard: the spheres intersect. Where they touch, both roots meet (degenerate case).
+Two roots, mirror images in the line or plane of the centres. Let n be normal to it, and p0 the foot of the
+perpendicular from P, seen from C_1: P = C_1 + p0 + sigma root(r_1^2 - |p0|^2) n / |n|. The only division is by |n|^2,
+which vanishes where the centres coincide or lie on a line: nothing determines P then, and the pose is refused. Slope:
+the determinant of the rod vectors P - C_i; its sign is sigma. Guard: the spheres intersect. Where they touch, both
+roots meet (degenerate case).
 """
 
 from __future__ import annotations
@@ -112,7 +113,9 @@ Parts = tuple[sp.Matrix, sp.Matrix, sp.Expr, sp.Expr | None]
 
 
 def _circles(statements: list[Statement], found: tuple[Sphere, ...], apart: sp.Matrix) -> Parts:
-    """Two circles: the normal is `apart` turned left by 90 degrees. The height follows from Heron's formula, in factors."""
+    """Two circles: the normal is `apart` turned left by 90 degrees. The height follows from Heron's formula, in
+    factors.
+    """
     square = _normal_square(statements, apart.dot(apart), found)
     between, along = real("between_centres"), real("foot_fraction")
     first, second = (_named_length(statements, _length(f.radius_square), f"radius_{k}") for k, f in enumerate(found, 1))
@@ -140,7 +143,9 @@ def _three(statements: list[Statement], found: tuple[Sphere, ...], apart: list[s
     for k, w in ((2, u), (3, v)):
         product = real(f"projection_{k}")
         value = (found[0].radius_square - found[k - 1].radius_square + w.dot(w)) / 2
-        statements.append(Let(product, value, f"trilateration: the foot projected on the vector to centre {k}, times its length"))
+        statements.append(
+            Let(product, value, f"trilateration: the foot projected on the vector to centre {k}, times its length")
+        )
         products.append(product)
     foot = (products[0] * v.cross(normal) + products[1] * normal.cross(u)) / square
     return foot, normal, square, None
@@ -161,7 +166,9 @@ def _normal_square(statements: list[Statement], value: sp.Expr, found: tuple[Sph
 def _named(
     statements: list[Statement], vector: sp.Matrix, name: str, unknowns: tuple[sp.Symbol, ...], note: str = ""
 ) -> sp.Matrix:
-    """The vector by names of its components, bound here where they are more than a name; the note stands at the first."""
+    """The vector by names of its components, bound here where they are more than a name; the note
+    stands at the first.
+    """
     entries = []
     for value, unknown in zip(vector, unknowns, strict=True):
         if is_compound(value):
@@ -183,4 +190,3 @@ def _named_length(statements: list[Statement], value: sp.Expr, name: str) -> sp.
 
 def _length(square: sp.Expr) -> sp.Expr:
     return sp.sqrt(sp.factor(square))
-

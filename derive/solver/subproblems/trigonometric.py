@@ -1,13 +1,13 @@
 """Trigonometric:  a cos u + b sin u = e.
 
 Paden and Kahan's subproblem 4; where e is made of three sides of a triangle, the law of cosines (their subproblem 3).
-Two roots. Let h = |(a, b)|, C = e / h and S = sigma sqrt((h - e)(h + e)) / h, the cosine and sine of the angle between u and
-the direction of (a, b). Then cos u = (a C - b S) / h and sin u = (b C + a S) / h. The factors h - e and h + e stay products:
-expanded they lose half the digits. C and S come from these factors alone, whose ratio is the square of the tangent of half the
-angle: so C^2 + S^2 = 1 to rounding, whatever digits e has lost.
-Slope a sin u - b cos u = h S: sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution. Where it is 1
-both roots meet (degenerate case). Where h can vanish, a pose is refused whose h is below 1e-9 of the length that it is
-compared with: the arm then has no length that u could turn.
+Two roots. Let h = |(a, b)|, C = e / h and S = sigma sqrt((h - e)(h + e)) / h, the cosine and sine of the angle between
+u and the direction of (a, b). Then cos u = (a C - b S) / h and sin u = (b C + a S) / h. The factors h - e and h + e
+stay products: expanded they lose half the digits. C and S come from these factors alone, whose ratio is the square of
+the tangent of half the angle: so C^2 + S^2 = 1 to rounding, whatever digits e has lost. Slope a sin u - b cos u = h S:
+sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution. Where it is 1 both roots meet
+(degenerate case). Where h can vanish, a pose is refused whose h is below 1e-9 of the length that it is compared with:
+the arm then has no length that u could turn.
 """
 
 from __future__ import annotations
@@ -61,7 +61,9 @@ def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator
         if any(_is_commanded(problem, equation, v) for v in (a, b)) and not _is_commanded(problem, equation, rest):
             yield aimed_at_point(problem, equation, angle, (flip * a, flip * b, -flip * rest))
         else:
-            yield _solve(problem, equation, angle, _amplitude(problem, equation, angle, flip * a, flip * b, -flip * rest))
+            yield _solve(
+                problem, equation, angle, _amplitude(problem, equation, angle, flip * a, flip * b, -flip * rest)
+            )
 
 
 def _is_commanded(problem: Problem, equation: Equation, coefficient: sp.Expr) -> bool:
@@ -110,7 +112,9 @@ def _amplitude(
     if problem.is_never_zero(along**2 + across**2):
         right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, effective))
         length = common * effective
-        return _Amplitude(naming, length, (), along / effective, across / effective, right, slope, length, factors, told=told)
+        return _Amplitude(
+            naming, length, (), along / effective, across / effective, right, slope, length, factors, told=told
+        )
     aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
     divisor = real(f"divisor_{angle.name}")
     guard = (
@@ -119,8 +123,16 @@ def _amplitude(
     )
     right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
     return _Amplitude(
-        naming, common * divisor, guard, along / divisor, across / divisor, right, slope,
-        equation.scales.get(angle, common * problem.scale), factors, told=told,
+        naming,
+        common * divisor,
+        guard,
+        along / divisor,
+        across / divisor,
+        right,
+        slope,
+        equation.scales.get(angle, common * problem.scale),
+        factors,
+        told=told,
     )
 
 
@@ -132,11 +144,12 @@ def _law_of_cosines(
     right: sp.Expr,
     turned: tuple[sp.Expr, sp.Expr, sp.Expr],
 ) -> tuple[sp.Expr, tuple[sp.Expr, sp.Expr] | None, sp.Expr | None]:
-    """e; the factors h - e and h + e where a triangle is recognised; their product in lengths where the factors are not.
+    """e; the factors h - e and h + e where a triangle is recognised; their product in lengths where the factors are
+    not.
 
-    In a triangle with the sides D and k and the third side of square M, h = 2 k D, and the factors are M - (D - k)^2 and
-    (D + k)^2 - M, or the reverse. D is a multiple of the effective length, and k the arm that turns. Expanded, the terms of
-    D^2 and of M are far larger than their sum where the lengths of a machine differ.
+    In a triangle with the sides D and k and the third side of square M, h = 2 k D, and the factors are M - (D - k)^2
+    and (D + k)^2 - M, or the reverse. D is a multiple of the effective length, and k the arm that turns. Expanded, the
+    terms of D^2 and of M are far larger than their sum where the lengths of a machine differ.
     """
     triangle = _triangle(problem, right, turned)
     if triangle is not None and not _is_square(triangle.third):
@@ -175,7 +188,9 @@ class _Triangle:
 
 
 def _triangle(problem: Problem, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr, sp.Expr]) -> _Triangle | None:
-    """The triangle whose law of cosines a right side is; None where the square of its third side is not simpler than this."""
+    """The triangle whose law of cosines a right side is; None where the square of its third side is not simpler than
+    this.
+    """
     common, square, effective = turned
     number, arm = common.as_coeff_Mul()
     whole = reduce_units(right, problem.units, problem.signs)
@@ -194,8 +209,8 @@ def _triangle(problem: Problem, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr, 
 def _with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
     """A normal form with cos^2 + sin^2 of known angles written for one, so that squares can be recognised.
 
-    The normal form of p^2 + q^2 - (p cos u + q sin u)^2 has 1 - cos^2 u for sin^2 u. With p^2 (cos^2 u + sin^2 u) for p^2,
-    and the same for q^2, it is (p sin u - q cos u)^2.
+    The normal form of p^2 + q^2 - (p cos u + q sin u)^2 has 1 - cos^2 u for sin^2 u. With p^2 (cos^2 u + sin^2 u) for
+    p^2, and the same for q^2, it is (p sin u - q cos u)^2.
     """
     for angle in problem.units:
         functions = {cosine(angle), sine(angle)}
@@ -203,7 +218,9 @@ def _with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
         turned = [t for t in terms if t.free_symbols & functions]
         seen = {s for t in turned for s in t.free_symbols} - functions
         unit = cosine(angle) ** 2 + sine(angle) ** 2
-        value = sp.expand(sp.Add(*turned, *(t * unit if t.free_symbols & seen else t for t in terms if t not in turned)))
+        value = sp.expand(
+            sp.Add(*turned, *(t * unit if t.free_symbols & seen else t for t in terms if t not in turned))
+        )
     return value
 
 

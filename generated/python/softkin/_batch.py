@@ -186,7 +186,9 @@ def _distance(axes: Reals, reference: Reals, counted: tuple[int, ...]) -> Array:
 
 
 class _Best:
-    """The number of the nearest slot so far of every row, and its status: that of its first slot where there are none."""
+    """The number of the nearest slot so far of every row, and its status: that of its first slot
+    where there are none.
+    """
 
     def __init__(self, robot: Mechanism, rows: int) -> None:
         self.criteria = robot._criteria

@@ -157,7 +157,8 @@ def _hides_roots(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Fl
 def _comes_back(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Flags:
     """Whether a value with one sign at both ends falls towards zero from both, and its tangents meet about beyond zero.
 
-    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks they are no bound.
+    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks they are no
+    bound.
     """
     margin = TOUCHED + NEAR_ZERO * np.minimum(np.abs(f), np.abs(f1)) + BENT * np.abs(df1 - df) * width
     sign = np.where(f < 0.0, -1.0, 1.0)

@@ -2,7 +2,8 @@
 """All roots of a trial along one joint, on plain numbers: the rules are those of `_cells` and `_roots`, for arrays.
 
 The circle is cut into cells until each holds at most one root. A cell is a list of its map (joint = base + scale s, or
-base + scale s² with the other side of the two roots at s < 0), its number of cuts, and both ends: s, and the trial there.
+base + scale s² with the other side of the two roots at s < 0), its number of cuts, and both ends: s, and the trial
+there.
 """
 
 from __future__ import annotations
@@ -329,7 +330,8 @@ def _hides_roots(f: float, df: float, f1: float, df1: float, width: float) -> bo
 def _comes_back(f: float, df: float, f1: float, df1: float, width: float) -> bool:
     """Whether a value with one sign at both ends falls towards zero from both, and its tangents meet about beyond zero.
 
-    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks they are no bound.
+    Where they do not meet in between, the value has an inflection and may reach zero, too. With kinks they are no
+    bound.
     """
     sign = -1.0 if f < 0.0 else 1.0
     if not (f * f1 > 0.0 and sign * df < 0.0 < sign * df1):

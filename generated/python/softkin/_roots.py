@@ -177,7 +177,8 @@ def _ordered(cells: Cells, swap: Flags) -> tuple[Reals, Reals]:
 
 
 def _closing(trial: Trial, cells: Cells, column: int, level: Reals) -> tuple[Reals, Reals, Reals]:
-    """Find the place where a column equals a level. Returns the end on the side of the first, the other, and the better.
+    """Find the place where a column equals a level. Returns the end on the side of the first, the other, and the
+    better.
 
     Newton's method from the end that is nearer to zero; bisection outside the cell, and in every third step.
     """

@@ -15,7 +15,9 @@ from tests.catalogue.closure import Array, Closure
 from tests.mechanisms import catalogue
 
 EVERYTHING = {m.name: m for _, m in catalogue()}
-POSITIONS = tuple(m for m in EVERYTHING.values() if m.task.position and m.task.turning in (Turning.NONE, Turning.ABOUT_Z))
+POSITIONS = tuple(
+    m for m in EVERYTHING.values() if m.task.position and m.task.turning in (Turning.NONE, Turning.ABOUT_Z)
+)
 ORIENTATIONS = tuple(m for m in EVERYTHING.values() if not m.task.position)
 SHIFTS: dict[str, tuple[dict[str, float], ...]] = {
     "Kin_CAxis": ({},),

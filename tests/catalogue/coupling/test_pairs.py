@@ -30,7 +30,9 @@ def test_a_pair_goes_round_or_is_refused(carrier: Mechanism, wrist: Mechanism) -
             coupled = softkin.Coupled(first.robot, second.robot)
         except KinematicsError as refusal:
             assert refusal.status is Status.INVALID_COUPLING
-            assert carrier.name in str(refusal) and ("may have no axes" in str(refusal) or "does not determine" in str(refusal))
+            assert carrier.name in str(refusal) and (
+                "may have no axes" in str(refusal) or "does not determine" in str(refusal)
+            )
             assert not is_determined(first, second), str(refusal)
         else:
             assert is_determined(first, second), coupled
@@ -62,9 +64,7 @@ def _goes_round(coupled: softkin.Coupled, first: Part, second: Part) -> None:
         _jacobian(coupled, values)
 
 
-def _every_slot(
-    coupled: softkin.Coupled, first: Part, second: Part, frame: softkin.Frame, values: list[float]
-) -> None:
+def _every_slot(coupled: softkin.Coupled, first: Part, second: Part, frame: softkin.Frame, values: list[float]) -> None:
     """All branches of the one times all of the other, each with its status; each answer has the frame."""
     slots = coupled.inverse_all(frame, values)
     assert len(slots) == 2 ** (first.robot.BRANCHES + second.robot.BRANCHES)
@@ -79,7 +79,10 @@ def _every_slot(
         _meets_the_rotation(coupled, second, slot.axes, np.array(again.rotation), np.array(frame.rotation))
         assert configuration == slot.configuration
         assert coupled.inverse(frame, configuration, slot.axes) == pytest.approx(slot.axes, abs=1e-8)
-    if second.mechanism.task.turning in (Turning.NONE, Turning.FULL):  # one place of the flange for all branches behind it
+    if second.mechanism.task.turning in (
+        Turning.NONE,
+        Turning.FULL,
+    ):  # one place of the flange for all branches behind it
         flange = first.robot.forward(values[: len(first.robot.AXES)])[0]
         alone = [s for s in first.robot.inverse_all(flange, values[: len(first.robot.AXES)]) if s.status is Status.OK]
         assert len(answers) == len(alone) * 2**second.robot.BRANCHES
@@ -88,7 +91,9 @@ def _every_slot(
 def _meets_the_rotation(
     coupled: softkin.Coupled, second: Part, axes: tuple[float, ...], found: np.ndarray, commanded: np.ndarray
 ) -> None:
-    """All of it, or the direction of the tool; on another branch of an arm, whose flange then points elsewhere, the nearest."""
+    """All of it, or the direction of the tool; on another branch of an arm, whose flange then points elsewhere, the
+    nearest.
+    """
     count = len(second.robot.AXES)
     if second.mechanism.task.turning is Turning.DIRECTION:
         assert np.abs(found[:, 2] - commanded[:, 2]).max() < 1e-11
@@ -112,7 +117,9 @@ def _what_cannot_be_had(
     values: list[float],
     rng: np.random.Generator,
 ) -> None:
-    """A rotation that the tool can be swung to from a reachable one, or that differs in what is passive: the same axes."""
+    """A rotation that the tool can be swung to from a reachable one, or that differs in what is
+    passive: the same axes.
+    """
     if second.mechanism.task.turning is Turning.FULL:
         return
     if second.mechanism.task.turning is Turning.ABOUT_Z:
@@ -131,7 +138,9 @@ def _what_cannot_be_had(
 def _swing(rng: np.random.Generator) -> np.ndarray:
     """A turn about a horizontal axis: it tilts z and has no twist."""
     azimuth, tilt = rng.uniform(-np.pi, np.pi), rng.uniform(-2.5, 2.5)
-    cross = np.array([[0.0, 0.0, np.sin(azimuth)], [0.0, 0.0, -np.cos(azimuth)], [-np.sin(azimuth), np.cos(azimuth), 0.0]])
+    cross = np.array(
+        [[0.0, 0.0, np.sin(azimuth)], [0.0, 0.0, -np.cos(azimuth)], [-np.sin(azimuth), np.cos(azimuth), 0.0]]
+    )
     return np.eye(3) + np.sin(tilt) * cross + (1.0 - np.cos(tilt)) * cross @ cross
 
 

@@ -20,7 +20,9 @@ def frame_of(robot: softkin.Mechanism, *axes: float) -> tuple[np.ndarray, np.nda
 
 @pytest.mark.parametrize(("side", "height"), [(1, 90.0), (-1, -90.0)])
 def test_the_inclination_moves_the_tool_to_x(side: int, height: float) -> None:
-    """Library 4.16 and later: the tool points along +Z; 4.12: along -Z. Both say that a positive angle moves it to +X."""
+    """Library 4.16 and later: the tool points along +Z; 4.12: along -Z. Both say that a positive
+    angle moves it to +X.
+    """
     for robot, zeros in (
         (softkin.Kin5Axes(tool_length=90.0, tool_side=side), (0.0, 0.0, 0.0)),
         (softkin.Coupled(softkin.Gantry3(), softkin.Wrist2(tool_length=90.0, tool_side=side)), (0.0, 0.0, 0.0)),
@@ -40,7 +42,9 @@ def test_the_roll_axis_offset_is_seen_behind_the_yaw() -> None:
 
 
 def test_a_wrist_with_three_axes() -> None:
-    """Its middle axis turns about the negative Y: hand down is a positive angle, and the angles follow in closed form."""
+    """Its middle axis turns about the negative Y: hand down is a positive angle, and the angles
+    follow in closed form.
+    """
     robot = softkin.Wrist3(tool_offset_z=75.0)
     assert frame_of(robot, 0.0, 90.0, 0.0)[0] == pytest.approx((-75.0, 0.0, 0.0), abs=1e-12)
     assert frame_of(robot, 0.0, 0.0, 0.0)[0] == pytest.approx((0.0, 0.0, 75.0), abs=1e-12)
@@ -58,7 +62,7 @@ def test_a_wrist_with_three_axes() -> None:
 
 
 def test_a_c_axis_reaches_all_but_the_half_turns() -> None:
-    """"All orientations except those rotated about X or Y by 180 degrees", by phi = atan2(r21 - r12, r11 + r22)."""
+    """ "All orientations except those rotated about X or Y by 180 degrees", by phi = atan2(r21 - r12, r11 + r22)."""
     robot, rng = softkin.CAxis(), np.random.default_rng(59)
     for _ in range(20):
         r = np.array(tilted(rng))

@@ -86,7 +86,9 @@ def test_parts_of_the_wrong_kind() -> None:
     ):
         message = refused(Status.INVALID_COUPLING, softkin.Coupled, first, second)
         assert message.startswith(f"Coupled: the {place} part must be a")
-    message = refused(Status.INVALID_COUPLING, softkin.Coupled, softkin.SCCC(link_length_1=300.0, link_length_2=200.0), wrist)
+    message = refused(
+        Status.INVALID_COUPLING, softkin.Coupled, softkin.SCCC(link_length_1=300.0, link_length_2=200.0), wrist
+    )
     assert "follows the turn of the tool itself" in message
 
 
@@ -134,7 +136,9 @@ def test_limits_are_those_of_the_parts() -> None:
 @pytest.mark.parametrize("garbage", (math.nan, math.inf, -math.inf, 1e300, 1.1e9))
 @pytest.mark.parametrize("carrier", (softkin.Gantry3(), softkin.PosRRR(**ARM)), ids=("gantry", "arm"))
 def test_garbage(carrier: softkin.Mechanism, garbage: float) -> None:
-    """A refusal whatever the number is and wherever it stands, alone and in a batch; what is not needed is not looked at."""
+    """A refusal whatever the number is and wherever it stands, alone and in a batch; what is not needed is not looked
+    at.
+    """
     robot = softkin.Coupled(carrier, softkin.Wrist3(tool_offset_z=75.0))
     axes = [5.0, 10.0, 15.0, 20.0, 25.0, 30.0]
     frame, configuration = robot.forward(axes)
@@ -170,7 +174,10 @@ def test_a_configuration_selects() -> None:
     refused(Status.BAD_INPUT, robot.inverse, frame, (*configuration[:5], 4, *configuration[6:]))
     refused(Status.BAD_INPUT, robot.inverse, frame, configuration[1:])
     wrong = np.array([configuration, (*configuration[:5], 4, *configuration[6:])])
-    assert list(robot.inverse_batch([frame.position] * 2, [frame.rotation] * 2, wrong)[1]) == [Status.OK, Status.BAD_INPUT]
+    assert list(robot.inverse_batch([frame.position] * 2, [frame.rotation] * 2, wrong)[1]) == [
+        Status.OK,
+        Status.BAD_INPUT,
+    ]
 
 
 def test_singular_poses_are_answers() -> None:

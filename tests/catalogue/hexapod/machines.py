@@ -28,7 +28,9 @@ class Machine:
             for i in range(6)
             for k, c in enumerate("xyz")
         }
-        self.given |= {f"home_{n}": float(v) for n, v in zip(("x", "y", "z", "roll", "pitch", "yaw"), home, strict=True)} | more
+        self.given |= {
+            f"home_{n}": float(v) for n, v in zip(("x", "y", "z", "roll", "pitch", "yaw"), home, strict=True)
+        } | more
         self.robot = Hexapod(**self.given)
         self.offsets = np.array([self.given.get(f"offset_l{i}", 0.0) for i in range(1, 7)])
 
@@ -98,7 +100,9 @@ def flat(points: tuple[tuple[float, float], ...]) -> Array:
 def machines() -> dict[str, Machine]:
     """Symmetric ones, and one without any symmetry; hanging, sideways, with a tool, with offsets."""
     nominal = {p.name: p.nominal for p in MECHANISM.parameters}
-    base, platform = (np.array([[nominal[f"{s}_{i}_{c}"] for c in "xyz"] for i in range(1, 7)]) for s in ("base", "platform"))
+    base, platform = (
+        np.array([[nominal[f"{s}_{i}_{c}"] for c in "xyz"] for i in range(1, 7)]) for s in ("base", "platform")
+    )
     strange = np.random.default_rng(5).uniform(-60.0, 60.0, (2, 6, 3))
     tool = np.array([0.0, 0.0, -120.0])
     return {
@@ -108,7 +112,12 @@ def machines() -> dict[str, Machine]:
             base + strange[0], platform + strange[1], (30, -20, 580, 5, -4, 10), 150.0, offset_l1=12.0, offset_l5=-40.0
         ),
         "lopsided": Machine(
-            base + 2.0 * strange[1], platform - strange[0], (-60, 40, 520, -6, 8, -12), 110.0, offset_l2=-300.0, offset_l4=5.0
+            base + 2.0 * strange[1],
+            platform - strange[0],
+            (-60, 40, 520, -6, 8, -12),
+            110.0,
+            offset_l2=-300.0,
+            offset_l4=5.0,
         ),
         "hanging, with a tool": Machine(base, (platform + tool) * (1, -1, -1), (0, 0, -600, 180, 0, 0), 120.0),
         "sideways": Machine(base[:, [2, 1, 0]] * (1, 1, -1), platform, (600, 0, 0, 0, 90, 0), 120.0),

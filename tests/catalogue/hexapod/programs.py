@@ -48,7 +48,9 @@ def search_changed(change: Callable[[Statement], Statement | None]) -> Program:
     )
 
 
-def found_from(program: Program, machine: Machine, axes: Array, positions: Array, turns: Array) -> tuple[Array, Statuses]:
+def found_from(
+    program: Program, machine: Machine, axes: Array, positions: Array, turns: Array
+) -> tuple[Array, Statuses]:
     """Positions and statuses, every row from a start of its own."""
     given = dict(constants(machine)) | {f"axis_l{i + 1}": axes[:, i] for i in range(6)}
     given |= {f"start_{c}": positions[:, i] for i, c in enumerate("xyz")}
@@ -64,4 +66,6 @@ def bounded(passes: int) -> Program:
 
 def without_mode() -> Program:
     """The same without the test of the assembly mode."""
-    return search_changed(lambda s: None if isinstance(s, Require) and s.reason == about_machine(Why.OTHER_ASSEMBLY) else s)
+    return search_changed(
+        lambda s: None if isinstance(s, Require) and s.reason == about_machine(Why.OTHER_ASSEMBLY) else s
+    )

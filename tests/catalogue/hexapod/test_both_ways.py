@@ -1,4 +1,5 @@
-"""There and back: the inverse in closed form, forward kinematics from the home pose, from a start, and without memory."""
+"""There and back: the inverse in closed form, forward kinematics from the home pose, from a start, and without
+memory."""
 
 from __future__ import annotations
 
@@ -46,7 +47,9 @@ def test_far_poses_are_found_or_refused_never_mistaken(machine: Machine) -> None
     found = status == Status.OK
     assert found.mean() > 0.5
     assert_allclose(machine.axes(back[found], turned[found]), axes[found], rtol=1e-9)
-    assert_allclose(turned[found] @ np.moveaxis(turned[found], 1, 2), np.broadcast_to(np.eye(3), turned[found].shape), atol=1e-12)
+    assert_allclose(
+        turned[found] @ np.moveaxis(turned[found], 1, 2), np.broadcast_to(np.eye(3), turned[found].shape), atol=1e-12
+    )
     side = machine.side(machine.home[:3], machine.home_turn)
     assert {machine.side(p, r) for p, r in zip(back[found], turned[found], strict=True)} == {side}
 
@@ -65,7 +68,9 @@ def test_a_start_is_where_the_search_starts(machine: Machine) -> None:
 
 
 def test_the_answer_is_in_the_mode_of_the_machine_wherever_the_search_starts() -> None:
-    """A flat platform below its base has the lengths of the one above: from there the search ends there, and is refused."""
+    """A flat platform below its base has the lengths of the one above: from there the search ends there, and is
+    refused.
+    """
     machine = machines()["nominal"]
     mirror = np.diag((1.0, 1.0, -1.0))
     turn = machine.poses(1)[1][0]

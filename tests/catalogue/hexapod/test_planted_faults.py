@@ -45,7 +45,8 @@ WRONG = {
     "the other assembly mode": Fault(_SEARCH, "assemblySign*determinant > 0.0", "assemblySign*determinant < 0.0"),
     "two outputs exchanged": Fault("PUBLIC AxesToCartesian", "x => x, y => y", "x => y, y => x"),
     "another start": Fault("PUBLIC AxesToCartesian", "startX := homeX", "startX := homeX + 1.0E6"),
-    "a refusal that is not handed on": Fault("PUBLIC AxesToCartesian", ":= outcome;", ":= SM3_Error.SMC_ERROR.SMC_NO_ERROR;"),
+    "a refusal that is not handed on": Fault("PUBLIC AxesToCartesian", ":= outcome;",
+        ":= SM3_Error.SMC_ERROR.SMC_NO_ERROR;"),
     "a column of the Jacobian": Fault(_JACOBIAN, "coefficients[2, 4] := moment2X", "coefficients[2, 4] := moment3X"),
     "a Jacobian per platform radius": Fault(_JACOBIAN, "*oneByPlatformRadius", ""),
     "a margin": Fault("PUBLIC IsSingularity", "ABS(determinant) < 0.001", "ABS(determinant) < 10.0"),
@@ -93,7 +94,9 @@ def _with_argument(name: str, value: float) -> Program:
     """The search with one argument fixed."""
     program = search_changed(lambda s: s)
     body = tuple(
-        replace(s, given=tuple((n, v * 0 + value if n.name == name else v) for n, v in s.given)) if isinstance(s, Call) else s
+        replace(s, given=tuple((n, v * 0 + value if n.name == name else v) for n, v in s.given))
+        if isinstance(s, Call)
+        else s
         for s in program.body
     )
     return replace(program, body=body)

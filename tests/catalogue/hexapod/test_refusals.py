@@ -65,7 +65,10 @@ def refused_parameters() -> dict[str, dict[str, float]]:
         "a platform that is a point": {**given, **{n: 0.0 for n in given if n.startswith("platform")}},
         "a home in the base": {**given, "home_z": 0.0},
         "joints on one line": {**given, **{n: 0.0 for n in given if n.startswith("platform") and n.endswith("y")}},
-        "a leg without length": {**given, **{f"base_1_{c}": given[f"platform_1_{c}"] + (c == "z") * 600.0 for c in "xyz"}},
+        "a leg without length": {
+            **given,
+            **{f"base_1_{c}": given[f"platform_1_{c}"] + (c == "z") * 600.0 for c in "xyz"},
+        },
         "no number": {**given, "base_3_y": np.nan},
         "limits the wrong way round": {**given, "lower_l2": 700.0, "upper_l2": 600.0},
         "far too large": {**given, "platform_4_x": 2e9},
@@ -110,7 +113,9 @@ def _between(first: Array, second: Array) -> Array:
 
 @pytest.mark.parametrize("side", ["base", "platform"])
 def test_the_cone_of_every_joint_bounds_the_inverse(machine: Machine, side: str) -> None:
-    """A pose is refused where one joint leans further than its cone, and the cone of the other side has no part in it."""
+    """A pose is refused where one joint leans further than its cone, and the cone of the other side
+    has no part in it.
+    """
     positions, turns = machine.poses(300)
     lean = leans(machine, positions, turns)[side == "platform"].max(axis=1)
     width = float(np.median(lean))

@@ -36,10 +36,16 @@ def test_five_passes_from_the_neighbouring_pose(machine: Machine) -> None:
 
 
 def test_the_number_of_passes_is_noticed() -> None:
-    """Three passes are too few, and so are five where the rate of a turn is taken for the rates of roll, pitch and yaw."""
+    """Three passes are too few, and so are five where the rate of a turn is taken for the rates of
+    roll, pitch and yaw.
+    """
 
     def without_matrix(s: Statement) -> Statement:
-        return replace(s, limit=5, following=tuple(v.xreplace(RATES) for v in s.following)) if isinstance(s, Iterate) else s
+        return (
+            replace(s, limit=5, following=tuple(v.xreplace(RATES) for v in s.following))
+            if isinstance(s, Iterate)
+            else s
+        )
 
     machine = machines()["asymmetric"]
     positions, turns = (values[::10] for values in machine.path(500))
@@ -53,7 +59,8 @@ def test_the_number_of_passes_is_noticed() -> None:
 
 @pytest.mark.parametrize("name", ["nominal", "lopsided"])
 @pytest.mark.parametrize(
-    "axes", [(1e6,) * 6, (1e-3,) * 6, (0.0,) * 6, (-650.0,) * 6, (650.0, 650.0, 650.0, 650.0, 650.0, 5000.0), (9e8,) * 6]
+    "axes",
+    [(1e6,) * 6, (1e-3,) * 6, (0.0,) * 6, (-650.0,) * 6, (650.0, 650.0, 650.0, 650.0, 650.0, 5000.0), (9e8,) * 6],
 )
 def test_lengths_that_no_pose_has(name: str, axes: tuple[float, ...]) -> None:
     """They end in one status, in every language, from the home pose and from any start."""
@@ -94,15 +101,21 @@ def test_wild_lengths_end_alike_in_every_language(machine: Machine) -> None:
 
 @pytest.mark.parametrize("pitch", [90.0, -90.0, 89.999])
 def test_where_roll_pitch_and_yaw_are_singular(machine: Machine, pitch: float) -> None:
-    """A quarter turn of pitch away from the start: where the machine can hold that, it is found or refused, never mistaken."""
+    """A quarter turn of pitch away from the start: where the machine can hold that, it is found or refused, never
+    mistaken.
+    """
     side = machine.side(machine.home[:3], machine.home_turn)
-    turns = np.array([rotation(0.0, pitch, 0.0) @ rotation(0.0, 0.0, yaw) @ machine.home_turn for yaw in (0.0, 10.0, 20.0, 30.0)])
+    turns = np.array(
+        [rotation(0.0, pitch, 0.0) @ rotation(0.0, 0.0, yaw) @ machine.home_turn for yaw in (0.0, 10.0, 20.0, 30.0)]
+    )
     positions = machine.home[:3] + np.outer(np.arange(4) / 2.0, machine.home_turn[:, 2]) * machine.shift
     for turn in turns:
         back, turned, _, status = machine.robot.forward_batch(machine.axes(positions, np.array([turn] * 4)))
         assert set(status) <= {Status.OK, Status.IMPOSSIBLE}
         found = status == Status.OK
-        assert_allclose(machine.axes(back[found], turned[found]), machine.axes(positions, np.array([turn] * 4))[found], rtol=1e-9)
+        assert_allclose(
+            machine.axes(back[found], turned[found]), machine.axes(positions, np.array([turn] * 4))[found], rtol=1e-9
+        )
         assert {machine.side(p, r) for p, r in zip(back[found], turned[found], strict=True)} <= {side}
 
 

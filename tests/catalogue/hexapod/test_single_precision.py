@@ -1,4 +1,5 @@
-"""A platform whose commanded frame is a rotation to a few digits: the lengths of its legs are those of the repaired frame."""
+"""A platform whose commanded frame is a rotation to a few digits: the lengths of its legs are those of the repaired
+frame."""
 
 from __future__ import annotations
 
@@ -39,7 +40,9 @@ def test_the_block_does_the_same(name: str) -> None:
 
 
 def test_a_start_is_repaired_too(machine: Machine) -> None:
-    """Forward kinematics from a start in single precision ends where it ends from an exact one; a wrong start is refused."""
+    """Forward kinematics from a start in single precision ends where it ends from an exact one; a wrong start is
+    refused.
+    """
     positions, turns = machine.poses(2, 5.0)
     axes = machine.axes(positions[0], turns[0])
     for matrix in list(slightly_off(turns[0]))[:3]:

@@ -29,7 +29,9 @@ def test_the_jacobian_is_the_derivative_of_forward_kinematics(machine: Machine) 
     jacobian = np.array(machine.robot.jacobian(axes))
     for k in range(6):
         ahead, behind = (machine.robot.forward(axes + sign * step * np.eye(6)[k])[0] for sign in (1.0, -1.0))
-        assert_allclose((np.array(ahead.position) - behind.position) / (2 * step), jacobian[:3, k], rtol=1e-5, atol=1e-6)
+        assert_allclose(
+            (np.array(ahead.position) - behind.position) / (2 * step), jacobian[:3, k], rtol=1e-5, atol=1e-6
+        )
         spin = (np.array(ahead.rotation) - behind.rotation) / (2 * step) @ turn.T
         assert_allclose((spin[2, 1], spin[0, 2], spin[1, 0]), jacobian[3:, k], rtol=1e-5, atol=1e-6)
 
@@ -113,7 +115,10 @@ def turned(machine: Machine, yaw: float) -> Array:
 @pytest.mark.parametrize("least", [0.0, 1e-3, 0.3])
 def test_how_near_is_a_parameter(least: float) -> None:
     machine = machines()["nominal"]
-    robot, block = Hexapod(**machine.given, min_type2_margin=least), made(machine, compiled(MECHANISM), min_type2_margin=least)
+    robot, block = (
+        Hexapod(**machine.given, min_type2_margin=least),
+        made(machine, compiled(MECHANISM), min_type2_margin=least),
+    )
     side = machine.side(machine.home[:3], machine.home_turn)
     for yaw in (0.0, 40.0, 70.0, 80.0, 89.0, 89.999, 91.0):
         turn = rotation(0.0, 0.0, yaw)

@@ -1,4 +1,5 @@
-"""Straight lines of the plate through a type 2 singularity: in one working mode, from one assembly mode into the other."""
+"""Straight lines of the plate through a type 2 singularity: in one working mode, from one assembly mode into the
+other."""
 
 from __future__ import annotations
 
@@ -19,7 +20,9 @@ HALVINGS = 60
 
 @dataclass(frozen=True)
 class Crossing:
-    """A line from a pose of a machine to one of its other assembly mode; every leg reaches all of it in one working mode."""
+    """A line from a pose of a machine to one of its other assembly mode; every leg reaches all of it in one working
+    mode.
+    """
 
     machine: LoopMachine
     unlimited: softkin.Mechanism

@@ -1,4 +1,5 @@
-"""Machines at the end of what can be assembled, by mechanism: their dimensions, and axis values where something ends."""
+"""Machines at the end of what can be assembled, by mechanism: their dimensions, and axis values where something
+ends."""
 
 from __future__ import annotations
 
@@ -94,7 +95,10 @@ EDGES: dict[str, tuple[Edge, ...]] = {
     "Kin_Tripod_P3Z": (
         (rails(150.0, *CORNERS), (20.0, 20.0, 20.0)),
         (rails(160.0, *CORNERS), (20.0, 20.0, 500.0)),
-        (rails(150.0, (100.0, 0.0), (-100.0, 0.0), (0.0, 10.0)) | {"tcp_displacement": 10.0 - 1e-12}, (20.0, 20.0, 20.0)),
+        (
+            rails(150.0, (100.0, 0.0), (-100.0, 0.0), (0.0, 10.0)) | {"tcp_displacement": 10.0 - 1e-12},
+            (20.0, 20.0, 20.0),
+        ),
     ),
 }
 """Rods that meet flat (nothing holds the plate), rods that do not meet, centres that coincide or lie on a line."""
@@ -132,4 +136,5 @@ PLACES: dict[str, tuple[tuple[Mapping[str, float], tuple[tuple[float, ...], ...]
         ),
     ),
 }
-"""Places that one leg after the other cannot aim at: its joint on the plate is on the axis of its drive, or too far away."""
+"""Places that one leg after the other cannot aim at: its joint on the plate is on the axis of its drive, or too far
+away."""

@@ -56,7 +56,9 @@ def spoiled(mechanism: Mechanism, *changes: tuple[str, str]) -> type[softkin.Mec
         assert any(right in text for text in texts), f"{short} has no {right!r}"
     texts = [_changed(text, changes) for text in texts]
     texts[1] = re.sub(rf"\b({'|'.join(constants)})\b", r"k.\1", texts[1])
-    scalar, arrays, unrolled = (_loaded(f"{name} with {changes[0][1]}", text) for name, text in zip(names, texts, strict=True))
+    scalar, arrays, unrolled = (
+        _loaded(f"{name} with {changes[0][1]}", text) for name, text in zip(names, texts, strict=True)
+    )
     scalar.__dict__["unrolled"] = unrolled.unrolled
     found: type[softkin.Mechanism] = getattr(scalar, original.__name__)
     found._array_programs = lambda self: arrays.ArrayPrograms(self._constants)  # type: ignore[attr-defined,method-assign]
@@ -115,9 +117,11 @@ FAULTS = {
         "test_round_trip.test_every_slot_satisfies_the_closure",
     ),
     "the other assembly mode in forward kinematics": Fault(
-        FIVE_BAR, "root(height_square / normal_square) * assembly_sign", "-root(height_square / normal_square) * assembly_sign",
+        FIVE_BAR, "root(height_square / normal_square) * assembly_sign",
+        "-root(height_square / normal_square) * assembly_sign",
         "test_type2.test_forward_has_one_solution_a_side",
-        (("root(height_square / normal_divisor) * assembly_sign", "-root(height_square / normal_divisor) * assembly_sign"),),
+        (("root(height_square / normal_divisor) * assembly_sign",
+            "-root(height_square / normal_divisor) * assembly_sign"),),
     ),
     "one assembly mode alone": Fault(
         DELTA, " * assembly_sign\n", "\n", "test_type2.test_forward_has_one_solution_a_side"

@@ -21,42 +21,66 @@ def test_a_ball_joint_ends_sharply(mechanism: Mechanism, machines: tuple[LoopMac
     for machine in machines if mechanism.bounds else ():
         axes = machine.draw(8, np.random.default_rng(1))
         positions, rotations = machine.closure.poses(axes)
-        values = np.abs(machine.closure.at(machine.closure.joints(axes), positions, [b.value for b in mechanism.bounds]))
+        values = np.abs(
+            machine.closure.at(machine.closure.joints(axes), positions, [b.value for b in mechanism.bounds])
+        )
         swings = np.degrees(np.arcsin(values.max(axis=1)))
         for row, swing in enumerate(swings):
             one = slice(row, row + 1)
             for share, expected in ((1 + HAIR, Status.OK), (1 - HAIR, Status.UNREACHABLE), (0.5, Status.UNREACHABLE)):
                 robot = machine.changed(**{SWING: swing * share})
-                _, statuses = inverse(robot, positions[one], rotations[one], robot.forward_batch(axes[one])[2], axes[one])
+                _, statuses = inverse(
+                    robot, positions[one], rotations[one], robot.forward_batch(axes[one])[2], axes[one]
+                )
                 assert statuses[0] == expected
                 assert robot.forward(axes[row]) == machine.robot.forward(axes[row])
 
 
-DELTA = {f"{name}_{i}": v for name, v in (("base_radius", 140.0), ("inner_arm", 200.0), ("outer_arm", 450.0)) for i in "123"}
+DELTA = {
+    f"{name}_{i}": v for name, v in (("base_radius", 140.0), ("inner_arm", 200.0), ("outer_arm", 450.0)) for i in "123"
+}
 TRIPOD = {"arm_length_1": 200.0, "arm_length_2": 450.0, "arm_1_radius": 140.0, "max_angle_ball_joint": 45.0}
-RAILS = {f"rail_{c}_{i}": v for c, vs in (("x", (0.0, -130.0, 130.0)), ("y", (150.0, -75.0, -75.0))) for i, v in enumerate(vs, 1)}
-LINE = {f"rail_{c}_{i}": v for c, vs in (("x", (100.0, 200.0, 300.0)), ("y", (10.0, 20.0, 30.0))) for i, v in enumerate(vs, 1)}
+RAILS = {
+    f"rail_{c}_{i}": v
+    for c, vs in (("x", (0.0, -130.0, 130.0)), ("y", (150.0, -75.0, -75.0)))
+    for i, v in enumerate(vs, 1)
+}
+LINE = {
+    f"rail_{c}_{i}": v
+    for c, vs in (("x", (100.0, 200.0, 300.0)), ("y", (10.0, 20.0, 30.0)))
+    for i, v in enumerate(vs, 1)
+}
 
 
 FIVE_BAR = {"inner_arm": 100.0, "outer_arm": 200.0}
-TYPE_12 = {"link_length_1": 300.0, "link_length_2": 350.0, "link_length_3": 100.0, "link_length_4": 300.0, "link_length_5": 100.0}
+TYPE_12 = {
+    "link_length_1": 300.0,
+    "link_length_2": 350.0,
+    "link_length_3": 100.0,
+    "link_length_4": 300.0,
+    "link_length_5": 100.0,
+}
 UPRIGHT = {"inner_radius": 60.0, "arm_length": 400.0, "rail_angle": 0.0, "max_angle_ball_joint": 45.0}
 BIGLIDE = {"arm_length_1": 200.0, "arm_length_2": 100.0}
 T_LAYOUT = {"azimuth_1": 0.0, "azimuth_2": 90.0, "azimuth_3": -90.0}
 WIDE = T_LAYOUT | {f"base_radius_{i}": 9000.0 for i in "123"}
 EVEN = {f"{name}_{i}": v for i in (1, 2, 3) for name, v in (("azimuth", 120.0 * i), ("base_radius", 700.0))}
 IMPOSSIBLE = {
-    "a plate smaller than its joints": ("Kin_Tripod_Rotary", TRIPOD, {"stewart_radius": 19.99, "distance": 40.0}, "stewart"),
+    "a plate smaller than its joints": ("Kin_Tripod_Rotary", TRIPOD, {"stewart_radius": 19.99, "distance": 40.0},
+        "stewart"),
     "rods that cannot reach": ("Kin_Tripod_Rotary", TRIPOD, {"arm_length_2": 339.99}, "reach"),
     "rods that cannot reach inward": ("Kin_Tripod_Rotary", TRIPOD, {"stewart_radius": 900.0}, "reach"),
     "rails on a line": ("Kin_Tripod_P3Z", {"arm_length": 269.0}, LINE, "line"),
     "rails nowhere": ("Kin_Tripod_P3Z", {"arm_length": 269.0}, {}, "origin"),
-    "a plate larger than the rails": ("Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 150.01}, "rail"),
+    "a plate larger than the rails": ("Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 150.01},
+        "rail"),
     "a plate larger than rail 2": (
-        "Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 20.0, "rail_x_2": -9.0, "rail_y_2": -9.0}, "rail 2"
+        "Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 20.0, "rail_x_2": -9.0, "rail_y_2": -9.0},
+        "rail 2"
     ),
     "a plate larger than rail 3": (
-        "Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 20.0, "rail_x_3": 10.0, "rail_y_3": -10.0}, "rail 3"
+        "Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS,
+        {"tcp_displacement": 20.0, "rail_x_3": 10.0, "rail_y_3": -10.0}, "rail 3"
     ),
     "arms all the same way": ("Kin_Delta_P3C_Type3", DELTA, {f"azimuth_{i}": 30.0 for i in "123"}, "azimuth"),
     "a five-bar too wide": ("Kin_P2C_Type1", FIVE_BAR, {"displacement": 301.0}, "reach the plate"),
@@ -72,12 +96,17 @@ IMPOSSIBLE = {
     "rods that meet two and two": ("Kin_Tripod_P3Z", {"arm_length": 140.0} | RAILS, {}, "reach the plate"),
     "arms that meet two and two": ("Kin_Delta_P3C_Type3", DELTA, EVEN, "reach the plate"),
     "upright rails too far apart": ("Kin_Tripod_Linear", UPRIGHT, {"outer_radius": 461.0}, "reach the plate"),
-    "two arms the same way": ("Kin_Delta_P3C_Type3", DELTA, {"azimuth_1": 0.0, "azimuth_2": 90.0, "azimuth_3": 90.0}, "azimuth"),
+    "two arms the same way": ("Kin_Delta_P3C_Type3", DELTA, {"azimuth_1": 0.0, "azimuth_2": 90.0, "azimuth_3": 90.0},
+        "azimuth"),
 }  # fmt: skip
 POSSIBLE = {
     "a plate as small as its joints": ("Kin_Tripod_Rotary", TRIPOD, {"stewart_radius": 20.0, "distance": 40.0}),
     "rods that just reach": ("Kin_Tripod_Rotary", TRIPOD, {"arm_length_2": 340.01}),
-    "a plate almost as large as the rails": ("Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 149.99}),
+    "a plate almost as large as the rails": (
+        "Kin_Tripod_P3Z",
+        {"arm_length": 269.0} | RAILS,
+        {"tcp_displacement": 149.99},
+    ),
 }
 
 

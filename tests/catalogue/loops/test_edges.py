@@ -16,7 +16,9 @@ def test_every_loop_has_edges() -> None:
 
 @pytest.mark.parametrize("name", EDGES)
 def test_flat_rods_are_a_pose_that_nothing_controls(name: str) -> None:
-    """Forward kinematics answers at the boundary; there is no Jacobian, it is singular, and the inverse refuses to go there."""
+    """Forward kinematics answers at the boundary; there is no Jacobian, it is singular, and the inverse refuses to go
+    there.
+    """
     dimensions, axes = EDGES[name][0]
     robot = softkin.catalogue()[name](**dimensions)
     frame, configuration = robot.forward(axes)
@@ -52,7 +54,9 @@ def test_a_leg_that_cannot_aim_refuses_in_every_slot(name: str) -> None:
 def test_the_side_does_not_depend_on_how_legs_are_numbered(name: str) -> None:
     """Below is below: turned round, a machine is the same machine with its axes exchanged."""
     dimensions, axes = OTHER_WAY_ROUND[name]
-    renamed = {key.replace("_1", "_0").replace("_3", "_1").replace("_0", "_3"): value for key, value in dimensions.items()}
+    renamed = {
+        key.replace("_1", "_0").replace("_3", "_1").replace("_0", "_3"): value for key, value in dimensions.items()
+    }
     swapped = name == "MC_KIN_TYPE_12_XY"
     same = dict(dimensions, swap_xy=0.0) if swapped else renamed
     for flag in (False, True):

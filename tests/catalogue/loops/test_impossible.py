@@ -15,7 +15,13 @@ from derive.geometry.vectors import vector
 Array = NDArray[np.float64]
 ARM = {"inner_arm": 100.0, "outer_arm": 200.0}
 UPRIGHT = {"inner_radius": 60.0, "arm_length": 400.0, "rail_angle": 0.0, "max_angle_ball_joint": 45.0}
-TYPE_12 = {"link_length_1": 300.0, "link_length_2": 350.0, "link_length_3": 100.0, "link_length_4": 300.0, "link_length_5": 100.0}
+TYPE_12 = {
+    "link_length_1": 300.0,
+    "link_length_2": 350.0,
+    "link_length_3": 100.0,
+    "link_length_4": 300.0,
+    "link_length_5": 100.0,
+}
 
 
 def delta(radius: float) -> dict[str, float]:
@@ -36,7 +42,10 @@ EDGES = {
     "P2CType1": (lambda s: {**ARM, "displacement": 340.0 + s, "tcp_displacement": 40.0}, "reach the plate"),
     "P2CType2": (lambda s: {**ARM, "displacement": 340.0 + s, "tcp_link_distance": 80.0}, "reach the plate"),
     "BipodRotary": (lambda s: {**ARM, "displacement": 340.0 + s, "tcp_displacement": 40.0}, "reach the plate"),
-    "P2XType1": (lambda s: {"arm_length_1": 200.0, "arm_length_2": 100.0, "rail_y_2": 300.0 + s}, "meet between the rails"),
+    "P2XType1": (
+        lambda s: {"arm_length_1": 200.0, "arm_length_2": 100.0, "rail_y_2": 300.0 + s},
+        "meet between the rails",
+    ),
     "KinType12XY": (lambda s: {**TYPE_12, "link_length_5": 700.0 + s}, "link 5"),
     "DeltaP3CType3": (lambda s: delta(340.0 + s), "reach the plate"),
     "TripodP3Z": (lambda s: rails(250.0 + s), "reach the plate"),
@@ -58,7 +67,9 @@ def test_the_edge_of_what_can_be_assembled(name: str) -> None:
 
 
 def test_steep_rails_can_be_as_far_apart_as_they_like() -> None:
-    softkin.TripodLinear(outer_radius=4000.0, inner_radius=60.0, arm_length=400.0, rail_angle=30.0, max_angle_ball_joint=45.0)
+    softkin.TripodLinear(
+        outer_radius=4000.0, inner_radius=60.0, arm_length=400.0, rail_angle=30.0, max_angle_ball_joint=45.0
+    )
 
 
 def do_meet(centres: Array, radii: Array) -> bool:

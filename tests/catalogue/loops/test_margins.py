@@ -1,4 +1,5 @@
-"""Margins against the matrices of the closure, A x' + B q' = 0, differentiated numerically; nothing of the derivation is read."""
+"""Margins against the matrices of the closure, A x' + B q' = 0, differentiated numerically; nothing of the derivation
+is read."""
 
 from __future__ import annotations
 
@@ -68,7 +69,9 @@ def test_the_jacobian_is_that_of_the_closure_and_of_forward(machines: tuple[Loop
         derived = np.array([machine.robot.jacobian(row) for row in axes])
         size = np.abs(derived).max(axis=(1, 2))
         exact = -np.linalg.solve(a, b)
-        assert (np.abs(derived - exact).max(axis=(1, 2)) < 1e-13 * np.linalg.cond(a) * np.maximum(size, 1.0) + 1e-11 * size).all()
+        assert (
+            np.abs(derived - exact).max(axis=(1, 2)) < 1e-13 * np.linalg.cond(a) * np.maximum(size, 1.0) + 1e-11 * size
+        ).all()
         for i, unit in enumerate(machine.closure.units):
             shift = step * np.eye(axes.shape[1])[i]
             ahead, behind = (machine.robot.forward_batch(axes + s)[0] for s in (shift, -shift))
@@ -77,7 +80,9 @@ def test_the_jacobian_is_that_of_the_closure_and_of_forward(machines: tuple[Loop
 
 
 def test_a_way_out_ends_at_a_singularity_or_a_bound(machines: tuple[LoopMachine, ...]) -> None:
-    """Straight on until the slot is refused: there a leg is stretched, or a ball joint at its end, or the plate lost."""
+    """Straight on until the slot is refused: there a leg is stretched, or a ball joint at its end,
+    or the plate lost.
+    """
     rng = np.random.default_rng(4)
     reasons = []
     for machine in machines:

@@ -32,7 +32,9 @@ def the_test(fault: Fault) -> Callable[[tuple[LoopMachine, ...]], None]:
 
 
 def crossings_given_to(machines: tuple[LoopMachine, ...]) -> list[Crossing]:
-    """The ways that machines without a fault find, for these to go: none is found by a machine that takes both modes for one."""
+    """The ways that machines without a fault find, for these to go: none is found by a machine that takes both modes
+    for one.
+    """
     ways = zip(machines, map(crossing_of, loop_machines_of(machines[0].mechanism)), strict=True)
     found = [(machine, way) for machine, way in ways if way is not None]
     if not found:

@@ -51,7 +51,11 @@ def test_klipper_rotary_delta_in_t_layout(axes: tuple[float, ...], position: tup
 )
 def test_linuxcnc_linear_delta(position: tuple[float, ...], axes: tuple[float, ...]) -> None:
     turns = np.radians([90, 210, 330])
-    rails = {f"rail_{c}_{i + 1}": float(130.25 * f(t)) for i, t in enumerate(turns) for c, f in (("x", np.cos), ("y", np.sin))}
+    rails = {
+        f"rail_{c}_{i + 1}": float(130.25 * f(t))
+        for i, t in enumerate(turns)
+        for c, f in (("x", np.cos), ("y", np.sin))
+    }
     robot = softkin.TripodP3Z(arm_length=269.0, **rails)
     np.testing.assert_allclose(robot.inverse((position, IDENTITY)), axes, atol=1e-9)
     np.testing.assert_allclose(robot.forward(axes)[0].position, position, atol=1e-9)

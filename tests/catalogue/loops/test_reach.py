@@ -61,7 +61,9 @@ def test_a_slot_is_refused_where_a_leg_does_not_reach_and_belongs_to_one_mode_wh
     """Of machines whose legs have a joint each."""
     symbols = [j.symbol for j in machines[0].mechanism.joints]
     equations = machines[0].mechanism.equations
-    own = [{s for s in symbols if s in e.free_symbols} == {symbol} for e, symbol in zip(equations, symbols, strict=True)]
+    own = [
+        {s for s in symbols if s in e.free_symbols} == {symbol} for e, symbol in zip(equations, symbols, strict=True)
+    ]
     if not all(own):
         assert machines[0].mechanism.name in ("MC_KIN_TYPE_12_XY", "Kin_P2X_Type2")
         return

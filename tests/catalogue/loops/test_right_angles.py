@@ -15,7 +15,8 @@ ANGLES = (-180.0, -90.0, 0.0, 90.0, 180.0, 270.0)
 LENGTHS = (-0.5, -0.25, 0.0, 0.125, 0.25, 0.5)
 """Of a reach."""
 LOST = 3e-8
-"""Below this part of its size, a root of rounding, the determinant of the closure says nothing of a solution's existence."""
+"""Below this part of its size, a root of rounding, the determinant of the closure says nothing of a solution's
+existence."""
 
 
 def grid(machine: LoopMachine) -> Array:
@@ -30,7 +31,9 @@ def plates(machine: LoopMachine, axes: Array, positions: Array) -> Array:
 
 
 def test_the_grid(machines: tuple[LoopMachine, ...]) -> None:
-    """Forward closes the loop or refuses; what it answers goes round by scalar and batch, or is too near to losing the plate."""
+    """Forward closes the loop or refuses; what it answers goes round by scalar and batch, or is too near to losing the
+    plate.
+    """
     nominal = machines[0]
     whole = {p.name: float(round(p.nominal, -1)) for p in nominal.mechanism.parameters}
     for machine in (*machines, loop_machine(nominal.mechanism, "round", whole)):

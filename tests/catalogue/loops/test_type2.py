@@ -62,7 +62,9 @@ def test_the_closure_itself_is_lost_there(crossings: list[Crossing]) -> None:
         beyond = asked(line.other, behind, line.configuration, here)
         assert beyond is not None
         assert np.abs(here - beyond).max() < 1e-4 * line.machine.reach
-        values = [determinant(line.machine, a, p) for a, p in ((line.axes, line.start), (here, before), (beyond, behind))]
+        values = [
+            determinant(line.machine, a, p) for a, p in ((line.axes, line.start), (here, before), (beyond, behind))
+        ]
         assert np.abs(values[1:]).max() < 1e-5 * abs(values[0])
         assert np.sign(values[0]) == np.sign(values[1]) == -np.sign(values[2])
 
@@ -127,7 +129,11 @@ def test_the_least_margin_is_sharp(machines: tuple[LoopMachine, ...]) -> None:
                 assert status == expected.softmotion
                 assert robot.inverse_batch([position], None, configuration, axes)[1][0] == expected
                 branches = configuration[: robot.BRANCHES]
-                (own,) = (s for s in robot.inverse_all((position, None), axes) if s.configuration[: robot.BRANCHES] == branches)
+                (own,) = (
+                    s
+                    for s in robot.inverse_all((position, None), axes)
+                    if s.configuration[: robot.BRANCHES] == branches
+                )
                 assert own.status is expected
                 assert (asked(robot, np.array(position), configuration, axes) is not None) == (expected is Status.OK)
                 offset = (0.0, 0.0, 0.0)
@@ -149,7 +155,9 @@ def test_the_other_assembly_mode_is_refused(machines: tuple[LoopMachine, ...]) -
 
 
 def test_forward_has_one_solution_a_side(machines: tuple[LoopMachine, ...]) -> None:
-    """Newton's method from many places finds two poses at regular axis values, and each assembly mode is one of them."""
+    """Newton's method from many places finds two poses at regular axis values, and each assembly
+    mode is one of them.
+    """
     rng = np.random.default_rng(6)
     for machine in machines:
         assembly = machine.mechanism.assembly

@@ -24,7 +24,8 @@ def frame(axes: Array, lateral: float) -> Array:
     q, k = np.moveaxis(np.radians(axes), -1, 0), IRB_2400
     steps = (
         turn(2, q[0]), shift(k["a1"], 0, k["d1"]), turn(1, q[1]), shift(0, 0, k["a2"]), turn(1, q[2]),
-        shift(k["d4"], 0, k["a3"]), turn(0, q[3]), turn(1, q[4]), shift(lateral, 0, 0), turn(2, q[5]), shift(0, 0, k["d6"]),
+        shift(k["d4"], 0, k["a3"]), turn(0, q[3]), turn(1, q[4]), shift(lateral, 0, 0), turn(2, q[5]),
+        shift(0, 0, k["d6"]),
     )  # fmt: skip
     return np.asarray(reduce(np.matmul, steps))
 
@@ -81,4 +82,6 @@ def _apart(here: Array, there: Array) -> Array:
     spin = np.stack([turned[..., i, j] - turned[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))], axis=-1) / 2
     length = np.maximum(np.linalg.norm(spin, axis=-1, keepdims=True), 1e-9)
     is_far = np.trace(turned, axis1=-2, axis2=-1)[..., None] < 1.0  # beyond a right angle the sine falls again
-    return np.concatenate([(there[..., :3, 3] - here[..., :3, 3]) / 1000.0, np.where(is_far, spin / length, spin)], axis=-1)
+    return np.concatenate(
+        [(there[..., :3, 3] - here[..., :3, 3]) / 1000.0, np.where(is_far, spin / length, spin)], axis=-1
+    )

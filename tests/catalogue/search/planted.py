@@ -1,4 +1,5 @@
-"""Poses at which a root scan is difficult: A4 near 0 and 180 degrees, the elbow nearly stretched or folded, any offset."""
+"""Poses at which a root scan is difficult: A4 near 0 and 180 degrees, the elbow nearly stretched or folded, any
+offset."""
 
 from __future__ import annotations
 

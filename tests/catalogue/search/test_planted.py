@@ -41,11 +41,25 @@ def test_planted_poses(kind: str, lateral: float) -> None:
 LOST = {
     150.0: (
         (101.003055, -155.763074, 94.76272379750108, -19.795488, -77.784248, -12.027807),
-        (-15.917461476755477, 7.477319877444728, 94.78352380036634, 8.419675022612154, -58.19733256469311, 137.309398524),
+        (
+            -15.917461476755477,
+            7.477319877444728,
+            94.78352380036634,
+            8.419675022612154,
+            -58.19733256469311,
+            137.309398524,
+        ),
     ),
     -300.0: (
         (-33.66869272827205, -148.92608485920607, 94.80437491638847, -31.24743988, 23.7631743457, -160.16310682181964),
-        (102.38847764684363, -175.14384556208714, 94.76364659324585, -6.650570097147176e-11, 64.26025663, -109.14666664),
+        (
+            102.38847764684363,
+            -175.14384556208714,
+            94.76364659324585,
+            -6.650570097147176e-11,
+            64.26025663,
+            -109.14666664,
+        ),
     ),
 }
 """Poses whose guard or value has two extrema between two trials, which tangents, the cubic, or both do not show."""
@@ -71,8 +85,12 @@ FOLDED = {**ARM, "a1": 0.0, "a3": 0.0, "d4": ARM["a2"], "d6": 0.0}
 @pytest.mark.parametrize("lateral", (1e-3, 60.0, -300.0))
 @pytest.mark.parametrize("unit", (1.0, 1e-3))
 @pytest.mark.parametrize("lengths", (FOLDED, {**ARM, "a1": 0.0, "a3": 0.0}))
-def test_a_folded_elbow_puts_the_wrist_on_the_first_axes(lateral: float, unit: float, lengths: dict[str, float]) -> None:
-    """Right angles, and elbows next to folded and stretched: axes 1 and 2 turn fast where the elbow is singular, or are free."""
+def test_a_folded_elbow_puts_the_wrist_on_the_first_axes(
+    lateral: float, unit: float, lengths: dict[str, float]
+) -> None:
+    """Right angles, and elbows next to folded and stretched: axes 1 and 2 turn fast where the elbow is singular, or are
+    free.
+    """
     rng = np.random.default_rng(19)
     near = planted("elbow", lateral, 60, 20).axes
     near[:, 2] += 90.0 - STRAIGHT
@@ -120,7 +138,9 @@ def test_plain_numbers_and_batches_agree(kind: str, lateral: float) -> None:
     found, statuses = case.robot.inverse_batch(positions, rotations, configurations, case.references)
     assert (statuses == Status.OK).all()
     for k, axes in enumerate(case.axes):
-        one = case.robot.inverse((positions[k], rotations[k]), tuple(map(int, configurations[k])), tuple(case.references[k]))
+        one = case.robot.inverse(
+            (positions[k], rotations[k]), tuple(map(int, configurations[k])), tuple(case.references[k])
+        )
         if is_regular(case.robot, axes):
             assert np.abs(np.subtract(one, found[k])).max() < 1e-6
 
@@ -132,7 +152,9 @@ def test_nothing_is_missed_that_a_scan_finds(kind: str, lateral: float) -> None:
     seen = 0
     for axes in case.axes:
         frame, _ = case.robot.forward(tuple(axes))
-        solutions = [np.array(a) for s in case.robot.inverse_all(frame) if s.axes is not None for a in (s.axes, *s.others)]
+        solutions = [
+            np.array(a) for s in case.robot.inverse_all(frame) if s.axes is not None for a in (s.axes, *s.others)
+        ]
         for root in scanned(case.robot, frame):
             seen += 1
             assert min(abs(np.exp(1j * np.radians(s[5])) - np.exp(1j * root)) for s in solutions) < 1e-5
@@ -149,7 +171,14 @@ def scanned(robot: softkin.Ac6RZRYRYRXRYRZJ6Offset, frame: softkin.Frame, trials
             pose = dict(zip("xyz", frame.position, strict=True)) | {
                 f"r{i + 1}{j + 1}": frame.rotation[i][j] for i, j in product(range(3), repeat=2)
             }
-            given = {"reference_a1": 0.0, "reference_a2": 0.0, "freed": -1.0, "freed_angle": 0.0, "side": side, "tried": t}
+            given = {
+                "reference_a1": 0.0,
+                "reference_a2": 0.0,
+                "freed": -1.0,
+                "freed_angle": 0.0,
+                "side": side,
+                "tried": t,
+            }
             given |= {f"goal_{n}": v for n, v in pose.items()} | {"wanted_elbow": 1.0, "wanted_shoulder": shoulder}
             values = tuple(given[name] for name in sorted(given))
             with np.errstate(all="ignore"):

@@ -1,4 +1,5 @@
-"""Axes that turn more than once, each at a regular pose of its machine, and the machines with limits around that pose."""
+"""Axes that turn more than once, each at a regular pose of its machine, and the machines with limits around that
+pose."""
 
 from __future__ import annotations
 
@@ -109,7 +110,10 @@ def _can_go(robot: softkin.Mechanism, axes: Axes, index: int) -> bool:
     ways = np.linspace(-REACH, REACH, 5)
     moved = [(*axes[:index], axes[index] + way, *axes[index + 1 :]) for way in ways.tolist()]
     branches = robot.forward(axes)[1][: robot.BRANCHES]
-    return all(_is_regular(robot, m) and robot.forward(m)[1][: robot.BRANCHES] == branches and _returns(robot, m) for m in moved)
+    return all(
+        _is_regular(robot, m) and robot.forward(m)[1][: robot.BRANCHES] == branches and _returns(robot, m)
+        for m in moved
+    )
 
 
 def _is_regular(robot: softkin.Mechanism, axes: Axes) -> bool:

@@ -1,4 +1,5 @@
-"""Calls on a turning axis, each against what its range allows: never a jump, and a refusal that says whether the turn refuses."""
+"""Calls on a turning axis, each against what its range allows: never a jump, and a refusal that says whether the turn
+refuses."""
 
 from __future__ import annotations
 
@@ -75,7 +76,9 @@ def ask(axis: TurningAxis, limits: Range, caller: Caller, value: float, referenc
 
 
 def _check_refusal(axis: TurningAxis, limits: Range, caller: Caller, at: float, asked: Asked) -> None:
-    """Where another turn is inside, the reason says that the turn refuses, and the byte is answered; else it does not."""
+    """Where another turn is inside, the reason says that the turn refuses, and the byte is
+    answered; else it does not.
+    """
     inside = limits.inside(at)
     reason, missing, turn = caller.why(asked)
     assert missing > 0.0

@@ -46,9 +46,14 @@ def test_the_lengths_that_are_named_are_refused_at_0(mechanism: Mechanism) -> No
 
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
 def test_what_limits_an_axis_that_is_given_no_limits_is_said(mechanism: Mechanism) -> None:
-    """Where a pitch or the closure limits it, with the numbers, in the input's comment, the table and the Python class."""
+    """Where a pitch or the closure limits it, with the numbers, in the input's comment, the table
+    and the Python class.
+    """
     limits = {p.name: p for p in machine_parameters(mechanism) if p.name.startswith(("lower_", "upper_"))}
-    text, meanings = text_of(mechanism), {p.name: p.meaning for p in robot_of(mechanism, _nominal(mechanism)).PARAMETERS}
+    text, meanings = (
+        text_of(mechanism),
+        {p.name: p.meaning for p in robot_of(mechanism, _nominal(mechanism)).PARAMETERS},
+    )
     block = controller(mechanism)[0]
     for index, joint in enumerate(mechanism.joints):
         properties = meaningless(block.library, PROPERTIES_TYPE)

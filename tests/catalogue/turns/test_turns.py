@@ -1,4 +1,5 @@
-"""Ranges around one turn, in both languages: a path is refused at their ends and never jumps; a turn inside can be named."""
+"""Ranges around one turn, in both languages: a path is refused at their ends and never jumps; a turn inside can be
+named."""
 
 from __future__ import annotations
 

@@ -87,7 +87,9 @@ TURNS = (-400.0, -180.0, -20.0, 0.0, 90.0, 200.0)
 @pytest.mark.parametrize("wrist", [m for m in ORIENTATIONS if m.joints], ids=lambda m: m.name)
 @pytest.mark.parametrize("carrier", ("Kin_Scara2_Z", "Kin_Pos_RRR", "Kin_PCC"))
 def test_drives_of_both_parts_decide_the_turns(carrier: str, wrist: Mechanism) -> None:
-    """Each part is handed the limits of its own drives, about its own turn: the answer of two parts with these limits."""
+    """Each part is handed the limits of its own drives, about its own turn: the answer of two parts
+    with these limits.
+    """
     first, second = position_part(EVERYTHING[carrier]), orientation_parts(wrist)[0]
     coupling = Coupling(first, second, "rows")
     assert coupling.is_possible()
@@ -109,7 +111,9 @@ def test_drives_of_both_parts_decide_the_turns(carrier: str, wrist: Mechanism) -
 def _around(part: Part, block: Controller, axes: list[float], rng: np.random.Generator) -> softkin.Mechanism:
     """Drives of less than a turn about axis values: handed over to the block, and as a machine in Python."""
     middles = [value + rng.uniform(-20.0, 20.0) for value in axes]
-    drives = [(m - 160.0, m + 160.0) if j.is_angle else None for j, m in zip(part.mechanism.joints, middles, strict=True)]
+    drives = [
+        (m - 160.0, m + 160.0) if j.is_angle else None for j, m in zip(part.mechanism.joints, middles, strict=True)
+    ]
     assert [block.axis_settings(axis, drive) for axis, drive in enumerate(drives)] == [OK] * len(axes)
     both = together(part.mechanism, part.robot.parameters, drives)
     assert both is not None

@@ -69,7 +69,11 @@ def test_what_a_coupling_asks_is_repaired(wrist: Mechanism) -> None:
     rng = np.random.default_rng(9)
     commanded, flange = (np.array(tilted(rng)) for _ in range(2))
     for matrix in slightly_off(commanded):
-        for image in (Image("zero", rows(flange)), Image("zero", rows(next(slightly_off(flange)))), Image("three", rows(flange))):
+        for image in (
+            Image("zero", rows(flange)),
+            Image("zero", rows(next(slightly_off(flange)))),
+            Image("three", rows(flange)),
+        ):
             found = one.controller.end_point(rows(matrix), image, data, axes)
             exact = Image(image.freedom, rows(repaired(np.array(image.zero))))
             expected = one.controller.end_point(rows(repaired(matrix)), exact, data, axes)

@@ -1,4 +1,5 @@
-"""Every method of the emitted orientation kinematics is executed, in both orders of the matrix, and answers as Python does."""
+"""Every method of the emitted orientation kinematics is executed, in both orders of the matrix, and answers as Python
+does."""
 
 from __future__ import annotations
 
@@ -38,9 +39,15 @@ def images(rng: np.random.Generator) -> Iterator[tuple[Image, Callable[[], np.nd
     yield Image("zero", rows_of(still)), lambda: still
     yield Image("one"), lambda: _about(np.array((0.0, 0.0, 1.0)), rng)
     down = np.diag((1.0, -1.0, -1.0))
-    yield Image("one", rows_of(down), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)), lambda: _about(np.array((0.0, 0.0, 1.0)), rng) @ down
+    yield (
+        Image("one", rows_of(down), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)),
+        lambda: _about(np.array((0.0, 0.0, 1.0)), rng) @ down,
+    )
     base, zero = np.array(tilted(rng))[:, 0], np.array(tilted(rng))
-    yield Image("one", rows_of(zero), tuple(base.tolist()), tuple((zero.T @ base).tolist())), lambda: _about(base, rng) @ zero
+    yield (
+        Image("one", rows_of(zero), tuple(base.tolist()), tuple((zero.T @ base).tolist())),
+        lambda: _about(base, rng) @ zero,
+    )
     yield Image("three", rows_of(still)), lambda: np.array(tilted(rng))
 
 
@@ -59,11 +66,15 @@ def compatible(twins: Twins, sample: Sample) -> None:
         assert twins.controller.is_compatible(image) is expected
     if sample is twins.regular[0]:
         for freedom, carrier in CARRIERS.items():
-            assert twins.controller.is_compatible(Image(freedom)) is is_determined(position_part(EVERYTHING[carrier]), twins.part)
+            assert twins.controller.is_compatible(Image(freedom)) is is_determined(
+                position_part(EVERYTHING[carrier]), twins.part
+            )
 
 
 def end_point(twins: Twins, sample: Sample) -> None:
-    """Where the equations have the end point, with the flange as it is at axis values that give the commanded rotation."""
+    """Where the equations have the end point, with the flange as it is at axis values that give the
+    commanded rotation.
+    """
     rng = np.random.default_rng(37)
     place, own = (m[0] for m in twins.part.closure.frames(twins.part.closure.joints(np.array([sample.axes]))))
     configuration = twins.robot.forward(sample.axes)[1]
@@ -205,7 +216,9 @@ def test_garbage_and_no_initialisation(mechanism: Mechanism) -> None:
     """Any scalar of any argument: an answer without a fault, and where it is a refusal nothing is written."""
     twins = twins_of(mechanism)[0]
     fresh = compiled(mechanism).new(mechanism.block_name)
-    for method in (m for m in METHODS if m[0] is mechanism and m[1].startswith(("GetPosition", "GetOrientation", "IsComp"))):
+    for method in (
+        m for m in METHODS if m[0] is mechanism and m[1].startswith(("GetPosition", "GetOrientation", "IsComp"))
+    ):
         entry: Entry = twins.controller.block.routines[method[1].lower()]
         for freedom in CARRIERS:
             clean = _arguments(twins, entry, freedom)
@@ -221,7 +234,9 @@ def test_garbage_and_no_initialisation(mechanism: Mechanism) -> None:
                         _call_with(twins, method[1], entry, freedom, name, path, number)
 
 
-def _call_with(twins: Twins, method: str, entry: Entry, freedom: str, name: str, path: values.Path, number: float) -> None:
+def _call_with(
+    twins: Twins, method: str, entry: Entry, freedom: str, name: str, path: values.Path, number: float
+) -> None:
     given = _arguments(twins, entry, freedom)
     values.put(given[name], path, number)
     written = [k for k in given if hasattr(given[k], "_copy")]

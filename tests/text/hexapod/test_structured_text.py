@@ -86,7 +86,11 @@ def test_nothing_works_before_initialize() -> None:
     assert empty.inverse((0.0, 0.0, 600.0), np.eye(3), (), axes) == (NOT_INITIALIZED, None)
     assert empty.diagnose((0.0, 0.0, 600.0), np.eye(3), (), axes) == ("not initialized", 0.0)
     assert empty.is_singular(axes)
-    assert empty.image("GetFlangeOrientationImageTotal") == empty.image_with_orientation(np.eye(3)) == (NOT_INITIALIZED, None)
+    assert (
+        empty.image("GetFlangeOrientationImageTotal")
+        == empty.image_with_orientation(np.eye(3))
+        == (NOT_INITIALIZED, None)
+    )
     assert not empty.block.call("IsInitialized") and controller("nominal").block.call("IsInitialized")
 
 
@@ -137,11 +141,17 @@ def test_every_statement_runs() -> None:
         check_axes()
         check_initialize(small)
         check_bounds()
-        assert controller("nominal").forward((1e6,) * 6) == controller("nominal").forward((-1.0,) * 6) == (IMPOSSIBLE, None)
+        assert (
+            controller("nominal").forward((1e6,) * 6)
+            == controller("nominal").forward((-1.0,) * 6)
+            == (IMPOSSIBLE, None)
+        )
         assert controller("nominal").jacobian((1e6,) * 6)[0] == IMPOSSIBLE
     lines = text_of(MECHANISM).split("\n")
     missing = {place.line for place in statements.left_out()} - unreachable(MECHANISM, lines)
-    assert not (left := [f"{n}: {lines[n - 1]}" for n in sorted(missing) if not lines[n - 1].startswith("FUNCTION_BLOCK")]), left
+    assert not (
+        left := [f"{n}: {lines[n - 1]}" for n in sorted(missing) if not lines[n - 1].startswith("FUNCTION_BLOCK")]
+    ), left
 
 
 def check_axes() -> None:
@@ -170,7 +180,10 @@ def check_initialize(small: Library) -> None:
         test_refusals.test_machines_that_cannot_work(case)
     assert made(machines()["nominal"], compiled(MECHANISM), lower_l1=1.0, upper_l1=1e3).forward((650.0,) * 6)[0] == OK
     limits = {f"{end}_l{k}": value for k in range(1, 7) for end, value in (("lower", 1.0), ("upper", 1e4))}
-    assert made(machines()["nominal"], compiled(MECHANISM), **limits, max_angle_base_joint=30.0).forward((650.0,) * 6)[0] == OK
+    assert (
+        made(machines()["nominal"], compiled(MECHANISM), **limits, max_angle_base_joint=30.0).forward((650.0,) * 6)[0]
+        == OK
+    )
     assert Controller(small, MECHANISM).initialise(machines()["nominal"].given) == NOT_INITIALIZED
 
 

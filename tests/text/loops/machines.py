@@ -75,7 +75,10 @@ def loops_of(mechanism: Mechanism) -> tuple[Loop, ...]:
     columns = list(zip(*(sample.axes for sample in other.regular), strict=True))
     limits = {}
     for joint, column in zip(mechanism.joints, columns, strict=True):
-        limits |= {f"lower_{joint.key}": float(np.quantile(column, 0.1)), f"upper_{joint.key}": float(np.quantile(column, 0.9))}
+        limits |= {
+            f"lower_{joint.key}": float(np.quantile(column, 0.1)),
+            f"upper_{joint.key}": float(np.quantile(column, 0.9)),
+        }
     given = {**other.machine.given, **limits, "check_limits": True}
     return nominal, other, _loop(_machine(mechanism, "limited", given), rng)
 
@@ -123,7 +126,9 @@ def _loop(machine: Machine, rng: Generator) -> Loop:
 
 
 def _returns(machine: Machine, axes: tuple[float, ...]) -> bool:
-    """Whether the inverse accepts the pose: limits, and the swing of a ball joint, are the inverse's. Not asked without those."""
+    """Whether the inverse accepts the pose: limits, and the swing of a ball joint, are the inverse's. Not asked without
+    those.
+    """
     if not machine.mechanism.bounds or machine.label == "limited":
         return True
     frame, configuration = machine.robot.forward(axes)

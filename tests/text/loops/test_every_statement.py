@@ -108,7 +108,9 @@ def compare_offset(loop: Loop, place: tuple[float, ...], sample: Sample, data: B
 
 
 def at_edges(mechanism: Mechanism) -> list[Loop]:
-    """Machines at the end of what can be assembled, at the axis values of the end. Places that no leg can aim at are asked."""
+    """Machines at the end of what can be assembled, at the axis values of the end. Places that no leg can aim at are
+    asked.
+    """
     others = [OTHER_WAY_ROUND[mechanism.name]] if mechanism.name in OTHER_WAY_ROUND else []
     found = [loop_of(mechanism, "edge", dimensions, [axes]) for dimensions, axes in (*EDGES[mechanism.name], *others)]
     for dimensions, places in PLACES.get(mechanism.name, ()):

@@ -1,4 +1,5 @@
-"""Parameters that form no machine, numbers that are none, blocks that were not initialised: a status, outputs untouched."""
+"""Parameters that form no machine, numbers that are none, blocks that were not initialised: a status, outputs
+untouched."""
 
 from __future__ import annotations
 

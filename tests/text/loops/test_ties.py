@@ -1,4 +1,5 @@
-"""Which of two slides is nearer does not depend on the unit: in Python, scalar and batch, in couplings, in Structured Text."""
+"""Which of two slides is nearer does not depend on the unit: in Python, scalar and batch, in couplings, in Structured
+Text."""
 
 from __future__ import annotations
 
@@ -35,7 +36,8 @@ def robot_in(mechanism: Mechanism, unit: float) -> softkin.Mechanism:
 
 def scale_of(robot: softkin.Mechanism) -> float:
     """The lengths of the machine together."""
-    return sum(robot.parameters[p.name] for p in robot.PARAMETERS if p.unit == "u" and p.kind in ("length", "distance") and (
+    return sum(robot.parameters[p.name] for p in robot.PARAMETERS if p.unit == "u" and p.kind in ("length",
+        "distance") and (
         p.kind == "length" or p.low == 0.0))  # fmt: skip
 
 
@@ -58,7 +60,13 @@ def test_the_nearer_slide_is_chosen_in_every_unit(mechanism: Mechanism, unit: fl
     assert controller.initialise(robot.parameters) == OK
     towards = (second - first) / apart
     tie = (TIE * scale) ** 2
-    for excess, chosen in ((0.0, first), (0.5 * tie, first), (3.0 * tie, second), (-3.0 * tie, first), (1e-5 * scale**2, second)):
+    for excess, chosen in (
+        (0.0, first),
+        (0.5 * tie, first),
+        (3.0 * tie, second),
+        (-3.0 * tie, first),
+        (1e-5 * scale**2, second),
+    ):
         near = (first + second) / 2 + towards * excess / (2.0 * apart)
         for found in answers(robot, controller, position, near):
             assert np.abs(found - chosen).max() < 1e-9 * scale
@@ -83,7 +91,9 @@ def answers(robot: softkin.Mechanism, controller: Controller, position: Array, n
 
 
 def test_half_a_millimetre_is_seen_in_metres() -> None:
-    """Two solutions of a biglide at 0.5 mm and 1 mm from the reference, in metres: the nearer one, not the lower slot."""
+    """Two solutions of a biglide at 0.5 mm and 1 mm from the reference, in metres: the nearer one,
+    not the lower slot.
+    """
     robot = softkin.P2XType1(arm_length_1=0.3, arm_length_2=0.4, min_type2_margin=0.0)
     height = np.sqrt(0.3**2 - 0.00075**2)  # both ends of the first rod 0.75 mm beside the plate
     position, automatic = (0.1, -float(height), 0.0), (0, 1)

@@ -53,12 +53,17 @@ def compare(mechanism: Mechanism, library: Library, method: str, samples: int) -
         COMPARISONS[method](other, sample)
 
 
-_BRANCH, _FORWARD, _INITIALIZE = "METHOD PRIVATE SolveBranch", "METHOD PUBLIC AxesToCartesian", "METHOD PUBLIC Initialize"
+_BRANCH, _FORWARD, _INITIALIZE = (
+    "METHOD PRIVATE SolveBranch",
+    "METHOD PUBLIC AxesToCartesian",
+    "METHOD PUBLIC Initialize",
+)
 FIVE_BAR, TRIPOD, DELTA = "Kin_P2C_Type1", "Kin_Tripod_Rotary", "Kin_Delta_P3C_Type3"
 TOWARDS_THE_MODE = "assemblySignByOuterArmSquared*(rod1X*rod2Y - rod1Y*rod2X)"
 WRONG = {
     "CartesianToAxes: a knee on the other side": (
-        FIVE_BAR, Break(_BRANCH, "2.0*Softkin_Root(sineSquareA1)*signKnee1", "-2.0*Softkin_Root(sineSquareA1)*signKnee1"),
+        FIVE_BAR,
+        Break(_BRANCH, "2.0*Softkin_Root(sineSquareA1)*signKnee1", "-2.0*Softkin_Root(sineSquareA1)*signKnee1"),
     ),
     "CartesianToAxes: two legs exchanged": (
         DELTA, Break(_BRANCH, "a.a0 := axisA1;\na.a1 := axisA2;", "a.a0 := axisA2;\na.a1 := axisA1;"),
@@ -76,7 +81,8 @@ WRONG = {
         TRIPOD, Break(_BRANCH, "<= sinMaxAngleBallJoint", "<= 0.5*sinMaxAngleBallJoint"),
     ),
     "IsSingularity: another margin": (
-        TRIPOD, Break("METHOD PUBLIC IsSingularity", "ABS(marginRodsCoplanar) < 0.001", "ABS(marginRodsCoplanar) < 0.9"),
+        TRIPOD,
+        Break("METHOD PUBLIC IsSingularity", "ABS(marginRodsCoplanar) < 0.001", "ABS(marginRodsCoplanar) < 0.9"),
     ),
     "AxesToCartesian: another byte for a knee": (
         DELTA, Break(_FORWARD, "Softkin_BranchByte(branchKnee2)", "Softkin_BranchByte(branchKnee1)"),

@@ -67,7 +67,8 @@ def test_recognised(terms: Terms, word: str, function: type[sp.Function], sign: 
 
 
 @pytest.mark.parametrize(
-    "expression", [sp.cos(A1), 2 * sp.cos(A1 + A2), sp.cos(A1) * sp.cos(A2), sp.cos(A1 + A2) + 1, L, sp.cos(A1 + 2 * A2)]
+    "expression",
+    [sp.cos(A1), 2 * sp.cos(A1 + A2), sp.cos(A1) * sp.cos(A2), sp.cos(A1 + A2) + 1, L, sp.cos(A1 + 2 * A2)],
 )
 def test_not_recognised(expression: sp.Expr) -> None:
     assert recognise(polynomial(expression, ANGLES, ()), ANGLES) is None

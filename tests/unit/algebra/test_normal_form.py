@@ -47,7 +47,11 @@ EXPRESSIONS = {
 @few
 @pytest.mark.parametrize("name", EXPRESSIONS)
 @given(
-    turns=st.tuples(ANGLES, ANGLES, ANGLES), s=st.sampled_from([1, -1]), t=st.sampled_from([1, -1]), link=NUMBERS, x=NUMBERS
+    turns=st.tuples(ANGLES, ANGLES, ANGLES),
+    s=st.sampled_from([1, -1]),
+    t=st.sampled_from([1, -1]),
+    link=NUMBERS,
+    x=NUMBERS,
 )
 def test_the_same_function(name: str, turns: tuple[float, ...], s: int, t: int, link: float, x: float) -> None:
     expression = EXPRESSIONS[name]
@@ -63,14 +67,16 @@ def test_normal(name: str) -> None:
     """Nothing is left to reduce, and no sine or cosine of an unknown is left unnamed."""
     form = polynomial(EXPRESSIONS[name], ANGLE_NAMES, (S, T))
     assert reduce_units(form, ANGLE_NAMES, (S, T)) == form
-    assert all(sp.Poly(form, *[sine(a) for a in ANGLE_NAMES], S, T).degree(g) <= 1 for g in (*map(sine, ANGLE_NAMES), S, T))
+    assert all(
+        sp.Poly(form, *[sine(a) for a in ANGLE_NAMES], S, T).degree(g) <= 1 for g in (*map(sine, ANGLE_NAMES), S, T)
+    )
     assert not {s for f in form.atoms(sp.sin, sp.cos) for s in f.free_symbols} & {*ANGLE_NAMES, S, T}
 
 
 def test_equal_functions_have_one_form() -> None:
     for first, second in [
         (sp.sin(A1) ** 2 + sp.cos(A1) ** 2, sp.Integer(1)),
-        (sp.cos(A1 - A2) ** 2 - 1, -sp.sin(A2 - A1) ** 2),
+        (sp.cos(A1 - A2) ** 2 - 1, -(sp.sin(A2 - A1) ** 2)),
         (sp.sin(A1 + A2) - sp.sin(A1) * sp.cos(A2), sp.cos(A1) * sp.sin(A2)),
         (S * sp.sin(S * A1), sp.sin(A1)),
         (sp.cos(S * (A1 - A2)), sp.cos(A2 - A1)),
@@ -106,7 +112,8 @@ def test_split_known() -> None:
 
 
 @pytest.mark.parametrize(
-    "expression, compound", [(X, False), (-X, False), (sp.Integer(2), False), (2 * X, True), (X + 1, True), (X**2, True)]
+    "expression, compound",
+    [(X, False), (-X, False), (sp.Integer(2), False), (2 * X, True), (X + 1, True), (X**2, True)],
 )
 def test_what_deserves_a_name(expression: sp.Expr, compound: bool) -> None:
     assert is_compound(expression) is compound

@@ -90,7 +90,12 @@ def test_refused(kind: str) -> None:
 
 UNSOLVED = {
     "one link too many": (
-        described(parameters=(L1, L2, L3), joints=(A1, A2, A3, A4), chain=links(A1, A2, A3) * Rz(A4), task=Task("xy", FOLLOWED)),
+        described(
+            parameters=(L1, L2, L3),
+            joints=(A1, A2, A3, A4),
+            chain=links(A1, A2, A3) * Rz(A4),
+            task=Task("xy", FOLLOWED),
+        ),
         "no subproblem determines a1, a2, a3, a4; equations left:\n    x: ",
     ),
     "two slides along one line": (
@@ -133,7 +138,9 @@ def test_what_the_offset_interface_spoils_can_be_built_without() -> None:
 
 
 def test_an_unknown_joint_is_named() -> None:
-    with pytest.raises(DescriptionError, match="chain reads 'a3', which is not a joint or a parameter of this mechanism"):
+    with pytest.raises(
+        DescriptionError, match="chain reads 'a3', which is not a joint or a parameter of this mechanism"
+    ):
         validate(arm(chain=ARM * Rz(A3)))
 
 
@@ -151,5 +158,3 @@ def test_a_branch_has_two_names_and_both_signs() -> None:
     for names in ({"right": 1}, {"right": 1, "left": 1}, {"right": 1, "left": -1, "up": 1}, {"right": 2, "left": -2}):
         with pytest.raises(DescriptionError, match="branch 'elbow' needs two names with the signs \\+1 and -1"):
             branch("elbow", sin(A2), **names)
-
-

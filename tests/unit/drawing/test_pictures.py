@@ -1,4 +1,5 @@
-"""Every block has its picture: shipped, referred to, small, and with every axis and length in its text, none cut off."""
+"""Every block has its picture: shipped, referred to, small, and with every axis and length in its text, none cut
+off."""
 
 from __future__ import annotations
 

@@ -37,7 +37,9 @@ WRONG = {
         "no pose can be drawn: the nominal values of its joints fit no pose",
     ),
     "an end that goes on no circle": (
-        replace(CRANE, bars=(rod("reach", (0, 0, 0), (0, 0, R), R), rod("boom", (0, 0, THETA), (X, Y, THETA + 100), 200))),
+        replace(
+            CRANE, bars=(rod("reach", (0, 0, 0), (0, 0, R), R), rod("boom", (0, 0, THETA), (X, Y, THETA + 100), 200))
+        ),
         "joint 'Theta' does not move the end of its bar on a circle",
     ),
 }

@@ -75,7 +75,9 @@ def test_every_rod_is_drawn_with_its_length(one: Drawn) -> None:
     nominal = {p.symbol: p.nominal for p in mechanism.parameters}
     nominal |= dict(zip([j.symbol for j in mechanism.joints], one.joints[0], strict=True))
     for segment, bar in zip(rods, bars, strict=True):
-        assert np.linalg.norm(np.subtract(segment.end, segment.start)) == pytest.approx(float(bar.length.subs(nominal)), rel=1e-6)
+        assert np.linalg.norm(np.subtract(segment.end, segment.start)) == pytest.approx(
+            float(bar.length.subs(nominal)), rel=1e-6
+        )
 
 
 def test_the_bodies_of_a_chain_reach_from_the_base_to_the_tool(chain: Drawn) -> None:
@@ -106,7 +108,9 @@ def test_arrows_of_a_chain_point_where_the_axis_goes(chain: Drawn) -> None:
         if turns:
             (turn,) = turns
             expected = np.cross(turn.axis, np.subtract(scene.tool.position, turn.at)) * np.radians(1.0)
-            along = sum((s.axis * np.array(float(s.label.coeff(name).subs(_nominal(mechanism)))) for s in slides), np.zeros(3))
+            along = sum(
+                (s.axis * np.array(float(s.label.coeff(name).subs(_nominal(mechanism)))) for s in slides), np.zeros(3)
+            )
             assert moved == pytest.approx(expected + along, abs=1e-3)
         else:
             (slide,) = slides
@@ -118,11 +122,17 @@ def _nominal(mechanism: Mechanism) -> dict[str, float]:
 
 
 def test_arrows_of_a_loop_point_where_its_bars_go(loop: Drawn) -> None:
-    """The rate of the plate by the closure is the rate that turning cranks and sliding carriages about the arrows gives."""
+    """The rate of the plate by the closure is the rate that turning cranks and sliding carriages about the arrows
+    gives.
+    """
     mechanism, scene = loop.mechanism, loop.drawing.scene
     by_joints = loop.closure.by_joints(loop.joints, loop.pose, loop.parameters)[0]
     for index, joint in enumerate(mechanism.joints):
-        bar = next(s for s, rod in zip(scene.segments, mechanism.rods, strict=False) if joint.symbol in rod.equation.free_symbols)
+        bar = next(
+            s
+            for s, rod in zip(scene.segments, mechanism.rods, strict=False)
+            if joint.symbol in rod.equation.free_symbols
+        )
         span = np.subtract(bar.end, bar.start)
         name = axis_name(joint)
         turn = next((t for t in scene.turns if t.label == name), None)
@@ -131,7 +141,9 @@ def test_arrows_of_a_loop_point_where_its_bars_go(loop: Drawn) -> None:
             rate = -2 * span @ np.cross(turn.axis, np.subtract(bar.start, turn.at))
         else:
             assert slide is not None
-            rate = -2 * span @ np.array(slide.axis)  # a carriage takes the base end along; a leg that grows has this rate too
+            rate = (
+                -2 * span @ np.array(slide.axis)
+            )  # a carriage takes the base end along; a leg that grows has this rate too
         assert by_joints[:, index].sum() == pytest.approx(rate, rel=1e-6)
 
 
@@ -142,7 +154,9 @@ def test_every_axis_is_drawn(one: Drawn) -> None:
 
 
 def test_both_scenes_of_a_choice_have_the_same_tool(one: Drawn) -> None:
-    """The bytes of a configuration choose between ways to one pose; the way of assembly between poses of the same axes."""
+    """The bytes of a configuration choose between ways to one pose; the way of assembly between
+    poses of the same axes.
+    """
     shown = [choice for choice in one.drawing.choices if choice.scenes is not None]
     for choice in shown:
         first, second = choice.scenes or ()

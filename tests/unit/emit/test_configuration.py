@@ -66,7 +66,9 @@ def test_what_are_no_numbers_is_refused(values: object) -> None:
     assert "axes must be 3 numbers" in str(caught.value)
 
 
-@pytest.mark.parametrize("values", [(1, 2, 3), [1.0, 2.0, 3.0], np.array([1, 2, 3]), iter((1, 2, 3)), (np.float32(1), 2, 3)])
+@pytest.mark.parametrize(
+    "values", [(1, 2, 3), [1.0, 2.0, 3.0], np.array([1, 2, 3]), iter((1, 2, 3)), (np.float32(1), 2, 3)]
+)
 def test_any_sequence_of_numbers_is_taken(values: object) -> None:
     found = reals(values, 3, "axes")  # type: ignore[arg-type]
     assert found == (1.0, 2.0, 3.0) and all(type(v) is float for v in found)

@@ -21,7 +21,9 @@ for language in languages():
 
 def _text(seed: str) -> str:
     environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run([sys.executable, "-c", _TEXT], env=environment, cwd=ROOT, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", _TEXT], env=environment, cwd=ROOT, capture_output=True, text=True, check=True
+    )
     return done.stdout
 
 

@@ -39,7 +39,9 @@ from derive.ir.symbols import (
 )
 
 NAMES = ("first", "second", "third")
-LEAVES = st.sampled_from([*map(real, NAMES), DEGREE, sp.Integer(2), sp.Integer(-3), sp.Rational(1, 3), sp.Float("1e-12")])
+LEAVES = st.sampled_from(
+    [*map(real, NAMES), DEGREE, sp.Integer(2), sp.Integer(-3), sp.Rational(1, 3), sp.Float("1e-12")]
+)
 
 
 def _le(left: sp.Expr, right: sp.Expr) -> sp.Basic:
@@ -91,7 +93,12 @@ def test_literals_are_exact(value: float) -> None:
 
 
 def test_names_of_python_are_avoided() -> None:
-    assert [spelled(n) for n in ("lambda", "root", "axes", "link_length_1")] == ["lambda_", "root_", "axes_", "link_length_1"]
+    assert [spelled(n) for n in ("lambda", "root", "axes", "link_length_1")] == [
+        "lambda_",
+        "root_",
+        "axes_",
+        "link_length_1",
+    ]
 
 
 @settings(deadline=None, max_examples=6)

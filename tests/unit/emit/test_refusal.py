@@ -28,12 +28,20 @@ REASONS = Reasons({"q1": "A1"})
 
 def lines_of(program: Program, names: tuple[str, ...] = ("x", "y")) -> list[str]:
     kind = "Reals" if program.outputs else ""
-    method = Method("m", "", program, (Argument("given", "Reals", names),), kind, tuple(o.name for o in program.outputs))
+    method = Method(
+        "m", "", program, (Argument("given", "Reals", names),), kind, tuple(o.name for o in program.outputs)
+    )
     return scalar_body(method, explained(REASONS))
 
 
 def called(program: Program, *given: float, names: tuple[str, ...] = ("x", "y")) -> Any:
-    scope: dict[str, Any] = {"Diagnosis": Diagnosis, "Status": Status, "sqrt": sqrt, "cos": cos, "turn_inside": turn_inside}
+    scope: dict[str, Any] = {
+        "Diagnosis": Diagnosis,
+        "Status": Status,
+        "sqrt": sqrt,
+        "cos": cos,
+        "turn_inside": turn_inside,
+    }
     text = "\n".join(["def f(given):", *(f"    {line}" for line in lines_of(program, names))])
     exec(text, scope)
     return scope["f"](given)
@@ -68,7 +76,9 @@ def test_an_amount_does_not_keep_values_out_of_a_choice() -> None:
     assert called(program, 3.0, 4.0) == (pytest.approx(7.0 / 6.0),)
 
 
-@pytest.mark.parametrize(("axis", "turn", "words"), [(400.0, 1, "this turn is beyond a limit"), (100.0, 0, "above its")])
+@pytest.mark.parametrize(
+    ("axis", "turn", "words"), [(400.0, 1, "this turn is beyond a limit"), (100.0, 0, "above its")]
+)
 def test_another_turn_is_named(axis: float, turn: int, words: str) -> None:
     turns = (OtherTurn("A1", X, (sp.Integer(0),), (Y,)),)
     reason = replace(about_joint(Q1, Why.ABOVE, X - Y, Unit.ANGLE), turns=turns)
@@ -87,5 +97,3 @@ def test_a_refusal_without_a_reason_is_none_of_the_inverse() -> None:
 
 def test_words_of_a_text_are_no_calls() -> None:
     assert primitives_in(['return Diagnosis(Status.OK, "the root of cos", 0.0)', "x = sin(y)  # cos"]) == ["sin"]
-
-

@@ -54,7 +54,9 @@ def in_the_reference(matrices: Array) -> tuple[Array, list[str]]:
 @given(seed=SEEDS)
 def test_an_exact_rotation_is_used_bit_for_bit(seed: int) -> None:
     rotation = random_rotation(seed)
-    matrices = np.array([rotation, rotation + 1e-13, rotation[:, [1, 2, 0]], np.eye(3)[[1, 2, 0]], np.diag([-1.0, 1.0, -1.0])])
+    matrices = np.array(
+        [rotation, rotation + 1e-13, rotation[:, [1, 2, 0]], np.eye(3)[[1, 2, 0]], np.diag([-1.0, 1.0, -1.0])]
+    )
     assert all(error(matrix) < 0.9e-12 for matrix in matrices)
     assert all(made_rotation(rows(matrix)) == rows(matrix) for matrix in matrices)
     assert (on_arrays(matrices)[0] == matrices).all()
@@ -98,7 +100,11 @@ def test_what_is_no_rotation_is_refused_and_the_reason_has_the_amount(seed: int)
     rotation = random_rotation(seed)
     texts = rotation_texts()
     wrong = [(m, None) for m in too_far_off(rotation)] + [(m, HANDED) for m in mirrored(rotation)]
-    wrong += [(1.001 * rotation, LENGTH), (rotation @ [[1, 2e-4, 0], [0, 1, 0], [0, 0, 1]], ANGLE), (0.0 * rotation, LENGTH)]
+    wrong += [
+        (1.001 * rotation, LENGTH),
+        (rotation @ [[1, 2e-4, 0], [0, 1, 0], [0, 0, 1]], ANGLE),
+        (0.0 * rotation, LENGTH),
+    ]
     for matrix, place in wrong:
         found = made_rotation(rows(matrix))
         assert isinstance(found, Diagnosis) and found.status is Status.BAD_INPUT

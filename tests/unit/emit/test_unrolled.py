@@ -80,12 +80,16 @@ def test_inverse_all_without_its_limits_answers_what_is_beyond_them(description:
         wanted = looped(robot, frame, tuple(reference))
         for found, axes in zip(robot.inverse_all(frame, reference), wanted, strict=True):
             assert (found.axes is None) == isinstance(axes, int)
-            assert axes == (float(found.status) if found.axes is None else pytest.approx(found.axes, rel=1e-9, abs=1e-9))
+            assert axes == (
+                float(found.status) if found.axes is None else pytest.approx(found.axes, rel=1e-9, abs=1e-9)
+            )
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -2e9])
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
-def test_inverse_all_of_numbers_that_are_none_is_its_branches_one_by_one(description: Description, value: float) -> None:
+def test_inverse_all_of_numbers_that_are_none_is_its_branches_one_by_one(
+    description: Description, value: float
+) -> None:
     """In every place of position and reference: what a program does not read does no harm."""
     robot = robot_of(description)
     (_, frame), _ = samples(robot, 2)
@@ -95,7 +99,9 @@ def test_inverse_all_of_numbers_that_are_none_is_its_branches_one_by_one(descrip
     for asked, reference in [*((s, (0.0,) * count) for s in spoiled), *((frame, reference) for reference in near)]:
         wanted = looped(robot, asked, reference)
         for found, axes in zip(robot.inverse_all(asked, reference), wanted, strict=True):
-            assert axes == (float(found.status) if found.axes is None else pytest.approx(found.axes, rel=1e-9, abs=1e-9))
+            assert axes == (
+                float(found.status) if found.axes is None else pytest.approx(found.axes, rel=1e-9, abs=1e-9)
+            )
 
 
 @pytest.mark.parametrize("offset", [0.0, 7.0], ids=["no offsets", "offsets"])
@@ -147,7 +153,9 @@ def test_a_batch_of_all_branches_is_its_rows(description: Description) -> None:
 
 
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
-def test_all_branches_of_a_row_are_the_same_in_any_company(description: Description, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_branches_of_a_row_are_the_same_in_any_company(
+    description: Description, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Poses at right angles, many of them singular, between others and garbage, bit for bit; chunks of a few rows."""
     robot = robot_of(description)
     random, count = np.random.default_rng(4), 4 if description.search is not None else 24
@@ -183,7 +191,9 @@ def test_rows_in_chunks_are_the_rows_alone(name: str) -> None:
     axes, statuses = robot.inverse_batch(positions, rotations, configurations, references[rows])
     assert statuses[CHUNK - 1] == Status.BAD_INPUT
     for row in (*range(40), *range(CHUNK - 20, CHUNK + 40)):
-        alone, status = robot.inverse_batch(positions[[row]], rotations[[row]], configurations[[row]], references[rows[[row]]])
+        alone, status = robot.inverse_batch(
+            positions[[row]], rotations[[row]], configurations[[row]], references[rows[[row]]]
+        )
         assert status[0] == statuses[row]
         np.testing.assert_allclose(axes[row], alone[0], rtol=1e-12, atol=1e-12)
 
@@ -218,7 +228,11 @@ def test_the_solutions_are_as_a_tuple_of_them() -> None:
     assert found != list(plain) and found != plain[:7]
     assert hash(found) == hash(plain) and repr(found) == repr(plain)
     assert found[0] == plain[0] and found[-1] == plain[-1] and found[2:5] == plain[2:5]
-    assert plain[3] in found and found.index(plain[3]) == plain.index(plain[3]) and list(reversed(found)) == list(reversed(plain))
+    assert (
+        plain[3] in found
+        and found.index(plain[3]) == plain.index(plain[3])
+        and list(reversed(found)) == list(reversed(plain))
+    )
     assert copy.deepcopy(found) == plain and pickle.loads(pickle.dumps(found)) == plain
     with pytest.raises(IndexError):
         found[8]

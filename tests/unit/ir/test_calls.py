@@ -84,7 +84,10 @@ def test_constants_are_hoisted_out_of_the_shared_program_once() -> None:
     programs = [caller("first"), caller("second", given=2 * C)]
     found = shared(programs)
     assert [p.name for p in found] == ["hypotenuse"]
-    body = (Let(W, K**2), *(replace(s, value=X * W) if isinstance(s, Let) and s.name == Y else s for s in found[0].body))
+    body = (
+        Let(W, K**2),
+        *(replace(s, value=X * W) if isinstance(s, Let) and s.name == Y else s for s in found[0].body),
+    )
     inner = assemble("hypotenuse", body, found[0].outputs)
     programs = [replace(p, body=(replace(p.body[0], program=inner), *p.body[1:])) for p in programs]
     lowered, hoisted = hoist((*shared(programs), *programs), ["k"])
@@ -94,7 +97,9 @@ def test_constants_are_hoisted_out_of_the_shared_program_once() -> None:
         call = program.body[0]
         assert isinstance(call, Call) and call.program == lowered[0] and call.constants == (W,)
         values = {"c": np.array(1.5), "q": np.array(2.0), "w": np.array(4.0)}
-        assert run(program, values)[0]["y"] == pytest.approx(4.0 * np.hypot(1.5 * (1 + (program.name == "second")), 2.0))
+        assert run(program, values)[0]["y"] == pytest.approx(
+            4.0 * np.hypot(1.5 * (1 + (program.name == "second")), 2.0)
+        )
 
 
 def test_a_shared_program_comes_before_the_one_that_calls_it() -> None:

@@ -115,7 +115,9 @@ def test_the_period_of_an_edge_is_stable(edge: float) -> None:
         turns = int(np.floor((axis + 180 + 1e-9) / 360))
         assert turns == (edge + 180) / 360
         for wrapped in (180.0, -180.0, nextafter(180.0, 0.0)):
-            assert float(nearest_period(np.asarray(wrapped), np.asarray(360.0 * turns))) == pytest.approx(edge, abs=1e-9)
+            assert float(nearest_period(np.asarray(wrapped), np.asarray(360.0 * turns))) == pytest.approx(
+                edge, abs=1e-9
+            )
 
 
 HALVES = st.one_of(st.floats(0.0, pi), st.sampled_from([0.0, pi / 2, pi]))

@@ -64,14 +64,18 @@ def roots_of(found: list[tuple[float, float, float]], value: Callable[[Array], A
 @BOTH
 @pytest.mark.parametrize("count", (1, 2, 3, 7))
 @pytest.mark.parametrize("start", (-3.0, 0.1, 1.5))
-def test_simple_roots(search: Callable[[Trial, float], list[tuple[float, float, float]]], count: int, start: float) -> None:
+def test_simple_roots(
+    search: Callable[[Trial, float], list[tuple[float, float, float]]], count: int, start: float
+) -> None:
     found = search(free_of_guard(lambda t: np.sin(count * t + 0.3), lambda t: count * np.cos(count * t + 0.3)), start)
     assert len(roots_of(found, lambda t: np.sin(count * t + 0.3))) == 2 * count
 
 
 @BOTH
 @pytest.mark.parametrize("apart", (0.05, 1e-2, 1e-4))
-def test_two_roots_close_to_each_other(search: Callable[[Trial, float], list[tuple[float, float, float]]], apart: float) -> None:
+def test_two_roots_close_to_each_other(
+    search: Callable[[Trial, float], list[tuple[float, float, float]]], apart: float
+) -> None:
     """cos t - cos(apart / 2) around 0."""
     level = np.cos(apart / 2)
     found = search(free_of_guard(lambda t: np.cos(t) - level, lambda t: -np.sin(t)), 1.234)
@@ -139,7 +143,9 @@ def test_both_sides_of_a_guard_are_one_curve(
 
 @BOTH
 @pytest.mark.parametrize("miss", (0.1, 1e-3, 1e-5, 1e-7, 1e-10, 0.0))
-def test_a_direction_that_turns_fast(search: Callable[[Trial, float], list[tuple[float, float, float]]], miss: float) -> None:
+def test_a_direction_that_turns_fast(
+    search: Callable[[Trial, float], list[tuple[float, float, float]]], miss: float
+) -> None:
     """The angle of (sin t, miss) sweeps half a turn around 0; the value is 0 where it is 1 radian."""
 
     def trial(t: Array, side: Array, freed: Array, angle: Array) -> tuple[Array, ...]:
@@ -159,7 +165,11 @@ def test_a_direction_that_turns_fast(search: Callable[[Trial, float], list[tuple
         away = min(abs((t - joint + np.pi) % (2 * np.pi) - np.pi) for t, _, _ in found)
         assert away < max(1e-6, 1e-9 * joint)
         if miss < 1e-6:
-            assert any(abs(np.sin(angle - 1.0)) < 1e-9 for t, _, angle in found if abs((t + np.pi) % (2 * np.pi) - np.pi) < 1e-5)
+            assert any(
+                abs(np.sin(angle - 1.0)) < 1e-9
+                for t, _, angle in found
+                if abs((t + np.pi) % (2 * np.pi) - np.pi) < 1e-5
+            )
 
 
 def test_both_searches_offer_the_same() -> None:

@@ -24,7 +24,8 @@ A, B, N, M, X, Y = flag("a"), flag("b"), count("n"), count("m"), real("x"), real
 @pytest.mark.parametrize(
     "value, expected",
     [
-        (A, Type.BOOL), (sp.And(A, X > 0), Type.BOOL), (sp.Not(A), Type.BOOL), (sp.Eq(N, 3), Type.BOOL), (sp.Ne(N, M), Type.BOOL),
+        (A, Type.BOOL), (sp.And(A, X > 0), Type.BOOL), (sp.Not(A), Type.BOOL), (sp.Eq(N, 3), Type.BOOL),
+        (sp.Ne(N, M), Type.BOOL),
         (N > 0, Type.BOOL), (sp.true, Type.BOOL), (N, Type.INT), (2 * N - 1, Type.INT), (N * M, Type.INT),
         (Select(N > 0, N - 1, N), Type.INT), (ToReal(N) * X, Type.REAL), (X, Type.REAL), (X / 2 + 1, Type.REAL),
         (Select(A, X, 0), Type.REAL), (Root(X), Type.REAL), (sp.Float("0.5"), Type.REAL), (sp.Integer(3), Type.WRITTEN),
@@ -38,7 +39,8 @@ def test_every_expression_has_a_type(value: sp.Basic, expected: Type) -> None:
 @pytest.mark.parametrize(
     "value",
     [
-        A + X, A * X, N * X, N + X, N + sp.Rational(1, 2), X > N, sp.Eq(X, Y), sp.Ne(X, 0), Select(X, X, Y), Select(A, N, X),
+        A + X, A * X, N * X, N + X, N + sp.Rational(1, 2), X > N, sp.Eq(X, Y), sp.Ne(X, 0), Select(X, X, Y),
+        Select(A, N, X),
         Select(A, A, B), sp.And(A, N), Root(N), Root(A), sp.sin(N), ToReal(X), ToReal(A), 1 / N, sp.Abs(A), Atan2(N, X),
         sp.Not(sp.And(X > 0, Y > 0)), NearestPeriod(X, N), A > 0, sp.tan(X),
     ],
@@ -55,7 +57,8 @@ def _program(*body: Statement, outputs: tuple[Output, ...] = ()) -> Program:
 def _loop(**changed: object) -> Iterate:
     parts: dict[str, object] = {
         "state": (real("s"), flag("f"), count("k")), "start": (X, sp.false, sp.Integer(0)), "step": (),
-        "following": (real("s") / 2, X > 0, count("k") + 1), "done": flag("f"), "limit": 3, "otherwise": Status.UNREACHABLE,
+        "following": (real("s") / 2, X > 0, count("k") + 1), "done": flag("f"), "limit": 3,
+        "otherwise": Status.UNREACHABLE,
     }  # fmt: skip
     return Iterate(**(parts | changed))  # type: ignore[arg-type]
 
@@ -67,7 +70,8 @@ NAMES = (flag("is_far"), real("twice"), count("next"))
 @pytest.mark.parametrize(
     "statement",
     [
-        Let(flag("f"), X > 0), Let(count("k"), sp.Integer(2)), Let(real("v"), sp.Integer(2)), Require(A, Status.BAD_INPUT),
+        Let(flag("f"), X > 0), Let(count("k"), sp.Integer(2)), Let(real("v"), sp.Integer(2)),
+        Require(A, Status.BAD_INPUT),
         Solve((real("v"),), (X,), (Y,)), _loop(), Call(SHARED, ((A, X > 0), (N, M), (X, Y)), NAMES),
     ],
 )  # fmt: skip
@@ -84,7 +88,8 @@ def test_values_of_the_type_of_their_names_pass(statement: Statement) -> None:
         _loop(start=(X, sp.Integer(0), sp.Integer(0))), _loop(start=(X, sp.false, X)),
         _loop(following=(real("s"), X, count("k"))), _loop(done=real("s")),
         Call(SHARED, ((A, X), (N, M), (X, Y)), NAMES), Call(SHARED, ((A, A), (N, X), (X, Y)), NAMES),
-        Call(SHARED, ((A, A), (N, M), (X, Y)), (real("is_far"),)), Call(SHARED, ((A, A), (N, M), (X, Y)), (real("next"),)),
+        Call(SHARED, ((A, A), (N, M), (X, Y)), (real("is_far"),)),
+        Call(SHARED, ((A, A), (N, M), (X, Y)), (real("next"),)),
     ],
 )  # fmt: skip
 def test_values_of_another_type_are_refused(statement: Statement) -> None:
@@ -101,7 +106,9 @@ def test_a_name_that_is_read_as_another_type_is_refused() -> None:
 
 def test_assembling_keeps_types_and_drops_what_else_is_known() -> None:
     length = sp.Symbol("length", positive=True)
-    program = assemble("p", [Let(A, length > 1), Let(X, Select(A, ToReal(N), length))], [Output("o", X), Output("n", N)])
+    program = assemble(
+        "p", [Let(A, length > 1), Let(X, Select(A, ToReal(N), length))], [Output("o", X), Output("n", N)]
+    )
     assert [type(s) for s in program.bound()] == [Flag, sp.Symbol]
     assert set(program.inputs) == {N, real("length")}
     assert [called("other", like) for like in (A, N, length)] == [flag("other"), count("other"), real("other")]
@@ -109,7 +116,9 @@ def test_assembling_keeps_types_and_drops_what_else_is_known() -> None:
 
 def test_programs_run_in_their_types() -> None:
     outputs = [Output("f", A), Output("k", N + 1), Output("v", Select(A, ToReal(N) / 2, X))]
-    values, _ = run(_program(outputs=tuple(outputs)), {"a": [0, 1], "b": 0, "n": [3.0, 4.0], "m": 0, "x": 0.25, "y": 0.0})  # type: ignore[dict-item]
+    values, _ = run(
+        _program(outputs=tuple(outputs)), {"a": [0, 1], "b": 0, "n": [3.0, 4.0], "m": 0, "x": 0.25, "y": 0.0}
+    )  # type: ignore[dict-item]
     assert values["f"].dtype == bool and values["f"].tolist() == [False, True]
     assert values["k"].tolist() == [4, 5] and np.allclose(values["v"], [0.25, 2.0])
 
@@ -124,9 +133,12 @@ ANGLES = {Q: Type.ANGLE, R: Type.ANGLE, real("h"): Type.HEADING}
         (DIRECTION, Type.ANGLE), (Q + R, Type.ANGLE), (Q - 2 * R, Type.ANGLE), (Q + X, Type.ANGLE),
         (180 * DEGREE - Q, Type.ANGLE), (Select(X > 0, Q, DIRECTION), Type.ANGLE), (Select(X > 0, Q, 0), Type.ANGLE),
         (sp.sin(Q + R), Type.REAL), (sp.cos(X), Type.REAL),
-        (NearestOnArc(Q, R + X, Y), Type.ANGLE), (Wrap(Q - R), Type.REAL), (Wrap(X), Type.REAL), (Q / DEGREE, Type.HEADING),
-        ((Q + R) / DEGREE + X, Type.HEADING), (2 * X - real("h"), Type.HEADING), (NearestPeriod(Q / DEGREE + X, Y), Type.REAL),
-        (NearestPeriod(real("h"), Y), Type.REAL), (NearestPeriod(X, Y) * Y, Type.REAL), (Wrap(DIRECTION) * X, Type.REAL),
+        (NearestOnArc(Q, R + X, Y), Type.ANGLE), (Wrap(Q - R), Type.REAL), (Wrap(X), Type.REAL),
+        (Q / DEGREE, Type.HEADING),
+        ((Q + R) / DEGREE + X, Type.HEADING), (2 * X - real("h"), Type.HEADING),
+        (NearestPeriod(Q / DEGREE + X, Y), Type.REAL),
+        (NearestPeriod(real("h"), Y), Type.REAL), (NearestPeriod(X, Y) * Y, Type.REAL),
+        (Wrap(DIRECTION) * X, Type.REAL),
     ],
 )  # fmt: skip
 def test_angles_are_added_and_asked_for_sines(value: sp.Basic, expected: Type) -> None:
@@ -136,9 +148,12 @@ def test_angles_are_added_and_asked_for_sines(value: sp.Basic, expected: Type) -
 @pytest.mark.parametrize(
     "value",
     [
-        X * Q, Q / 2, Q * R, Q**2, Q * DEGREE, Root(Q), sp.Abs(Q), Q > 0, sp.And(X > 0, Q < R), Atan2(Q, X), Q / DEGREE + R,
-        NearestPeriod(Q, X), NearestPeriod(Q / DEGREE, R), NearestPeriod(X, Q / DEGREE), NearestOnArc(X, Y, Q), ToReal(Q),
-        sp.sin(Q / DEGREE), X * real("h"), real("h") * DEGREE, Select(Q > 0, X, Y), Q + N, Wrap(real("h")), X * DIRECTION,
+        X * Q, Q / 2, Q * R, Q**2, Q * DEGREE, Root(Q), sp.Abs(Q), Q > 0, sp.And(X > 0, Q < R), Atan2(Q, X),
+        Q / DEGREE + R,
+        NearestPeriod(Q, X), NearestPeriod(Q / DEGREE, R), NearestPeriod(X, Q / DEGREE), NearestOnArc(X, Y, Q),
+        ToReal(Q),
+        sp.sin(Q / DEGREE), X * real("h"), real("h") * DEGREE, Select(Q > 0, X, Y), Q + N, Wrap(real("h")),
+        X * DIRECTION,
     ],
 )  # fmt: skip
 def test_an_angle_is_no_number_before_its_turn_is_chosen(value: sp.Basic) -> None:
@@ -150,7 +165,8 @@ def test_an_angle_is_no_number_before_its_turn_is_chosen(value: sp.Basic) -> Non
     "statement",
     [
         Let(real("travel"), Q * X), Require(Q > 0, Status.UNREACHABLE), Solve((real("v"),), (X,), (Q,)),
-        Call(SHARED, ((A, A), (N, N), (X, Q)), ()), _loop(start=(X, sp.false, sp.Integer(0)), following=(Q, X > 0, count("k"))),
+        Call(SHARED, ((A, A), (N, N), (X, Q)), ()),
+        _loop(start=(X, sp.false, sp.Integer(0)), following=(Q, X > 0, count("k"))),
         _loop(start=(Q, sp.false, sp.Integer(0)), following=(real("s") * X, X > 0, count("k"))),
     ],
 )  # fmt: skip
@@ -173,9 +189,14 @@ def test_a_loop_may_turn_and_a_call_answers_with_angles() -> None:
 
 def test_wrap_is_the_angle_of_a_direction() -> None:
     angles = np.array([-3.5 * np.pi, -np.pi, -3.0, -1e-9, 0.0, 1.0, np.pi, np.pi + 0.5, 9.0, 40.0])
-    values, _ = run(_program(outputs=(Output("w", Wrap(X)),)), {n: angles if n == "x" else np.zeros(10) for n in "abnmxy"})
+    values, _ = run(
+        _program(outputs=(Output("w", Wrap(X)),)), {n: angles if n == "x" else np.zeros(10) for n in "abnmxy"}
+    )
     assert np.all((values["w"] > -np.pi) & (values["w"] <= np.pi))
     np.testing.assert_allclose(np.exp(1j * values["w"]), np.exp(1j * angles), atol=1e-14)
     assert values["w"][6] == np.pi and values["w"][1] == np.pi
     text = ScalarPrinter().print(Wrap(X))
-    assert text == "arctan2(sin(x) + 0.0, cos(x) + 0.0)" and ScalarPrinter().print(Wrap(DIRECTION)) == "arctan2(y + 0.0, x + 0.0)"
+    assert (
+        text == "arctan2(sin(x) + 0.0, cos(x) + 0.0)"
+        and ScalarPrinter().print(Wrap(DIRECTION)) == "arctan2(y + 0.0, x + 0.0)"
+    )

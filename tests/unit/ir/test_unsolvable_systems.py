@@ -1,4 +1,5 @@
-"""`Solve` is total: whatever the numbers are, it ends in a solution or in zeros, in every language, and nothing faults."""
+"""`Solve` is total: whatever the numbers are, it ends in a solution or in zeros, in every language, and nothing
+faults."""
 
 from __future__ import annotations
 
@@ -19,7 +20,9 @@ NO_NUMBERS = [np.nan, np.inf, -np.inf, 1e31, -1e31, 1.7e308]
 
 
 def answers(matrix: Array, right: Array) -> list[tuple[float, list[float]]]:
-    """Determinant and solution: the reference, both runtimes of Python, and Structured Text, which faults where a PLC would."""
+    """Determinant and solution: the reference, both runtimes of Python, and Structured Text, which faults where a PLC
+    would.
+    """
     rows, sides = matrix.tolist(), right.tolist()
     with np.errstate(all="ignore"):
         reference = solve(matrix[..., None], right[..., None])

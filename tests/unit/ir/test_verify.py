@@ -89,7 +89,10 @@ BROKEN = {
     "an equation": (program(Require(sp.Eq(X, Y), Status.UNREACHABLE)), "Eq(x, y) mixes types"),
     "an inequation": (program(Require(sp.Ne(X, Y), Status.UNREACHABLE)), "Ne(x, y) mixes types"),
     "a negation": (program(Require(sp.Not(sp.And(X > 0, sp.Eq(Y, 1), evaluate=False)), Status.OK)), "mixes types"),
-    "the opposite of a condition": (program(Require(sp.Not(sp.And(X > 0, Y > 1)), Status.OK)), "is not the opposite of a flag"),
+    "the opposite of a condition": (
+        program(Require(sp.Not(sp.And(X > 0, Y > 1)), Status.OK)),
+        "is not the opposite of a flag",
+    ),
 }
 
 

@@ -84,7 +84,11 @@ RADIUS = P1 + L1
 
 INVENTIONS = {
     "a lift between the joints": invention(
-        lambda p, q: (rrr(p, q["A1"], q["A1"] + q["A2"], q["A1"] + q["A2"] + q["A3"]), q["P1"], q["A1"] + q["A2"] + q["A3"]),
+        lambda p, q: (
+            rrr(p, q["A1"], q["A1"] + q["A2"], q["A1"] + q["A2"] + q["A3"]),
+            q["P1"],
+            q["A1"] + q["A2"] + q["A3"],
+        ),
         parameters=THREE,
         joints=(A1, P1, A2, A3),
         chain=Rz(A1) * Tz(P1) * Tx(L1) * Rz(A2) * Tx(L2) * Rz(A3) * Tx(L3),
@@ -93,7 +97,11 @@ INVENTIONS = {
         periods=("A3", "A1", "A2"),
     ),
     "all turns clockwise": invention(
-        lambda p, q: (rrr(p, -q["A1"], -q["A1"] - q["A2"], -q["A1"] - q["A2"] - q["A3"]), 0, -q["A1"] - q["A2"] - q["A3"]),
+        lambda p, q: (
+            rrr(p, -q["A1"], -q["A1"] - q["A2"], -q["A1"] - q["A2"] - q["A3"]),
+            0,
+            -q["A1"] - q["A2"] - q["A3"],
+        ),
         parameters=THREE,
         joints=(A1, A2, A3),
         chain=links(-A1, -A2, -A3),
@@ -113,7 +121,11 @@ INVENTIONS = {
         branches=(ELBOW,),
     ),
     "an arm on its side, crooked": invention(
-        lambda p, q: (1j * p["link_1"] * e(q["A1"]) + (p["link_2"] + 1j * p["link_3"]) * e(q["A1"] + q["A2"]), q["P1"], 0),
+        lambda p, q: (
+            1j * p["link_1"] * e(q["A1"]) + (p["link_2"] + 1j * p["link_3"]) * e(q["A1"] + q["A2"]),
+            q["P1"],
+            0,
+        ),
         parameters=THREE,
         joints=(A1, A2, P1),
         chain=Rz(A1) * Ty(L1) * Rz(A2) * Tx(L2) * Ty(L3) * Tz(P1),
@@ -156,7 +168,11 @@ INVENTIONS = {
         task=Task("xyz"),
     ),
     "belts geared by parameters": invention(
-        lambda p, q: (p["link_1"] * q["P1"] - p["link_2"] * q["P2"] + 1j * (p["link_2"] * q["P1"] + p["link_1"] * q["P2"]), 0, 0),
+        lambda p, q: (
+            p["link_1"] * q["P1"] - p["link_2"] * q["P2"] + 1j * (p["link_2"] * q["P1"] + p["link_1"] * q["P2"]),
+            0,
+            0,
+        ),
         parameters=(L1, L2),
         joints=(P1, P2),
         closure=(X - L1 * P1 + L2 * P2, Y - L2 * P1 - L1 * P2),

@@ -79,7 +79,9 @@ class Machine:
 
     def _periods(self, reference: Mapping[str, Array], turns: Mapping[str, float] | None) -> dict[str, Array | float]:
         given = turns or {}
-        values: dict[str, Array | float] = {j.turn.name: given.get(j.name, 0.0) for j in self.kinematics.mechanism.joints}
+        values: dict[str, Array | float] = {
+            j.turn.name: given.get(j.name, 0.0) for j in self.kinematics.mechanism.joints
+        }
         values.update({j.reference.name: reference[j.axis.name] for j in self.kinematics.mechanism.joints})
         return values
 

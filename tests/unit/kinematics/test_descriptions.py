@@ -42,12 +42,16 @@ def by_hand(name: str, axes: Values) -> dict[str, np.ndarray]:
     """x, y, z and turn at axis values, by the formulas of the invention."""
     constants, joints, motors = built(name).constants, {}, {}
     for joint in built(name).kinematics.mechanism.joints:
-        motors[joint.name] = (axes[joint.axis.name] - constants[joint.offset.name]) * (np.pi / 180 if joint.is_angle else 1.0)
+        motors[joint.name] = (axes[joint.axis.name] - constants[joint.offset.name]) * (
+            np.pi / 180 if joint.is_angle else 1.0
+        )
         joints[joint.name] = motors[joint.name]
     if "coupling_12" in constants:
         joints["A2"] = joints["A2"] + constants["coupling_12"] * motors["A1"]
     plane, z, turn = INVENTIONS[name].hand(constants, joints)
-    return {k: np.broadcast_to(v, (COUNT,)) for k, v in {"x": plane.real, "y": plane.imag, "z": z, "turn": turn}.items()}
+    return {
+        k: np.broadcast_to(v, (COUNT,)) for k, v in {"x": plane.real, "y": plane.imag, "z": z, "turn": turn}.items()
+    }
 
 
 @EVERY
@@ -118,7 +122,9 @@ def test_the_margins_multiply_to_the_determinant(name: str) -> None:
     axes, own = axes_of(name, seed=4), built(name)
     margins, _ = own.run(own.kinematics.singularity, axes)
     volume = np.abs(np.linalg.det(own.jacobian(axes)))
-    expected = np.prod([np.abs(margins[m.factor]) ** m.exponent for m in own.kinematics.margins] or [np.ones(COUNT)], axis=0)
+    expected = np.prod(
+        [np.abs(margins[m.factor]) ** m.exponent for m in own.kinematics.margins] or [np.ones(COUNT)], axis=0
+    )
     ratio = volume / expected
     assert np.ptp(ratio) <= 1e-9 * np.abs(ratio).max()
     assert all(np.abs(margins[m.name]).max() > 0.1 for m in own.kinematics.margins)
@@ -151,7 +157,9 @@ def everything(program: Program) -> Program:
 
 
 @EVERY
-@pytest.mark.parametrize("kind", ["forward", "branch", "singularity", "jacobian", "offset_branch", "offset_configuration"])
+@pytest.mark.parametrize(
+    "kind", ["forward", "branch", "singularity", "jacobian", "offset_branch", "offset_configuration"]
+)
 def test_total(name: str, kind: str) -> None:
     """No input gives NaN or infinity, whatever the status: nothing that would stop a controller."""
     program = getattr(built(name).kinematics, kind)

@@ -37,7 +37,9 @@ def test_no_real_is_one_or_zero_by_a_condition(kinematics: Kinematics) -> None:
     flags = {(sp.Integer(1), sp.Integer(0)), (sp.Integer(0), sp.Integer(1))}
     lets = [s for _, s in _all(kinematics) if isinstance(s, Let)]
     assert not [s for s in lets if isinstance(s.value, Select) and s.value.args[1:] in flags]
-    assert not any(isinstance(node, Select) and node.args[1:] in flags for s in lets for node in sp.preorder_traversal(s.value))
+    assert not any(
+        isinstance(node, Select) and node.args[1:] in flags for s in lets for node in sp.preorder_traversal(s.value)
+    )
 
 
 def test_parameters_are_read_in_their_types(kinematics: Kinematics) -> None:
@@ -45,7 +47,9 @@ def test_parameters_are_read_in_their_types(kinematics: Kinematics) -> None:
     for parameter in kinematics.parameters:
         name = inputs[parameter.name]
         assert name == input_of(parameter)
-        assert isinstance(name, Flag) == (parameter.role is Role.FLAG) and is_count(name) == (parameter.role is Role.SIGN)
+        assert isinstance(name, Flag) == (parameter.role is Role.FLAG) and is_count(name) == (
+            parameter.role is Role.SIGN
+        )
     constants = {o.name: o.value for o in kinematics.setup.outputs}
     assert all(is_condition(constants[f"unlimited_{j.key}"]) for j in kinematics.mechanism.joints)
     assert all(is_condition(constants[f"single_{j.key}"]) for j in kinematics.mechanism.joints if j.multi_turn)
@@ -58,7 +62,11 @@ def test_parameters_are_read_in_their_types(kinematics: Kinematics) -> None:
 def test_a_search_and_its_loop_count_and_ask() -> None:
     kin = build(BY_NAME["Kin_Ac6_RZRYRYRXRYRZ_J6Offset"])
     (search,) = (s for _, s in _all(kin) if isinstance(s, FindRoot))
-    assert isinstance(search.wanted, Flag) and isinstance(search.names[0], Flag) and is_condition(search.finish.outputs[0].value)
+    assert (
+        isinstance(search.wanted, Flag)
+        and isinstance(search.names[0], Flag)
+        and is_condition(search.finish.outputs[0].value)
+    )
     assert [is_count(s) for s in PLACE] == [False, True, True, False]
     assert all(is_count(s) for s in search.trial.inputs if s.name.startswith("wanted_"))
     (loop,) = (s for s in search.finish.body if isinstance(s, Iterate))
@@ -72,7 +80,8 @@ X, Y, Z, SWAP, IS_SWAPPED = (*map(real, ("x", "y", "z", "swap_xy")), flag("swap_
     "value, expected",
     [
         (X * (1 - SWAP) + Y * SWAP, Select(IS_SWAPPED, Y, X)), (SWAP * X, Select(IS_SWAPPED, X, 0)),
-        (Z * (1 - 2 * SWAP), Z * Select(IS_SWAPPED, -1, 1)), (1 - 2 * SWAP > 0, sp.Not(IS_SWAPPED)), (SWAP > 0, IS_SWAPPED),
+        (Z * (1 - 2 * SWAP), Z * Select(IS_SWAPPED, -1, 1)), (1 - 2 * SWAP > 0, sp.Not(IS_SWAPPED)),
+        (SWAP > 0, IS_SWAPPED),
         (sp.sin(Z + SWAP * X), sp.sin(Select(IS_SWAPPED, X + Z, Z))),
     ],
 )  # fmt: skip

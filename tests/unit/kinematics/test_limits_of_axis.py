@@ -50,7 +50,9 @@ def test_it_is_what_both_allow(own: Range, drive: tuple[float, float]) -> None:
     assert status is (Status.OK if low <= high else Status.NOT_INITIALIZED)
     if status is Status.OK:
         tolerance = float(LIMIT) * (1.0 + abs(low) + abs(high))
-        assert (found["lowest"], found["highest"]) == pytest.approx((low - tolerance, high + tolerance), rel=1e-15, abs=1e-12)
+        assert (found["lowest"], found["highest"]) == pytest.approx(
+            (low - tolerance, high + tolerance), rel=1e-15, abs=1e-12
+        )
         assert found["middle"] == pytest.approx((low + high) / 2, abs=1e-6)
         assert found["single"] == both((low, high), None)[0]["single"] or low == high
 
@@ -68,7 +70,9 @@ def test_no_range_is_refused(lower: float, upper: float, own: Range) -> None:
         assert both(own, drive)[1] is Status.BAD_INPUT
 
 
-@pytest.mark.parametrize("limits", [None, (-170.0, 170.0), (-175.0, 175.0), (-175.5, 175.5), (-180.0, 180.0), (-400.0, 20.0)])
+@pytest.mark.parametrize(
+    "limits", [None, (-170.0, 170.0), (-175.0, 175.0), (-175.5, 175.5), (-180.0, 180.0), (-400.0, 20.0)]
+)
 def test_a_drive_that_is_not_known_changes_nothing(limits: Range) -> None:
     """Then it is what `setup` computes by itself."""
     lower, upper = limits or (0.0, 0.0)

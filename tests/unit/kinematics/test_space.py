@@ -40,19 +40,28 @@ def telescope() -> Mechanism:
 def puma() -> Mechanism:
     """A PUMA 560 by its table."""
     table = denavit_hartenberg(
-        (A1, 0, 0, -pi / 2), (A2, 0, L1, 0), (A3, ASIDE, RISE, pi / 2), (A4, L2, 0, -pi / 2), (A5, 0, 0, pi / 2), (A6, TIP, 0, 0)
+        (A1, 0, 0, -pi / 2),
+        (A2, 0, L1, 0),
+        (A3, ASIDE, RISE, pi / 2),
+        (A4, L2, 0, -pi / 2),
+        (A5, 0, 0, pi / 2),
+        (A6, TIP, 0, 0),
     )
     forward = L1 * cos(A2) + RISE * cos(A2 + A3) + L2 * sin(A2 + A3)
     elbow = branch("elbow", L2 * cos(A3) - RISE * sin(A3), up=+1, down=-1)
     return arm(
-        joints=(A1, A2, A3, A4, A5, A6), chain=table, branches=(branch("shoulder", forward, right=+1, left=-1), elbow, WRIST)
+        joints=(A1, A2, A3, A4, A5, A6),
+        chain=table,
+        branches=(branch("shoulder", forward, right=+1, left=-1), elbow, WRIST),
     )
 
 
 def scara_with_a_wrist() -> Mechanism:
     """A SCARA whose quill carries three axes that meet."""
     chain = Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(P1) * ZYZ * Tz(TIP)
-    return arm(joints=(A1, A2, P1, A4, A5, A6), chain=chain, branches=(branch("elbow", sin(A2), right=+1, left=-1), WRIST))
+    return arm(
+        joints=(A1, A2, P1, A4, A5, A6), chain=chain, branches=(branch("elbow", sin(A2), right=+1, left=-1), WRIST)
+    )
 
 
 def gantry_with_a_wrist() -> Mechanism:
@@ -69,7 +78,9 @@ def cylindrical() -> Mechanism:
 
 def three_parallel() -> Mechanism:
     """Three parallel axes in other directions than a collaborative arm has them."""
-    chain = Rz(A1) * Ty(ASIDE) * Ry(A2) * Tx(L1) * Ry(A3) * Tx(L2) * Ry(A4) * Tz(RISE) * Rz(A5) * Ty(TIP) * Ry(A6) * Ty(TIP)
+    chain = (
+        Rz(A1) * Ty(ASIDE) * Ry(A2) * Tx(L1) * Ry(A3) * Tx(L2) * Ry(A4) * Tz(RISE) * Rz(A5) * Ty(TIP) * Ry(A6) * Ty(TIP)
+    )
     forward = L1 * cos(A2) + L2 * cos(A2 + A3) + RISE * sin(A2 + A3 + A4)
     branches = (branch("shoulder", forward, right=+1, left=-1), branch("elbow", sin(A3), up=+1, down=-1), WRIST)
     return arm(joints=(A1, A2, A3, A4, A5, A6), chain=chain, branches=branches)
@@ -82,7 +93,9 @@ def milling_head() -> Mechanism:
 
 
 def crooked() -> Mechanism:
-    """An arm on an oblique base, with a crooked forearm and an oblique flange: twice turned by what is fixed at either end."""
+    """An arm on an oblique base, with a crooked forearm and an oblique flange: twice turned by what is fixed at either
+    end.
+    """
     base, flange = Ry(pi / 4) * Rx(pi / 6), Ry(pi / 6) * Rz(pi / 5) * Tx(ASIDE)
     front = Rz(A1) * Tz(RISE) * Ry(A2) * Tx(L1) * Ry(A3) * Tx(L2) * Rz(pi / 7)
     branches = (

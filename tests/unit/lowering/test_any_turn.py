@@ -38,7 +38,11 @@ def test_products_of_both_branches_are_computed_once() -> None:
 
 
 def test_the_angle_of_a_mirrored_direction_is_the_negative() -> None:
-    swing = (Let(R, ToReal(ELBOW.symbol) * Root(X)), Let(ANGLE, Atan2(R, C)), Let(AXIS, NearestPeriod(A + ANGLE / DEGREE, N)))
+    swing = (
+        Let(R, ToReal(ELBOW.symbol) * Root(X)),
+        Let(ANGLE, Atan2(R, C)),
+        Let(AXIS, NearestPeriod(A + ANGLE / DEGREE, N)),
+    )
     program = unroll(of(*swing, outputs=(AXIS,)), (ELBOW,))
     found = shorter(program)
     assert cost_of(program).trigonometric == 2 and cost_of(found).trigonometric == 1

@@ -66,14 +66,24 @@ def test_a_sum_that_is_read_elsewhere_stays() -> None:
 
 def test_sums_that_two_choices_read_are_scaled_once_under_a_name_that_says_so() -> None:
     swap = X > Y
-    lets = (Let(P, C * X - D * Y), Let(Q, D * X + C * Y), Let(F, C * Select(swap, P, Q)), Let(G, C * Select(swap, Q, P)))
+    lets = (
+        Let(P, C * X - D * Y),
+        Let(Q, D * X + C * Y),
+        Let(F, C * Select(swap, P, Q)),
+        Let(G, C * Select(swap, Q, P)),
+    )
     shorter = shorter_of(program(*lets, outputs=(F, G)))
     assert set(lets_of(shorter)) == {"scaled_p", "scaled_q", "f", "g"} and cost_of(shorter) == Cost(2, 4)
 
 
 def test_nothing_is_scaled_where_one_of_two_choices_has_a_side_without_a_coefficient() -> None:
     swap = X > Y
-    lets = (Let(P, C * X - D * Y), Let(Q, D * X + C * Y), Let(F, C * Select(swap, P, Q)), Let(G, C * Select(swap, X, P)))
+    lets = (
+        Let(P, C * X - D * Y),
+        Let(Q, D * X + C * Y),
+        Let(F, C * Select(swap, P, Q)),
+        Let(G, C * Select(swap, X, P)),
+    )
     shorter = shorter_of(program(*lets, outputs=(F, G)))
     assert set(lets_of(shorter)) == {"p", "q", "f", "g"}
 

@@ -1,4 +1,5 @@
-"""Fewer operations, the same values: what is hoisted, factored, shared and divided once; random programs before and after."""
+"""Fewer operations, the same values: what is hoisted, factored, shared and divided once; random programs before and
+after."""
 
 from __future__ import annotations
 
@@ -72,8 +73,15 @@ def test_what_divides_three_values_is_inverted() -> None:
 
 
 def test_the_words_of_a_name_are_those_of_its_value() -> None:
-    """Names that are bound to negatives in the graph change neither the sign in a text nor the words of another name."""
-    lets = (Let(F, -X * A - Y * B), Let(G, F * D * X), Let(H, 2 * F * D * Y), Let(real("k"), (F - D) * X / (Y * (F - D) + 1)))
+    """Names that are bound to negatives in the graph change neither the sign in a text nor the
+    words of another name.
+    """
+    lets = (
+        Let(F, -X * A - Y * B),
+        Let(G, F * D * X),
+        Let(H, 2 * F * D * Y),
+        Let(real("k"), (F - D) * X / (Y * (F - D) + 1)),
+    )
     (shorter,), _ = lowered([program(*lets, outputs=(G, H, real("k")))], ())
     found = lets_of(shorter)
     assert found["f"] == -X * A - Y * B
@@ -97,7 +105,10 @@ def test_a_condition_stays_where_it_was_and_tells_what_it_told() -> None:
     one = program(refusal, Let(F, X / Y), outputs=(F,))
     (shorter,), _ = lowered([one], CONSTANTS)
     (kept,) = shorter.requires()
-    assert kept.condition == sp.Gt(X * real("c_times_d"), Y) and (kept.otherwise, kept.note) == (Status.UNREACHABLE, "too far")
+    assert kept.condition == sp.Gt(X * real("c_times_d"), Y) and (kept.otherwise, kept.note) == (
+        Status.UNREACHABLE,
+        "too far",
+    )
 
 
 def test_a_loop_keeps_what_moves_inside_and_what_stays_outside() -> None:

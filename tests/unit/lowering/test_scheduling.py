@@ -57,7 +57,11 @@ def test_what_is_read_elsewhere_stays_before() -> None:
 
 
 def test_a_name_for_a_name_disappears_where_nobody_else_reads_it() -> None:
-    body = [Let(A, Select(REGULAR, R, sp.Integer(1))), Let(B, Select(REGULAR, X / A, Y)), Let(C, Select(REGULAR, Y / A, X))]
+    body = [
+        Let(A, Select(REGULAR, R, sp.Integer(1))),
+        Let(B, Select(REGULAR, X / A, Y)),
+        Let(C, Select(REGULAR, Y / A, X)),
+    ]
     (arms,) = scheduled(body, [B, C])
     assert isinstance(arms, If)
     assert arms.holds == (Let(B, X / R), Let(C, Y / R))
@@ -138,14 +142,21 @@ def refusing(*body: Statement) -> Program:
 
 def test_choices_on_both_sides_of_a_refusal_are_one_where_the_first_stands() -> None:
     program = refusing(
-        Let(A, Select(REGULAR, X, Y)), Require(sp.Gt(A, 0), Status.UNREACHABLE), Let(C, sp.sin(X)), Let(B, Select(REGULAR, Y, C))
+        Let(A, Select(REGULAR, X, Y)),
+        Require(sp.Gt(A, 0), Status.UNREACHABLE),
+        Let(C, sp.sin(X)),
+        Let(B, Select(REGULAR, Y, C)),
     )
     assert shape(structured(program)) == [(REGULAR, [A, B], [A, B]), "require"]
 
 
 def test_a_choice_waits_for_what_it_needs() -> None:
     """B needs the solution of an equation, which stays behind the refusal."""
-    first, refused, last = Let(A, Select(REGULAR, X, Y)), Require(sp.Gt(A, 0), Status.UNREACHABLE), Let(B, Select(REGULAR, Y, D))
+    first, refused, last = (
+        Let(A, Select(REGULAR, X, Y)),
+        Require(sp.Gt(A, 0), Status.UNREACHABLE),
+        Let(B, Select(REGULAR, Y, D)),
+    )
     program = refusing(first, refused, Solve((D,), (E,), (F,)), last)
     assert [type(item).__name__ for item in structured(program)] == ["Let", "Require", "Solve", "Let"]
 

@@ -46,7 +46,9 @@ def test_ahead_and_beside_are_known() -> None:
 
 
 def test_a_multiple_of_the_point_too_and_once() -> None:
-    program = of(Let(real("one"), 2 * X * C + 2 * Y * S + L), Let(real("two"), L - 2 * X * C - 2 * Y * S + 2 * X * C + 2 * Y * S))
+    program = of(
+        Let(real("one"), 2 * X * C + 2 * Y * S + L), Let(real("two"), L - 2 * X * C - 2 * Y * S + 2 * X * C + 2 * Y * S)
+    )
     assert values(aimed(program))["point_from_q1"] == Select(FAR, 2 * H, 2 * X * C + 2 * Y * S)
     same(program, aimed(program))
     twice = of(Let(real("one"), X * C + Y * S + L), Let(real("two"), X * C + Y * S - 3 * L))

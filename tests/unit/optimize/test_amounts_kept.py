@@ -15,7 +15,9 @@ from derive.ir.symbols import real
 from derive.optimize.directions import plain_directions
 from derive.optimize.simplify import shorter
 
-C, S, L, N, R, T, U, V, ANGLE, AXIS = map(real, ("cos_q1", "sin_q1", "l", "n", "r", "t", "u", "v", "angle_q1", "axis_a1"))
+C, S, L, N, R, T, U, V, ANGLE, AXIS = map(
+    real, ("cos_q1", "sin_q1", "l", "n", "r", "t", "u", "v", "angle_q1", "axis_a1")
+)
 REGULAR = sp.Gt(R, 1)
 DIRECTION = (
     Let(L, Select(REGULAR, Root(U**2 + V**2), sp.Integer(1))),

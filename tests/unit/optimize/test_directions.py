@@ -66,7 +66,9 @@ SUM = (Let(C12, C1 * C2 - S1 * S2, "by the sum"), Let(S12, S1 * C2 + C1 * S2))
 def test_nothing_is_divided_for_a_direction() -> None:
     program = of(*DIRECTION, axis(AXIS1, S1, C1), outputs=(AXIS1,))
     found = values(plain_directions(program))
-    assert found["direction_x_q1"] == Select(REGULAR, U, sp.cos(T)) and found["direction_y_q1"] == Select(REGULAR, V, sp.sin(T))
+    assert found["direction_x_q1"] == Select(REGULAR, U, sp.cos(T)) and found["direction_y_q1"] == Select(
+        REGULAR, V, sp.sin(T)
+    )
     assert "l" not in found and "cos_q1" not in found
     same(program, plain_directions(program))
 
@@ -121,7 +123,8 @@ def test_the_angle_of_a_rotated_direction_is_a_sum(senses: tuple[int, int], sign
 
 def test_a_sum_of_three_takes_one_new_angle() -> None:
     lets = (
-        Let(C1, X / 2), Let(S1, Y / 2), Let(C2, U / 2), Let(S2, V / 2), Let(C12, C1 * C2 - S1 * S2), Let(S12, S1 * C2 + C1 * S2),
+        Let(C1, X / 2), Let(S1, Y / 2), Let(C2, U / 2), Let(S2, V / 2), Let(C12, C1 * C2 - S1 * S2),
+        Let(S12, S1 * C2 + C1 * S2),
         Let(C3, B * C12 + E * S12), Let(S3, E * C12 - B * S12),
     )  # fmt: skip
     program = of(*lets, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), axis(AXIS3, S3, C3), outputs=(AXIS1, AXIS2, AXIS3))
@@ -136,7 +139,9 @@ def test_two_new_angles_for_one_are_no_gain() -> None:
 
 
 def test_a_rotated_direction_that_something_else_reads_is_left_alone() -> None:
-    program = of(*SUM, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), axis(AXIS3, S12, C12), outputs=(AXIS1, AXIS2, AXIS3, C12))
+    program = of(
+        *SUM, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), axis(AXIS3, S12, C12), outputs=(AXIS1, AXIS2, AXIS3, C12)
+    )
     assert plain_directions(program) == program
 
 

@@ -109,7 +109,9 @@ def test_a_positive_name_does_not_decide_a_condition() -> None:
 
 
 def test_pi_is_half_a_turn_and_a_surd_a_root() -> None:
-    program = assemble("p", [Let(A, X * sp.pi / 4), Let(B, X * sp.cos(sp.pi / 12) + sp.sin(sp.pi / 5))], [Output("o", A + B)])
+    program = assemble(
+        "p", [Let(A, X * sp.pi / 4), Let(B, X * sp.cos(sp.pi / 12) + sp.sin(sp.pi / 5))], [Output("o", A + B)]
+    )
     assert values(program)["a"] == 45 * DEGREE * X
     assert values(program)["b"].has(Root)
     outputs, _ = run(program, {"x": np.asarray(2.0)})

@@ -36,7 +36,9 @@ def mirrored(program: Program) -> Program:
 
 
 def _agree(first: Program, second: Program) -> None:
-    given = {name: values for name, values in SAMPLES.items() if name in {s.name for s in (*first.inputs, *second.inputs)}}
+    given = {
+        name: values for name, values in SAMPLES.items() if name in {s.name for s in (*first.inputs, *second.inputs)}
+    }
     np.testing.assert_allclose(run(second, given)[0]["axis_q"], run(first, given)[0]["axis_q"], atol=1e-9)
 
 
@@ -50,7 +52,9 @@ def _agree(first: Program, second: Program) -> None:
         (Root(X**2 + K**2) - 1, sp.Abs(LENGTH) > sp.Float("1e-11"), False),
     ],
 )
-def test_a_divisor_leaves_a_direction_only_where_it_is_a_length(length: sp.Expr, condition: sp.Basic, is_proven: bool) -> None:
+def test_a_divisor_leaves_a_direction_only_where_it_is_a_length(
+    length: sp.Expr, condition: sp.Basic, is_proven: bool
+) -> None:
     program = _scaled(length, condition)
     found = plain_directions(program)
     _agree(program, found)
@@ -76,4 +80,3 @@ def test_a_branch_sign_turns_a_direction() -> None:
     for number, word in ((1, "up"), (-1, "down")):
         wanted, _ = run(program, {**given, "sigma_elbow": np.asarray(number)})
         np.testing.assert_allclose(every[f"axis_q_{word}"], wanted["axis_q"], atol=1e-9)
-

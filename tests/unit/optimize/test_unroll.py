@@ -1,4 +1,5 @@
-"""All branches in one straight line: the same answers as the branches one by one, and every statement as often as needed."""
+"""All branches in one straight line: the same answers as the branches one by one, and every statement as often as
+needed."""
 
 from __future__ import annotations
 
@@ -107,7 +108,9 @@ def test_the_refusal_of_a_slot_is_its_first_condition_that_does_not_hold() -> No
     )
     looped = program(*body, outputs={"o": X})
     grid = np.meshgrid(np.linspace(-2, 2, 9), np.linspace(-2, 2, 9))
-    check_equal(looped, unroll(looped, (ELBOW, WRIST)), (ELBOW, WRIST), dict(zip("xy", map(np.ravel, grid), strict=True)))
+    check_equal(
+        looped, unroll(looped, (ELBOW, WRIST)), (ELBOW, WRIST), dict(zip("xy", map(np.ravel, grid), strict=True))
+    )
 
 
 def test_linear_equations_are_unrolled_too() -> None:
@@ -184,7 +187,9 @@ def test_every_slot_is_the_branch_of_its_signs(name: str) -> None:
 
 
 def random_inputs(kin: Kinematics, count: int) -> dict[str, np.ndarray]:
-    """Poses of random axes, some of them moved off to where some or all branches end; turns and references at random."""
+    """Poses of random axes, some of them moved off to where some or all branches end; turns and
+    references at random.
+    """
     random = np.random.default_rng(4)
     constants, _ = run(kin.setup, {p.name: np.asarray(p.nominal, dtype=float) for p in kin.parameters})
     machine = {name: np.broadcast_to(value, count) for name, value in constants.items()}

@@ -53,7 +53,11 @@ def test_a_rod_without_a_cone_is_free_and_others_have_their_own() -> None:
     assert [n for n in names if "least_cos" in n] == ["least_cos_base_1", "least_cos_base_2"]
     assert [n for n in names if n.startswith("home_along")] == [f"home_along_{rod}_{c}" for rod in "23" for c in "xyz"]
     assert not [n for n in names if n.startswith("plate_axis")]
-    for base, plate, status in ((90.0, 90.0, Status.OK), (1.0, 90.0, Status.UNREACHABLE), (90.0, 1.0, Status.UNREACHABLE)):
+    for base, plate, status in (
+        (90.0, 90.0, Status.OK),
+        (1.0, 90.0, Status.UNREACHABLE),
+        (90.0, 1.0, Status.UNREACHABLE),
+    ):
         given = {p.name: np.asarray(float(p.nominal)) for p in kin.parameters}
         given |= {BASE_CONE.name: np.asarray(base), PLATFORM_CONE.name: np.asarray(plate)}
         constants, _ = run(kin.setup, given)

@@ -13,7 +13,18 @@ from derive.ir.symbols import (
     real,
 )
 from derive.solver.subproblems.affine_pair import affine_pair
-from tests.unit.solver.execution import ANGLES, LENGTHS, NUMBERS, answer, answers, at, execute, few, problem, trigonometry
+from tests.unit.solver.execution import (
+    ANGLES,
+    LENGTHS,
+    NUMBERS,
+    answer,
+    answers,
+    at,
+    execute,
+    few,
+    problem,
+    trigonometry,
+)
 
 V, W, U, TURN = (real(n) for n in ("v", "w", "u", "turn"))
 A, B = real("a"), real("b")

@@ -32,7 +32,9 @@ def closure(**sides: sp.Expr) -> Given:
 
 ARM = closure(x=L1 * sp.cos(A1) + L2 * sp.cos(A1 + A2), y=L1 * sp.sin(A1) + L2 * sp.sin(A1 + A2))
 ABSOLUTE = closure(x=L1 * sp.cos(A1) - L2 * sp.sin(A2), y=L1 * sp.sin(A1) + L2 * sp.cos(A2))
-TURNED_BASE = closure(x=L1 * sp.cos(A1 + W) + L2 * sp.cos(A1 + A2 + W), y=L1 * sp.sin(A1 + W) + L2 * sp.sin(A1 + A2 + W))
+TURNED_BASE = closure(
+    x=L1 * sp.cos(A1 + W) + L2 * sp.cos(A1 + A2 + W), y=L1 * sp.sin(A1 + W) + L2 * sp.sin(A1 + A2 + W)
+)
 BELTS = closure(x=2 * P - 3 * Q, y=K * P + Q, z=P + L1 * sp.cos(A1))
 TABLE = closure(x=P * sp.cos(W) - Q * sp.sin(W), y=P * sp.sin(W) + Q * sp.cos(W))
 RAIL = closure(x=P + L1 * sp.cos(A1), y=2 * P + L1 * sp.sin(A1))
@@ -61,7 +63,16 @@ def residual(case: Given, equation: Equation, **numbers: float) -> float:
     ],
     ids=["arm", "turned base", "belts", "turntable", "rail"],
 )
-@given(a1=ANGLES, a2=ANGLES, w=ANGLES, p=NUMBERS, q=NUMBERS, link_1=st.floats(1, 9), link_2=st.floats(1, 9), k=st.floats(1, 9))
+@given(
+    a1=ANGLES,
+    a2=ANGLES,
+    w=ANGLES,
+    p=NUMBERS,
+    q=NUMBERS,
+    link_1=st.floats(1, 9),
+    link_2=st.floats(1, 9),
+    k=st.floats(1, 9),
+)
 def test_solutions_are_kept(
     case: Given, elimination: Callable[[Problem], tuple[Equation, ...]], count: int, **numbers: float
 ) -> None:

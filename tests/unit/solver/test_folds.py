@@ -1,8 +1,8 @@
 """Folds and sweeps, on small derivations.
 
-An angle v points an arm at a point, and a later step needs |e| <= size with e = p cos v + q sin v. Near the fold v turns until e
-is within its size, if its own equation then holds to rounding. It stays where e is within its size, where the turn would be more
-than rounding, and far from the fold.
+An angle v points an arm at a point, and a later step needs |e| <= size with e = p cos v + q sin v. Near the fold v
+turns until e is within its size, if its own equation then holds to rounding. It stays where e is within its size, where
+the turn would be more than rounding, and far from the fold.
 """
 
 from __future__ import annotations
@@ -81,7 +81,9 @@ def sweeping(*, is_ruled: bool) -> Program:
         Let(along, X1 * cosine(V) + X2 * sine(V)),
         Let(across, Y1 * cosine(V) + Y2 * sine(V)),
         Let(radius, Root(along**2 + across**2)),
-        *direction(problem(U), U, along=along, across=across, measure=radius, note="", is_length=True, scale=sp.Integer(1)),
+        *direction(
+            problem(U), U, along=along, across=across, measure=radius, note="", is_length=True, scale=sp.Integer(1)
+        ),
         Let(NEEDED, LEVEL + P * cosine(U) + Q * sine(U)),
     )
     later = Slope(real("sigma_w"), real("unused"), SCALE, reach=(SIZE, NEEDED))
@@ -191,12 +193,15 @@ def test_what_no_later_angle_reaches_stays_refused(
 
 @settings(max_examples=300)
 @given(
-    ANGLES, st.floats(10.0, 900.0), SIDES, st.floats(-1e-5, 1e-5), ANGLES, st.floats(0.4, 1.0), st.floats(0.05, 0.3), ANGLES
+    ANGLES, st.floats(10.0, 900.0), SIDES, st.floats(-1e-5, 1e-5), ANGLES, st.floats(0.4, 1.0), st.floats(0.05, 0.3),
+    ANGLES
 )  # fmt: skip
 def test_at_the_threshold_of_a_free_angle_it_points_to_what_the_next_step_takes(
     base: float, beside: float, side: float, above: float, turned: float, apart: float, lean: float, free: float
 ) -> None:
-    """u may be `apart` on both sides of a centre; only one of them points ahead; on the other rounding decides if u is free."""
+    """u may be `apart` on both sides of a centre; only one of them points ahead; on the other rounding decides if u is
+    free.
+    """
     aside, centre = 1e-11 * np.sin(apart + lean) * (1.0 + above), turned - lean
     values = point(base + aside / np.tan(apart - lean), 0.0, beside) | swinging(base, aside, turned)
     values |= {"sigma_v": side, "free_v": 0.0, "free_u": free}

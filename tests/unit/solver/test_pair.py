@@ -43,8 +43,15 @@ FREE = reference(U)
 
 TURNED = problem(A * sp.cos(U) - B * sp.sin(U) - E, B * sp.cos(U) + A * sp.sin(U) - F, angles=(U,))
 AGAINST = problem(A * sp.cos(U) + B * sp.sin(U) - E, B * sp.cos(U) - A * sp.sin(U) - F, angles=(U,))
-DIRECTED = problem(A * sp.cos(U) - S * B * sp.sin(U) - E, B * sp.cos(U) + S * A * sp.sin(U) - F, angles=(U,), signs=(S,))
-KINDS = {"turned": (TURNED, 1.0), "against": (AGAINST, -1.0), "directed": (DIRECTED, 1.0), "directed back": (DIRECTED, -1.0)}
+DIRECTED = problem(
+    A * sp.cos(U) - S * B * sp.sin(U) - E, B * sp.cos(U) + S * A * sp.sin(U) - F, angles=(U,), signs=(S,)
+)
+KINDS = {
+    "turned": (TURNED, 1.0),
+    "against": (AGAINST, -1.0),
+    "directed": (DIRECTED, 1.0),
+    "directed back": (DIRECTED, -1.0),
+}
 
 
 @few
@@ -54,7 +61,9 @@ def test_the_root(kind: str, a: float, b: float, u: float, free: float) -> None:
     given_problem, sense = KINDS[kind]
     right = complex(a, b) * np.exp(1j * sense * u)
     binding = answer(pair, given_problem)
-    values, status = execute(binding.statements, {A: a, B: b, E: right.real, F: right.imag, S: sense, SCALE: 1.0, FREE: free})
+    values, status = execute(
+        binding.statements, {A: a, B: b, E: right.real, F: right.imag, S: sense, SCALE: 1.0, FREE: free}
+    )
     assert status is Status.OK
     assert abs(np.hypot(values["cos_u"], values["sin_u"]) - 1) <= 1e-15
     is_free = abs(right) <= 1e-11
@@ -147,5 +156,7 @@ def test_three_equations_are_three_pairs() -> None:
 def test_total(kind: str, a: float, b: float, e: float, f: float, free: float, scale: float) -> None:
     """Also where the right side is not as long as the arm: the status of another statement says so."""
     given_problem, sense = KINDS[kind]
-    values, _ = execute(answer(pair, given_problem).statements, {A: a, B: b, E: e, F: f, S: sense, SCALE: scale, FREE: free})
+    values, _ = execute(
+        answer(pair, given_problem).statements, {A: a, B: b, E: e, F: f, S: sense, SCALE: scale, FREE: free}
+    )
     assert all_finite(values)

@@ -158,7 +158,9 @@ def test_not_taken(first: sp.Expr, second: sp.Expr) -> None:
 
 
 @few
-@pytest.mark.parametrize("given_problem", [PLAIN, RADIUS, COMPASS, ELLIPSE], ids=["plain", "radius", "compass", "ellipse"])
+@pytest.mark.parametrize(
+    "given_problem", [PLAIN, RADIUS, COMPASS, ELLIPSE], ids=["plain", "radius", "compass", "ellipse"]
+)
 @given(a=ANYTHING, b=ANYTHING, c=ANYTHING, free=ANYTHING, k=st.floats(1e-9, 1e9), sigma=st.sampled_from([1.0, -1.0]))
 def test_total(given_problem: object, a: float, b: float, c: float, free: float, k: float, sigma: float) -> None:
     binding = answer(polar, given_problem)  # type: ignore[arg-type]

@@ -90,11 +90,11 @@ CASES = {
     ),
     "2R with absolute angles": Case(plane((L1, A1), (L2, A2)), (A1, A2), rules=("trigonometric", "pair", "sum")),
     "2R against each other": Case(plane((L1, -A1), (L2, A2 - A1)), (A1, A2), rules=("trigonometric", "pair")),
-    "2R with a driven direction": Case(plane((L1, S * A1), (L2, S * A1 + A2)), (A1, A2), rules=("trigonometric", "pair")),
-    "rail and arm": Case(plane((L1, A1), (L2, HEADING), x=P), (A1,), (P,), rules=("trigonometric", "affine")),
-    "oblique rail and arm": Case(
-        plane((P, sp.pi / 6), (L1, A1)), (A1,), (P,), rules=("trigonometric", "affine")
+    "2R with a driven direction": Case(
+        plane((L1, S * A1), (L2, S * A1 + A2)), (A1, A2), rules=("trigonometric", "pair")
     ),
+    "rail and arm": Case(plane((L1, A1), (L2, HEADING), x=P), (A1,), (P,), rules=("trigonometric", "affine")),
+    "oblique rail and arm": Case(plane((P, sp.pi / 6), (L1, A1)), (A1,), (P,), rules=("trigonometric", "affine")),
     "telescope": Case(plane((P, A1), (L1, HEADING)), (A1,), (P,), rules=("polar",)),
     "telescope that cannot turn inside out": Case(
         plane((P + K, A1)), (A1,), (P,), positive=(P + K,), rules=("polar", "affine"), slots=1
@@ -219,7 +219,10 @@ UNSOLVED = {
     ),
     "a factor that can vanish": (Case({"x": TOOL_X * P}, (), (P,)), "no subproblem determines p"),
     "rails that can be parallel": (Case(plane((P, HEADING), x=Q), (), (P, Q)), "no subproblem determines p, q"),
-    "three links, no turn": (Case(plane((L1, A1), (L2, A1 + A2), (K, A1 + A2 + A3)), (A1, A2, A3)), "determines a1, a2, a3"),
+    "three links, no turn": (
+        Case(plane((L1, A1), (L2, A1 + A2), (K, A1 + A2 + A3)), (A1, A2, A3)),
+        "determines a1, a2, a3",
+    ),
     "an angle of which only the turns count": (Case({"x": K * A1}, (A1,)), "no subproblem determines a1"),
 }
 
@@ -240,7 +243,9 @@ def test_a_step_binds_a_name_once() -> None:
 
 
 def test_turns_count_once_they_are_chosen() -> None:
-    """An equation in which an angle stands outside sines and cosines waits until `resolve_angle` has chosen its turns."""
+    """An equation in which an angle stands outside sines and cosines waits until `resolve_angle`
+    has chosen its turns.
+    """
     case = Case({"x": sp.cos(A1), "y": sp.sin(A1), "z": P - K * A1}, (A1,), (P,))
     turned: list[sp.Symbol] = []
 
@@ -252,7 +257,9 @@ def test_turns_count_once_they_are_chosen() -> None:
     assert turned == [A1]
     assert derivation.rules == ("pair", "affine")
     program = assemble("screw", derivation.statements, [Output("p", P)])
-    values, _ = run(program, {n: np.asarray(v) for n, v in {"x": 0.0, "y": 1.0, "z": 3.0, "k": 2.0, "turn": 10.0}.items()})
+    values, _ = run(
+        program, {n: np.asarray(v) for n, v in {"x": 0.0, "y": 1.0, "z": 3.0, "k": 2.0, "turn": 10.0}.items()}
+    )
     assert values["p"] == pytest.approx(3.0 + 2.0 * (np.pi / 2 + 10.0))
 
 

@@ -138,7 +138,12 @@ def test_the_boundary_belongs_to_the_workspace(name: str, side: int) -> None:
     case = KINDS[name]
     values = machine(325.0, 225.0, -40.0, 30.0)
     h = amplitude(case, values)
-    for excess, wanted in ((0.0, Status.OK), (4e-13, Status.OK), (1e-11, Status.UNREACHABLE), (5.0, Status.UNREACHABLE)):
+    for excess, wanted in (
+        (0.0, Status.OK),
+        (4e-13, Status.OK),
+        (1e-11, Status.UNREACHABLE),
+        (5.0, Status.UNREACHABLE),
+    ):
         both = [solved(case, {**values, E: side * h * (1 + excess)}, sigma) for sigma in (1.0, -1.0)]
         assert [status for _, status in both] == [wanted, wanted]
         assert distance(*(angle_of(found, U) for found, _ in both)) <= (1e-7 if excess == 0.0 else 1e-15)
@@ -174,7 +179,9 @@ def test_the_margin_needs_no_unit() -> None:
         case = KINDS[name]
         assert case.binding.slope is not None
         small, large = ({**machine(k * 3.0, k * 2.0, 0.0, 0.0), E: 0.0} for k in (1.0, 1000.0))
-        margins = [at(case.binding.slope.value / case.binding.slope.scale, solved(case, v, 1.0)[0]) for v in (small, large)]
+        margins = [
+            at(case.binding.slope.value / case.binding.slope.scale, solved(case, v, 1.0)[0]) for v in (small, large)
+        ]
         assert margins == pytest.approx([1.0, 1.0])
 
 

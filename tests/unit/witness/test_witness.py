@@ -144,7 +144,9 @@ WRONG: dict[str, tuple[str, Callable[[Kinematics], Kinematics]]] = {
     ),
     "the offset interface on another elbow": (
         "the way back of the offset interface",
-        lambda k: replace(k, offset_configuration=changed(k.offset_configuration or k.forward, "branch_elbow", lambda b: -b)),
+        lambda k: replace(
+            k, offset_configuration=changed(k.offset_configuration or k.forward, "branch_elbow", lambda b: -b)
+        ),
     ),
 }
 
