@@ -163,12 +163,6 @@ FAULTS = {
     "a ball joint that swings too far": Fault(
         TRIPOD, "y + part) <= sin_max_angle_ball_joint", "y + part) <= 1.0",
         "test_bounds.test_a_ball_joint_ends_sharply",
-        (
-            (
-                "y + root_of_3_by_2_by_arm_length_2 * x) <= sin_max_angle_ball_joint",
-                "y + root_of_3_by_2_by_arm_length_2 * x) <= 1.0",
-            ),
-        ),
     ),
     "a turn too many": Fault(
         FIVE_BAR, "turn_a2 - 1", "turn_a2", "test_configuration.test_a_named_turn_is_where_the_axis_is_put"
