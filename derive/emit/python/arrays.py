@@ -8,7 +8,7 @@ import sympy as sp
 
 from derive.emit.python import calls
 from derive.emit.python.control_flow import array_arm_lines, fixed
-from derive.emit.python.layout import fold, note_lines
+from derive.emit.python.layout import note_lines
 from derive.emit.python.loops import array_end, array_head
 from derive.emit.python.printer import ArrayPrinter, words
 from derive.emit.python.program import (
@@ -56,8 +56,8 @@ def array_body(method: Method) -> list[str]:
     lines = _statements(method, constants)
     values = values_of(method, ArrayPrinter(constants))
     if method.is_shared:
-        return [*lines, *fold(f"return {values}")]
-    return [*lines, *fold(f"return {values}, status" if values else "return status")]
+        return [*lines, f"return {values}"]
+    return [*lines, f"return {values}, status" if values else "return status"]
 
 
 def _statements(method: Method, constants: Collection[str]) -> list[str]:
@@ -86,7 +86,7 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
         elif isinstance(item, Require):
             condition = sp.And(*(r.condition for r in same))
             notes = [line for note in dict.fromkeys(r.comment for r in same) for line in note_lines(note)]
-            lines += [*notes, *fold(f"require(status, {printer.print(condition)}, Status.{item.otherwise.name})")]
+            lines += [*notes, f"require(status, {printer.print(condition)}, Status.{item.otherwise.name})"]
         else:
             lines += bound(item)
     return lines

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.emit.python.layout import fold, note_lines, taken_apart, tuple_of
+from derive.emit.python.layout import note_lines, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.program import (
     Call,
@@ -22,13 +22,13 @@ refusal."""
 
 def scalar_lines(call: Call, printer: ScalarPrinter, refused: str = f"return {FOUND}") -> list[str]:
     """Call, hand a refusal on, and take the values apart."""
-    head = fold(f"{FOUND} = self._{call.program.name}({_values(call, printer)})")
+    head = [f"{FOUND} = self._{call.program.name}({_values(call, printer)})"]
     return [*_note(call), *head, f"if isinstance({FOUND}, Status):", f"    {refused}", *_taken(call, FOUND)]
 
 
 def array_lines(call: Call, printer: ScalarPrinter) -> list[str]:
     """The same on arrays: the shared program writes the statuses of its refusals."""
-    head = fold(f"{FOUND} = self.{call.program.name}({_values(call, printer)}, status)")
+    head = [f"{FOUND} = self.{call.program.name}({_values(call, printer)}, status)"]
     return [*_note(call), *head, *_taken(call, FOUND)]
 
 
@@ -44,11 +44,11 @@ def array_search(search: FindRoot, printer: ScalarPrinter) -> list[str]:
 
 def every_root(search: FindRoot, printer: ScalarPrinter) -> list[str]:
     """All roots of a trial on plain numbers."""
-    return fold(f"return {_looked_for(search, 'every_root', ('self._', ''), printer)}")
+    return [f"return {_looked_for(search, 'every_root', ('self._', ''), printer)}"]
 
 
 def _found(search: FindRoot, text: str) -> list[str]:
-    return [*_note(search), *fold(f"{FOUND} = {text}"), *taken_apart([spelled(n.name) for n in search.names], FOUND)]
+    return [*_note(search), f"{FOUND} = {text}", *taken_apart([spelled(n.name) for n in search.names], FOUND)]
 
 
 def _looked_for(search: FindRoot, function: str, spelling: tuple[str, str], printer: ScalarPrinter) -> str:

@@ -23,7 +23,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.emit.python.layout import fold, note_lines, taken_apart, tuple_of
+from derive.emit.python.layout import note_lines, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.primitives import (
     NearestPeriod,
@@ -50,19 +50,19 @@ def array_arm_lines(
     if symbols_of(arms.condition) <= set(constants):
         holds, fails = ([line for item in side for line in lines(item)] for side in (arms.holds, arms.fails))
         declared = [f"{spelled(name.name)}: {_kind(name)}" for name in arms.names]
-        return [*declared, *fold(f"if {condition}:"), *_indented(holds), "else:", *_indented(fails)]
+        return [*declared, f"if {condition}:", *_indented(holds), "else:", *_indented(fails)]
     notes = dict.fromkeys(i.comment for i in arms.holds if isinstance(i, Let) and i.name in arms.names and i.comment)
     said = [line for note in notes for line in note_lines(note)]
     (second, other), (first, held) = _side(arms.fails, arms.names, printer), _side(arms.holds, arms.names, printer)
     if not second:
         first, held = _side(arms.holds, arms.names, printer, is_written_out=len(results) == 1)
-        name, named = (condition, []) if len(results) == 1 else ("holds", fold(f"holds = {condition}"))
+        name, named = (condition, []) if len(results) == 1 else ("holds", [f"holds = {condition}"])
         chosen = [f"{r} = select({name}, {a}, {b})" for r, a, b in zip(results, held, other, strict=True)]
         return [
             *(line for item in first for line in lines(item)),
             *named,
             *said,
-            *(x for text in chosen for x in fold(text)),
+            *chosen,
         ]
     holds = [line for item in first for line in lines(item)]
     fails = [line for item in second for line in lines(item)]
@@ -72,8 +72,8 @@ def array_arm_lines(
     function = _unused(f"elsewhere_{results[0]}", holds)
     return [
         "",
-        *fold(f"def {function}({', '.join(f'{name}: {kind}' for name, kind in kinds.items())}) -> Reals:"),
-        *_indented([*fails, *fold(f"return {tuple_of(other)}")]),
+        f"def {function}({', '.join(f'{name}: {kind}' for name, kind in kinds.items())}) -> Reals:",
+        *_indented([*fails, f"return {tuple_of(other)}"]),
         "",
         *holds,
         *said,

@@ -40,11 +40,6 @@ def formatted(files: Mapping[str, str]) -> dict[str, str]:
         return {**files, **{path: (Path(folder) / path).read_bytes().decode() for path in python}}
 
 
-def fold(line: str, indent: int = 0) -> list[str]:
-    """A statement with its indentation."""
-    return [" " * indent + line]
-
-
 def tuple_of(parts: Sequence[str]) -> str:
     """Expressions as a tuple."""
     return f"({', '.join(parts)}{',' if len(parts) == 1 else ''})"

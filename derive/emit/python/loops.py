@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from derive.emit.python.layout import fold, note_lines, taken_apart, tuple_of
+from derive.emit.python.layout import note_lines, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.program import Iterate, Solve
 
@@ -32,13 +32,13 @@ def array_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
 
 def _head(loop: Iterate, start: str) -> list[str]:
     note = note_lines(loop.note)
-    return [*note, *fold(f"{', '.join(_names(loop.state))} = {start}"), f"for _ in range({loop.limit}):"]
+    return [*note, f"{', '.join(_names(loop.state))} = {start}", f"for _ in range({loop.limit}):"]
 
 
 def scalar_end(loop: Iterate, done: str, refusal: str, printer: ScalarPrinter) -> list[str]:
     """Leave the loop, or go on; a loop that was never left refuses."""
     return [
-        *_indented([*fold(f"if {done}:"), "    break"]),
+        *_indented([f"if {done}:", "    break"]),
         *_indented(_assignments(loop, printer)),
         "else:",
         f"    {refusal}",
@@ -50,7 +50,7 @@ def array_end(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     state = ", ".join(_names(loop.state))
     following = [f"{value}," for value in _values(loop, loop.following, printer)]
     return [
-        *_indented([*fold(f"done = {printer.print(loop.done)}"), "if settled(done, status):", "    break"]),
+        *_indented([f"done = {printer.print(loop.done)}", "if settled(done, status):", "    break"]),
         *_indented(
             [f"{state} = advanced(", "    done,", f"    ({state}),", "    (", *_indented(following, 2), "    ),", ")"]
         ),
@@ -59,11 +59,8 @@ def array_end(loop: Iterate, printer: ScalarPrinter) -> list[str]:
 
 
 def _assignments(loop: Iterate, printer: ScalarPrinter) -> list[str]:
-    return [
-        line
-        for name, value in zip(_names(loop.state), _values(loop, loop.following, printer), strict=True)
-        for line in fold(f"{name} = {value}")
-    ]
+    values = _values(loop, loop.following, printer)
+    return [f"{name} = {value}" for name, value in zip(_names(loop.state), values, strict=True)]
 
 
 def _values(loop: Iterate, values: Sequence[sp.Basic], printer: ScalarPrinter) -> list[str]:

@@ -16,7 +16,7 @@ from derive.emit.python import entries, setup
 from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
 from derive.emit.python.calls import every_root
 from derive.emit.python.finish import Function
-from derive.emit.python.layout import fold, formatted
+from derive.emit.python.layout import formatted
 from derive.emit.python.methods import branch, carried, forwards, limits, methods, shared
 from derive.emit.python.printer import ScalarPrinter, literal, primitives_in
 from derive.emit.python.program import Method, constants_of, has_search, scalar_body, unpacked
@@ -134,7 +134,7 @@ def files(parts: Sequence[Part]) -> dict[str, str]:
 @cache
 def _templates() -> Environment:
     templates = environment(name)
-    templates.filters |= {"fold": fold, "paragraph": _paragraph, "literal": entries.literal}
+    templates.filters |= {"paragraph": _paragraph, "literal": entries.literal}
     templates.globals |= {
         "generated": GENERATED,
         "statuses": [{"name": s.name, "softmotion": s.value, "meaning": _MEANINGS[s]} for s in Status],
@@ -227,14 +227,17 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
             {"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)
         ],
     }
-    array_methods = [{"head": _array_head(m), "summary": m.summary, "body": array_body(m)} for m in arrays]
-    array_lines = [line for m in array_methods for line in (*m["head"], *m["body"])]
+    array_texts = [(_array_head(m), array_body(m)) for m in arrays]
+    array_lines = [line for head, body in array_texts for line in (head, *body)]
     array_context = {
         **names,
         "array_programs": array_programs,
         "imports": _sorted({array_programs} | named_in(array_lines, CALLED)),
         "types": _sorted(named_in(array_lines, TYPES)),
-        "methods": array_methods,
+        "methods": [
+            {"head": head, "summary": m.summary, "body": body}
+            for m, (head, body) in zip(arrays, array_texts, strict=True)
+        ],
         "searches": any(map(has_search, kin.shared)),
     }
     files = {
@@ -293,21 +296,21 @@ def _untold(method: Method) -> Method:
     return replace(method, program=untold(method.program))
 
 
-def _head(method: Method, prefix: str) -> list[str]:
+def _head(method: Method, prefix: str) -> str:
     arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
     result = f"{method.kind} | Status" if method.kind else "Status"
     if method.is_explained:
         result = f"{method.kind} | Diagnosis" if method.kind else "Diagnosis | None"
-    return fold(f"def {prefix}{method.name}(self{arguments}) -> {result}:", 4)
+    return f"def {prefix}{method.name}(self{arguments}) -> {result}:"
 
 
-def _array_head(method: Method) -> list[str]:
+def _array_head(method: Method) -> str:
     arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
     if method.is_shared:
-        return fold(f"def {method.name}(self{arguments}, status: Codes) -> {method.kind}:", 4)
+        return f"def {method.name}(self{arguments}, status: Codes) -> {method.kind}:"
     kind = "tuple[Vector, Rotation, Reals]" if method.kind == "Pose" else method.kind
     result = f"tuple[{kind}, Codes]" if kind else "Codes"
-    return fold(f"def {method.name}(self{arguments}) -> {result}:", 4)
+    return f"def {method.name}(self{arguments}) -> {result}:"
 
 
 def _sorted(found: set[str]) -> list[str]:

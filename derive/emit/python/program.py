@@ -9,7 +9,7 @@ from itertools import groupby
 import sympy as sp
 
 from derive.emit.python import calls as python_calls
-from derive.emit.python.layout import assigned, fits, fold, note_lines, taken_apart, tuple_of
+from derive.emit.python.layout import assigned, fits, note_lines, taken_apart, tuple_of
 from derive.emit.python.loops import scalar_end, scalar_head, solve_lines
 from derive.emit.python.printer import ScalarPrinter, literal, spelled
 from derive.emit.python.refusal import PLAIN, Refusals, conjunction
@@ -89,7 +89,7 @@ class Method:
 def scalar_body(method: Method, refusals: Refusals = PLAIN) -> list[str]:
     """The body on plain numbers: the first condition that does not hold refuses."""
     lines = [*unpacked(method), *constant_lines(method), *statement_lines(method.program, refusals, _SCALAR)]
-    return [*lines, *fold(f"return {values_of(method, _SCALAR) or refusals.success}")]
+    return [*lines, f"return {values_of(method, _SCALAR) or refusals.success}"]
 
 
 def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
@@ -121,7 +121,7 @@ def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[
         notes = dict.fromkeys(
             i.comment for i in item.holds if isinstance(i, Let) and i.name in item.names and i.comment
         )
-        head = [*(line for note in notes for line in note_lines(note)), *fold(f"if {conjunction([item.condition])}:")]
+        head = [*(line for note in notes for line in note_lines(note)), f"if {conjunction([item.condition])}:"]
         sides = [[_unnoted(i, item.names) for i in side] for side in (item.holds, item.fails)]
         holds, fails = (_side(side, refusals, printer) for side in sides)
         return [*head, *holds, "else:", *fails]
@@ -187,7 +187,7 @@ def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
     line = f"{spelled(let.name.name)} = {value}"
     if let.comment and fits(line, let.comment):
         return [f"{line}  # {let.comment}"]
-    return [*note_lines(let.comment), *fold(line)]
+    return [*note_lines(let.comment), line]
 
 
 def grouped(body: Sequence[Item]) -> Iterator[tuple[Item, tuple[Require, ...]]]:
