@@ -14,19 +14,7 @@ import sympy as sp
 from derive.ir.constants import (
     DEGREE,
 )
-from derive.ir.symbols import (
-    real,
-)
-
-
-def sine(angle: sp.Symbol) -> sp.Symbol:
-    """The symbol of an angle's sine."""
-    return real(f"sin_{angle.name}")
-
-
-def cosine(angle: sp.Symbol) -> sp.Symbol:
-    """The symbol of an angle's cosine."""
-    return real(f"cos_{angle.name}")
+from derive.ir.symbols import cosine, sine
 
 
 def polynomial(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence[sp.Symbol]) -> sp.Expr:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, sine
 from derive.description.mechanism import Joint, Mechanism
 from derive.ir.constants import (
     DEGREE,
@@ -27,8 +26,10 @@ from derive.ir.program import (
 )
 from derive.ir.reason import Why, about_input
 from derive.ir.symbols import (
+    cosine,
     flag,
     real,
+    sine,
 )
 
 _REASONABLE = "numbers of reasonable size"

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.algebra.angle_sums import name_of
-from derive.algebra.normal_form import cosine, is_compound, polynomial, sine
+from derive.algebra.normal_form import is_compound, polynomial
 from derive.equations.problem import Equation
 from derive.geometry.frames import Chain, Factor, Motion
 from derive.geometry.pose import pose_of
@@ -23,7 +23,9 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     COORDINATE_NAMES,
+    cosine,
     real,
+    sine,
 )
 
 

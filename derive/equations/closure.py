@@ -12,7 +12,7 @@ from functools import cache
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, is_compound, polynomial, reduce_units, sine, split_known
+from derive.algebra.normal_form import is_compound, polynomial, reduce_units, split_known
 from derive.description.mechanism import (
     DescriptionError,
     Joint,
@@ -35,7 +35,9 @@ from derive.ir.symbols import (
     COORDINATE_NAMES,
     OFFSET,
     ROTATION_ENTRIES,
+    cosine,
     real,
+    sine,
 )
 
 FLANGE = tuple(real(f"flange_{c}") for c in COORDINATE_NAMES)

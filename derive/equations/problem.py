@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, reduce_units, sine
+from derive.algebra.normal_form import reduce_units
 from derive.geometry.frames import Factor
 from derive.ir.constants import (
     DEGREE,
@@ -16,7 +16,7 @@ from derive.ir.program import (
     Let,
     Statement,
 )
-from derive.ir.symbols import real
+from derive.ir.symbols import cosine, real, sine
 
 
 @dataclass(frozen=True)

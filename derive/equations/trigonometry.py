@@ -7,14 +7,16 @@ from collections.abc import Iterable
 import sympy as sp
 
 from derive.algebra.angle_sums import name_of, terms_of
-from derive.algebra.normal_form import cosine, polynomial, sine
+from derive.algebra.normal_form import polynomial
 from derive.description.mechanism import Mechanism
 from derive.equations.closure import angles_of, signs_of
 from derive.ir.program import (
     Let,
 )
 from derive.ir.symbols import (
+    cosine,
     real,
+    sine,
 )
 
 

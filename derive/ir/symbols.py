@@ -55,6 +55,32 @@ def names_in(expression: sp.Basic) -> frozenset[sp.Symbol]:
     return frozenset(s for s in expression.free_symbols if isinstance(s, sp.Symbol)) - {DEGREE}
 
 
+def sine(angle: sp.Symbol) -> sp.Symbol:
+    """The name of an angle's sine."""
+    return real(f"sin_{angle.name}")
+
+
+def cosine(angle: sp.Symbol) -> sp.Symbol:
+    """The name of an angle's cosine."""
+    return real(f"{_COSINE}{angle.name}")
+
+
+def angle_of(name: sp.Symbol) -> sp.Symbol | None:
+    """The angle whose cosine has a name; None for any other name. Nothing else reads a name."""
+    return real(name.name.removeprefix(_COSINE)) if name.name.startswith(_COSINE) else None
+
+
+def branch_sign(branch: str) -> sp.Symbol:
+    """The sign of a branch: +1 for byte 1, -1 for byte 2."""
+    return count(f"{_SIGN}{branch}")
+
+
+def is_branch_sign(name: sp.Symbol) -> bool:
+    """Whether a name is that of a branch's sign."""
+    return is_count(name) and name.name.startswith(_SIGN)
+
+
+_COSINE, _SIGN = "cos_", "sigma_"
 COORDINATE_NAMES = ("x", "y", "z")
 ROTATION_ENTRIES: tuple[sp.Symbol, ...] = tuple(real(f"r{i}{j}") for i in "123" for j in "123")
 """The rotation of a frame, by rows."""

@@ -29,7 +29,7 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
-    count,
+    branch_sign,
     real,
 )
 from derive.kinematics.forward import (
@@ -54,7 +54,7 @@ class Assignment:
     @property
     def sigma(self) -> sp.Symbol:
         """The sign of the branch, an integer: +1 is byte 1."""
-        return count(f"sigma_{self.branch.name}")
+        return branch_sign(self.branch.name)
 
     @property
     def factor(self) -> sp.Symbol:

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, sine
 from derive.description.mechanism import (
     DescriptionError,
     Mechanism,
@@ -52,7 +51,9 @@ from derive.ir.symbols import (
     OFFSET,
     ROTATION_ENTRIES,
     SCALE,
+    cosine,
     real,
+    sine,
 )
 from derive.kinematics.inverse import Inverse
 from derive.solver.solve import Derivation, solve

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, polynomial, sine
+from derive.algebra.normal_form import polynomial
 from derive.description.mechanism import (
     Joint,
     Mechanism,
@@ -52,7 +52,9 @@ from derive.ir.symbols import (
     POSITION,
     ROTATION_ENTRIES,
     SCALE,
+    cosine,
     real,
+    sine,
 )
 from derive.optimize.simplify import shorter
 from derive.solver.solve import Derivation, solve

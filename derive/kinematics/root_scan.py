@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, sine
 from derive.description.mechanism import Mechanism
 from derive.equations.named_pose import named_pose
 from derive.ir.constants import BOUNDARY, DAMPED, IMPROVEMENTS, MET, NEARLY
@@ -26,9 +25,11 @@ from derive.ir.symbols import (
     ROTATION_ENTRIES,
     SCALE,
     TRIED,
+    cosine,
     count,
     flag,
     real,
+    sine,
 )
 from derive.kinematics.differential import jacobian_entries
 from derive.kinematics.trial_slopes import slope_name, with_slopes

@@ -16,7 +16,6 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.algebra.normal_form import cosine, sine
 from derive.description.mechanism import (
     Branch,
     DescriptionError,
@@ -58,10 +57,13 @@ from derive.ir.symbols import (
     SCALE,
     SIDE,
     TRIED,
+    branch_sign,
     called,
+    cosine,
     count,
     flag,
     real,
+    sine,
 )
 from derive.kinematics.branch_assignment import Assignment, assign, steps_and_rest, with_branch_signs
 from derive.kinematics.differential import jacobian_entries
@@ -198,7 +200,7 @@ def search_of(both: Scanned) -> Program:
 
 def _sigma(branch: Branch) -> sp.Symbol:
     """The sign of a branch."""
-    return count(f"sigma_{branch.name}")
+    return branch_sign(branch.name)
 
 
 def _wanted(branch: Branch) -> sp.Symbol:

@@ -34,9 +34,13 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
+    angle_of,
+    is_branch_sign,
     real,
     symbols_of,
 )
+from derive.ir.symbols import cosine as cosine_of
+from derive.ir.symbols import sine as sine_of
 from derive.optimize.directions import Pair, lengths_of, products
 from derive.optimize.without_periods import turnless
 
@@ -144,7 +148,7 @@ def _is_flipped(pair: Pair, signs: _Signs) -> bool:
 
 def _signs(program: Program) -> _Signs:
     """The branch signs that every name depends on."""
-    found = {s: frozenset({s}) for s in program.inputs if s.name.startswith("sigma_")}
+    found = {s: frozenset({s}) for s in program.inputs if is_branch_sign(s)}
     for let in program.lets():
         found[let.name] = frozenset[sp.Symbol]().union(*(found.get(s, frozenset()) for s in symbols_of(let.value)))
     return found
@@ -153,9 +157,9 @@ def _signs(program: Program) -> _Signs:
 def _sums(values: _Values, angles: Mapping[Pair, sp.Expr]) -> list[_Sum]:
     """The pairs that the addition theorem makes of two such directions."""
     found = []
-    for cosine in values:
-        sine = real(cosine.name.replace("cos_", "sin_", 1))
-        if cosine.name.startswith("cos_") and sine in values:
+    for angle in [angle for angle in map(angle_of, values) if angle is not None]:
+        cosine, sine = cosine_of(angle), sine_of(angle)
+        if sine in values:
             for is_opposite, (sense1, first), (sense2, second) in products(values[sine], values[cosine]):
                 if first in angles and second in angles and all(map(_are_of_one_angle, (first, second))):
                     found.append(_Sum((sine, cosine), (first, second), (sense1, sense2), is_opposite))
@@ -165,8 +169,8 @@ def _sums(values: _Values, angles: Mapping[Pair, sp.Expr]) -> list[_Sum]:
 
 def _are_of_one_angle(pair: Pair) -> bool:
     """Whether two names are the sine and the cosine of an angle: a derivation gives these names to nothing else."""
-    sine, cosine = (str(name) for name in pair)
-    return cosine.startswith("cos_") and sine == cosine.replace("cos_", "sin_", 1)
+    angle = angle_of(pair[1])
+    return angle is not None and pair[0] == sine_of(angle)
 
 
 def _readers(program: Program, pair: Pair) -> set[sp.Symbol | None]:

@@ -28,8 +28,10 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     ROTATION_ENTRIES,
-    real,
+    angle_of,
 )
+from derive.ir.symbols import cosine as cosine_of
+from derive.ir.symbols import sine as sine_of
 
 _Entries = tuple[tuple[sp.Expr, ...], ...]
 """By rows: what the entries of a rotation are called, or what they are."""
@@ -55,8 +57,8 @@ def _rotations(values: Mapping[sp.Symbol, sp.Expr]) -> Iterator[_Entries]:
     while pending:
         rotation = pending.pop(0)
         yield rotation
-        for cosine in [name for name in values if name.name.startswith("cos_")]:
-            sine = real(cosine.name.replace("cos_", "sin_", 1))
+        for angle in [angle for angle in map(angle_of, values) if angle is not None]:
+            cosine, sine = cosine_of(angle), sine_of(angle)
             for i, j in ((0, 1), (1, 2), (2, 0)):
                 for sense in (1, -1):
                     turned = _turned(rotation, i, j, cosine, sense * sine)

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, sine
 from derive.equations.problem import Binding, Measure, Slope
 from derive.ir.program import (
     Let,
@@ -16,6 +15,8 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     called,
+    cosine,
+    sine,
 )
 from derive.ir.verify import BrokenProgram
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, linear_coefficients, sine
+from derive.algebra.normal_form import linear_coefficients
 from derive.equations.problem import Measure, Slope
 from derive.ir.constants import (
     FREE_ANGLE,
@@ -38,8 +38,10 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
+    cosine,
     flag,
     real,
+    sine,
 )
 
 WITHIN_ITS_BOUND = "{} has solutions where this is within its bound"

@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, is_compound, linear_coefficients, sine
+from derive.algebra.normal_form import is_compound, linear_coefficients
 from derive.equations.problem import Legs, Measure, Slope
 from derive.ir.constants import (
     FOLD,
@@ -42,8 +42,10 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     SCALE,
+    cosine,
     flag,
     real,
+    sine,
 )
 from derive.solver.feasible_arc import WITHIN_ITS_BOUND
 from derive.solver.sweeps import WAYS, Sweep, sweep_of, swept

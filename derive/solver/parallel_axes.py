@@ -13,9 +13,10 @@ from itertools import combinations
 import sympy as sp
 
 from derive.algebra.angle_sums import Terms, symbol_of_sum, terms_of
-from derive.algebra.normal_form import cosine, polynomial, reduce_units, sine
+from derive.algebra.normal_form import polynomial, reduce_units
 from derive.equations.problem import Binding, Equation, Problem
 from derive.ir.program import Let
+from derive.ir.symbols import cosine, sine
 
 _FUNCTIONS = ((cosine, sp.cos), (sine, sp.sin))
 

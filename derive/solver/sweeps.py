@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, linear_coefficients, reduce_units, sine
+from derive.algebra.normal_form import linear_coefficients, reduce_units
 from derive.equations.problem import Measure
 from derive.ir.constants import (
     BOUNDARY,
@@ -34,8 +34,11 @@ from derive.ir.program import (
     Let,
 )
 from derive.ir.symbols import (
+    angle_of,
+    cosine,
     flag,
     real,
+    sine,
 )
 from derive.solver.feasible_arc import nearest_on_arc
 
@@ -92,9 +95,7 @@ def _written_out(value: sp.Expr, definitions: Mapping[sp.Symbol, sp.Expr]) -> sp
 def _harmonic(value: sp.Expr, lets: Mapping[sp.Symbol, Let], angle: sp.Symbol) -> Row | None:
     """The coefficients of cos u and sin u in a value, where its normal form is linear in them; else None."""
     own = {cosine(angle), sine(angle)}
-    angles = [
-        a for n in lets if n.name.startswith("cos_") for a in [real(n.name.removeprefix("cos_"))] if sine(a) in lets
-    ]
+    angles = [a for a in map(angle_of, lets) if a is not None and sine(a) in lets]
     functions = {f(a) for a in angles for f in (cosine, sine)}
     rough = _written_out(value, {n: s.value for n, s in lets.items() if n not in functions})
     moving = set(own)

@@ -29,7 +29,7 @@ from derive.ir.program import (
     Status,
 )
 from derive.ir.symbols import (
-    count,
+    branch_sign,
     symbols_of,
 )
 from derive.ir.tree import Item
@@ -111,7 +111,7 @@ def is_unrolled(kin: Kinematics) -> bool:
 
 def signs(kin: Kinematics) -> tuple[Sign, ...]:
     """The branch signs, with the names of the two branches."""
-    return tuple(Sign(count(f"sigma_{b.name}"), b.names) for b in kin.branches)
+    return tuple(Sign(branch_sign(b.name), b.names) for b in kin.branches)
 
 
 def branches(kin: Kinematics, one: Program) -> Program:

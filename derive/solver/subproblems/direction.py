@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, sine
 from derive.equations.problem import Problem
 from derive.ir.constants import (
     FREE_ANGLE,
@@ -24,7 +23,9 @@ from derive.ir.program import (
     Statement,
 )
 from derive.ir.symbols import (
+    cosine,
     real,
+    sine,
 )
 
 AT_THE_SINGULARITY = "if singular: that of the reference"

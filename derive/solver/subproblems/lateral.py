@@ -13,7 +13,6 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, sine
 from derive.equations.problem import Binding, Equation, Legs, Measure, Problem, Slope
 from derive.ir.constants import (
     BOUNDARY,
@@ -30,7 +29,9 @@ from derive.ir.program import (
     Status,
 )
 from derive.ir.symbols import (
+    cosine,
     real,
+    sine,
 )
 from derive.solver.subproblems.direction import AT_THE_SINGULARITY, direction, free_angle
 from derive.solver.subproblems.naming import Naming

@@ -19,9 +19,10 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, linear_coefficients, sine
+from derive.algebra.normal_form import linear_coefficients
 from derive.equations.problem import Binding, Equation, Measure, Problem
 from derive.ir.program import Let
+from derive.ir.symbols import cosine, sine
 from derive.solver.subproblems.direction import direction
 from derive.solver.subproblems.naming import Naming
 

@@ -12,11 +12,12 @@ from itertools import permutations
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, linear_coefficients, sine
+from derive.algebra.normal_form import linear_coefficients
 from derive.equations.problem import Binding, Equation, Measure, Problem, Slope
 from derive.ir.program import (
     Let,
 )
+from derive.ir.symbols import cosine, sine
 from derive.solver.subproblems.direction import direction
 from derive.solver.subproblems.naming import Naming
 

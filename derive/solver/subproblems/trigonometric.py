@@ -18,7 +18,7 @@ from functools import cache
 
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, linear_coefficients, reduce_units, sine
+from derive.algebra.normal_form import linear_coefficients, reduce_units
 from derive.equations.problem import Binding, Equation, Problem, Slope, sign_of
 from derive.ir.constants import (
     BOUNDARY,
@@ -36,7 +36,9 @@ from derive.ir.program import (
 )
 from derive.ir.reason import Why, about_joint
 from derive.ir.symbols import (
+    cosine,
     real,
+    sine,
 )
 from derive.solver.subproblems.lateral import aimed_at_point
 from derive.solver.subproblems.naming import Naming

@@ -10,7 +10,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from derive.algebra.normal_form import cosine, polynomial, sine
+from derive.algebra.normal_form import polynomial
 from derive.equations.problem import Binding, Equation, Problem
 from derive.ir.interpret import evaluate, run
 from derive.ir.passes import assemble
@@ -21,7 +21,9 @@ from derive.ir.program import (
     Status,
 )
 from derive.ir.symbols import (
+    cosine,
     real,
+    sine,
 )
 from derive.solver.solve import Rule
 

@@ -15,14 +15,13 @@ import sympy as sp
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from derive.algebra.normal_form import cosine, sine
 from derive.equations.problem import Equation, Measure, Problem, Slope
 from derive.ir.constants import FOLD, ROUNDING
 from derive.ir.interpret import run
 from derive.ir.passes import assemble
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Output, Program, Statement
-from derive.ir.symbols import real
+from derive.ir.symbols import cosine, real, sine
 from derive.solver.folds import beyond_folds
 from derive.solver.subproblems.direction import direction
 from derive.solver.subproblems.trigonometric import trigonometric

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, sine
 from derive.equations.problem import Equation, Problem
 from derive.ir.interpret import run
 from derive.ir.passes import assemble
@@ -15,7 +14,9 @@ from derive.ir.program import (
     Status,
 )
 from derive.ir.symbols import (
+    cosine,
     real,
+    sine,
 )
 from derive.solver.subproblems.trigonometric import trigonometric
 

@@ -9,9 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from derive.algebra.angle_sums import symbol_of_sum
-from derive.algebra.normal_form import cosine, polynomial
+from derive.algebra.normal_form import polynomial
 from derive.equations.problem import Problem
 from derive.ir.symbols import (
+    cosine,
     real,
 )
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute

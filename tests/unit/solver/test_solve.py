@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.algebra.normal_form import cosine, sine
 from derive.equations.problem import Problem
 from derive.ir.interpret import run
 from derive.ir.passes import assemble
@@ -29,7 +28,9 @@ from derive.ir.program import (
     Status,
 )
 from derive.ir.symbols import (
+    cosine,
     real,
+    sine,
 )
 from derive.ir.verify import BrokenProgram
 from derive.solver.derivation_record import DerivationRecord
