@@ -109,9 +109,7 @@ WRONG = {
     "AxesToCartesian: two bytes exchanged": Break(_FORWARD, "Softkin_PeriodNumber(a.a3)", "Softkin_PeriodNumber(a.a1)"),
     "AxesToCartesian: a byte without a meaning": Break(_FORWARD, "cd := ", "configuration.abyData[30] := 7;\ncd := "),
     "CartesianToAxes: a tie": Break(_INVERSE, "least - 1.0E-6", "least + 1.0E6"),
-    "CartesianToAxes: a tolerance": Break(
-        _BRANCH, ">= -scaleA2SquaredTimesRounding", ">= 1.0E10*scaleA2SquaredTimesRounding"
-    ),
+    "CartesianToAxes: a tolerance": Break(_BRANCH, "ABS(cosA2) <= 1.0000000000005", "ABS(cosA2) <= 0.9"),
     "CartesianToAxes: an error": Break(
         _BRANCH, "SMC_AXIS_INVERSE_TRAFO_EXCEEDING_POSLIMITS", "SMC_TRAFO_INVALID_COUPLING"
     ),

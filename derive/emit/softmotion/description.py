@@ -10,6 +10,7 @@ from jinja2 import Environment
 
 from derive.description.mechanism import Kind, Role
 from derive.emit.softmotion.block import Block
+from derive.emit.st.layout import WIDTH
 from derive.emit.st.names import input_name, respelled
 from derive.ir.constants import (
     EXACT_ROTATION,
@@ -205,12 +206,11 @@ def _item(text: str) -> list[str]:
 
 
 def _table(head: Sequence[str], rows: Iterator[Sequence[str]]) -> list[str]:
-    """A simple table of reStructuredText; what the last column has no room for stands on lines that
-    begin with nothing.
-    """
+    """A simple table of reStructuredText; a long text in the last column goes on in lines without other columns."""
     cells = [head, *rows]
     widths = [max(len(row[column]) for row in cells) for column in range(len(head) - 1)]
-    last = _WIDTH - sum(width + 1 for width in widths)
+    widths[0] += (sum(widths) + len(widths)) % 2  # the last column begins at an even place, as every indentation does
+    last = WIDTH - sum(width + 1 for width in widths)
     lines = [
         " ".join([cell.ljust(width) for cell, width in zip(first, widths, strict=True)] + [text]).rstrip()
         for row in cells
