@@ -85,7 +85,7 @@ def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:
 
 
 def _least_margin() -> Parameter:
-    meaning = "least margin to a type 2 singularity (no unit), 0: off"
+    meaning = "least distance from a type 2 singularity, a number without a unit; 0: off"
     return Parameter(real(MIN_TYPE2_MARGIN), MIN_TYPE2_MARGIN, Role.RATIO, meaning, "1", 0.0, 1.0, False, 1e-3, 1e-3)
 
 
@@ -206,5 +206,5 @@ def _without_limits(joint: Joint) -> str:
         return f"joint value {low:g} .. {high:g}" if high < float(LARGEST) else f"joint value {low:g} or more"
     if joint.pitch != 0 and joint.limit_range is not None:
         low, high = joint.limit_range
-        return f"no limit, but {low:g} .. {high:g} with a pitch"
+        return f"no limit, but {low:g} .. {high:g} while it has a pitch"
     return "no limit"

@@ -45,7 +45,7 @@ PLATFORM_JOINTS = tuple(_joint("platform", i, *p) for i, p in enumerate(PLATFORM
 BASE_CONE, PLATFORM_CONE = (
     angle(
         f"max_angle_{side}_joint",
-        f"Largest lean of a leg from home, at the {side}; 180: no bound",
+        f"Largest lean of a leg from home, as the {side} sees it; 180: no bound",
         nominal=180.0,
         low=0.0,
         high=180.0,

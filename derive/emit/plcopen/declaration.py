@@ -77,8 +77,12 @@ def declaration_of(text: str) -> Declaration:
 
 
 def _without_comments(text: str) -> list[str]:
-    """The lines without those that are comments; a bracketed comment has lines of its own."""
-    bare = re.sub(r"^\(\*.*?\*\)$", "", text, flags=re.DOTALL | re.MULTILINE)
+    """The lines without those that are comments; a bracketed comment has lines of its own.
+
+    A comment that is further in than a declaration goes on with the one beside it.
+    """
+    joined = re.sub(r"// [^\n]*(?:\n {4,}// [^\n]*)+", lambda found: re.sub(r"\n {4,}// ", " ", found[0]), text)
+    bare = re.sub(r"^\(\*.*?\*\)$", "", joined, flags=re.DOTALL | re.MULTILINE)
     return [line for line in bare.split("\n") if line and not line.lstrip().startswith("//")]
 
 

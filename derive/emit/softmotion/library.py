@@ -23,7 +23,7 @@ from derive.emit.softmotion.self_test import PROGRAM as SELF_TEST_PROGRAM
 from derive.emit.softmotion.self_test import test_of
 from derive.emit.st.contract import Contract, load
 from derive.emit.st.expression import literal
-from derive.emit.st.layout import assigned
+from derive.emit.st.layout import assigned, beside
 from derive.emit.st.reserved import refuse_clashes
 from derive.emit.st.rotation import rotation_function
 from derive.emit.st.scan import SEARCH
@@ -131,6 +131,7 @@ def _templates() -> Environment:
     templates = environment(_FOLDER)
     templates.globals.update(
         assigned=assigned,
+        beside=beside,
         generated=GENERATED,
         degree=literal(math.pi / 180.0),
         free_angle=literal(float(FREE_ANGLE)),

@@ -74,6 +74,14 @@ def commented(lines: Sequence[str], comment: str, width: int = WIDTH - INSIDE) -
     return [*wrap(sentence, width, initial_indent="// ", subsequent_indent="// "), *lines]
 
 
+def beside(declaration: str, comment: str) -> list[str]:
+    """A declaration with its comment beside it, on further lines where it is long."""
+    margin = " " * (len(declaration) + 2)
+    first, *others = wrap(comment, WIDTH - len(margin) - 3 - INSIDE)
+    even = " " * (len(margin) % 2)
+    return [f"{declaration}  // {first}", *(f"{margin}{even}// {line}" for line in others)]
+
+
 def _place(text: str, width: int) -> int | None:
     """The best place to break within a width: least nested, then furthest; the first one beyond if none fits."""
     places = list(_places(text))

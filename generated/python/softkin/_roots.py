@@ -253,8 +253,8 @@ def _all(places: Sequence[At]) -> At:
     return At(*map(np.concatenate, zip(*places, strict=True)))
 
 
-_ROWS = 1024
-"""The number of rows at a time: the arrays of a trial then stay in the cache of the processor."""
+_ROWS = 4096
+"""The number of rows at a time: the last rounds of a search have few cells, so that many rows share them."""
 Values = tuple[Any, ...]
 
 

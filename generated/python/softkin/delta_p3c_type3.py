@@ -300,7 +300,10 @@ class DeltaP3CType3(OffsetKinematics):
         Parameter.of("angle", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
         Parameter.of("flag", "tcp_above", "assembly mode: above instead of below"),
         Parameter.of(
-            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
+            "ratio",
+            "min_type2_margin",
+            "least distance from a type 2 singularity, a number without a unit; 0: off",
+            default=0.001,
         ),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
@@ -380,7 +383,7 @@ class DeltaP3CType3(OffsetKinematics):
         lower_a3: A3: lower limit of the axis, both 0: no limit [deg]
         upper_a3: A3: upper limit of the axis, both 0: no limit [deg]
         tcp_above: assembly mode: above instead of below
-        min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
+        min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
         self._accept(locals())

@@ -436,7 +436,7 @@ class Hexapod(IterativeForward):
         Parameter.of(
             "angle",
             "max_angle_base_joint",
-            "Largest lean of a leg from home, at the base; 180: no bound",
+            "Largest lean of a leg from home, as the base sees it; 180: no bound",
             low=0.0,
             high=180.0,
             default=180.0,
@@ -444,7 +444,7 @@ class Hexapod(IterativeForward):
         Parameter.of(
             "angle",
             "max_angle_platform_joint",
-            "Largest lean of a leg from home, at the platform; 180: no bound",
+            "Largest lean of a leg from home, as the platform sees it; 180: no bound",
             low=0.0,
             high=180.0,
             default=180.0,
@@ -468,7 +468,10 @@ class Hexapod(IterativeForward):
         Parameter.of("distance", "lower_l6", "L6: lower limit of the axis, both 0: joint value 0 or more"),
         Parameter.of("distance", "upper_l6", "L6: upper limit of the axis, both 0: joint value 0 or more"),
         Parameter.of(
-            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
+            "ratio",
+            "min_type2_margin",
+            "least distance from a type 2 singularity, a number without a unit; 0: off",
+            default=0.001,
         ),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
@@ -595,8 +598,8 @@ class Hexapod(IterativeForward):
         home_roll: Roll of the home pose: Rz(yaw) Ry(pitch) Rx(roll) [deg]
         home_pitch: Pitch of the home pose: Rz(yaw) Ry(pitch) Rx(roll) [deg]
         home_yaw: Yaw of the home pose: Rz(yaw) Ry(pitch) Rx(roll) [deg]
-        max_angle_base_joint: Largest lean of a leg from home, at the base; 180: no bound [deg]
-        max_angle_platform_joint: Largest lean of a leg from home, at the platform; 180: no bound [deg]
+        max_angle_base_joint: Largest lean of a leg from home, as the base sees it; 180: no bound [deg]
+        max_angle_platform_joint: Largest lean of a leg from home, as the platform sees it; 180: no bound [deg]
         offset_l1: L1: axis value at the kinematic zero position [u]
         offset_l2: L2: axis value at the kinematic zero position [u]
         offset_l3: L3: axis value at the kinematic zero position [u]
@@ -615,7 +618,7 @@ class Hexapod(IterativeForward):
         upper_l5: L5: upper limit of the axis, both 0: joint value 0 or more [u]
         lower_l6: L6: lower limit of the axis, both 0: joint value 0 or more [u]
         upper_l6: L6: upper limit of the axis, both 0: joint value 0 or more [u]
-        min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
+        min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
         self._accept(locals())

@@ -188,7 +188,10 @@ class KinType12XY(OffsetKinematics):
         Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
         Parameter.of("flag", "e_right", "assembly mode: right instead of left"),
         Parameter.of(
-            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
+            "ratio",
+            "min_type2_margin",
+            "least distance from a type 2 singularity, a number without a unit; 0: off",
+            default=0.001,
         ),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
@@ -242,7 +245,7 @@ class KinType12XY(OffsetKinematics):
         lower_a2: A2: lower limit of the axis, both 0: no limit [deg]
         upper_a2: A2: upper limit of the axis, both 0: no limit [deg]
         e_right: assembly mode: right instead of left
-        min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
+        min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
         self._accept(locals())

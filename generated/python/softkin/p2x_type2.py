@@ -95,7 +95,10 @@ class P2XType2(OffsetKinematics):
         Parameter.of("distance", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
         Parameter.of("flag", "tcp_above", "assembly mode: above instead of below"),
         Parameter.of(
-            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
+            "ratio",
+            "min_type2_margin",
+            "least distance from a type 2 singularity, a number without a unit; 0: off",
+            default=0.001,
         ),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
@@ -136,7 +139,7 @@ class P2XType2(OffsetKinematics):
         lower_a2: A2: lower limit of the axis, both 0: no limit [u]
         upper_a2: A2: upper limit of the axis, both 0: no limit [u]
         tcp_above: assembly mode: above instead of below
-        min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
+        min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
         self._accept(locals())

@@ -114,14 +114,14 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         Parameter.of(
             "angle",
             "lower_a4",
-            "A4: lower limit of the axis, both 0: no limit, but -720 .. 720 with a pitch",
+            "A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
             low=-720.0,
             high=720.0,
         ),
         Parameter.of(
             "angle",
             "upper_a4",
-            "A4: upper limit of the axis, both 0: no limit, but -720 .. 720 with a pitch",
+            "A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
             low=-720.0,
             high=720.0,
         ),
@@ -178,8 +178,8 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         upper_a2: A2: upper limit of the axis, both 0: no limit [deg]
         lower_a3: A3: lower limit of the axis, both 0: no limit [u]
         upper_a3: A3: upper limit of the axis, both 0: no limit [u]
-        lower_a4: A4: lower limit of the axis, both 0: no limit, but -720 .. 720 with a pitch [deg]
-        upper_a4: A4: upper limit of the axis, both 0: no limit, but -720 .. 720 with a pitch [deg]
+        lower_a4: A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]
+        upper_a4: A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]
         check_limits: inverse kinematics tests the limits
         """
         self._accept(locals())

@@ -178,7 +178,10 @@ class TripodLinear(OffsetKinematics):
         Parameter.of("distance", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
         Parameter.of("flag", "tcp_below", "assembly mode: below instead of above"),
         Parameter.of(
-            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
+            "ratio",
+            "min_type2_margin",
+            "least distance from a type 2 singularity, a number without a unit; 0: off",
+            default=0.001,
         ),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
@@ -235,7 +238,7 @@ class TripodLinear(OffsetKinematics):
         lower_a3: A3: lower limit of the axis, both 0: no limit [u]
         upper_a3: A3: upper limit of the axis, both 0: no limit [u]
         tcp_below: assembly mode: below instead of above
-        min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
+        min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
         self._accept(locals())
