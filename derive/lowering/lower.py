@@ -20,17 +20,17 @@ from derive.lowering.writing import written
 
 
 def lowered(
-    programs: Sequence[Program], constants: Collection[str], *, any_turn: bool = False, inverts: bool = True
+    programs: Sequence[Program], constants: Collection[str], *, modulo_turns: bool = False, inverts: bool = True
 ) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
     """The programs, and what they read of constants alone. A program that others call comes before them.
 
-    any_turn: whether an angle may be a turn more or less, unless its value is taken; inverts: whether a division takes
-    longer than several multiplications.
+    modulo_turns: whether an angle may be a turn more or less, unless its value is taken; inverts: whether a division
+    takes longer than several multiplications.
     """
     reader = Reader()
     graph, constant = reader.graph, Constant(constants)
     drafts = [reader.draft(p) for p in programs]
-    if any_turn:
+    if modulo_turns:
         drafts = [changed(draft, Mirrored(graph, _nodes(draft))) for draft in drafts]
     drafts = [_shorter(draft, graph, constant) for draft in drafts]
     if inverts:
@@ -42,7 +42,7 @@ def lowered(
         draft.items[:] = [
             replace(i, statement=calling(i.statement, done)) if isinstance(i, Effect) else i for i in draft.items
         ]
-        done[draft.program.name] = written(draft, names, taken, any_turn=any_turn)
+        done[draft.program.name] = written(draft, names, taken, modulo_turns=modulo_turns)
     return tuple(done.values()), lets
 
 

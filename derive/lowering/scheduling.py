@@ -104,7 +104,7 @@ def _bound_behind(item: Item) -> set[sp.Symbol]:
     return holds & fails
 
 
-def spared(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
+def without_unused(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
     """Without what is bound on a first side for the second sides of later choices that the same condition decides.
 
     It serves a language that runs one side alone: a choice then binds its names on the other side only.

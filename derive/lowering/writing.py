@@ -27,13 +27,13 @@ _WHOLE = count("whole")
 
 
 def written(
-    draft: Draft, constants: Mapping[Node, Named], taken: Iterable[str] = (), *, any_turn: bool = False
+    draft: Draft, constants: Mapping[Node, Named], taken: Iterable[str] = (), *, modulo_turns: bool = False
 ) -> Program:
-    """The program of a draft. constants: what is bound elsewhere; taken: names that are not free; any_turn: see
+    """The program of a draft. constants: what is bound elsewhere; taken: names that are not free; modulo_turns: see
     `lowered`.
     """
     elsewhere = {named.name.name for named in constants.values()}
-    writer = _Writer(draft, dict(constants), Names({*taken, *elsewhere, *_names_in(draft)}), any_turn)
+    writer = _Writer(draft, dict(constants), Names({*taken, *elsewhere, *_names_in(draft)}), modulo_turns)
     body = tuple(writer.statements())
     outputs = tuple(Output(o.name, writer.text(v)) for o, v in zip(draft.program.outputs, draft.outputs, strict=True))
     return with_inputs(replace(draft.program, body=(*body, *writer.last), outputs=outputs))
@@ -50,7 +50,7 @@ class _Writer:
     draft: Draft
     constants: dict[Node, Named]
     free: Names
-    any_turn: bool
+    modulo_turns: bool
     last: list[Statement] = field(default_factory=list)
     """What the outputs alone need."""
 
@@ -202,7 +202,12 @@ class _Writer:
         if node.head is Select:
             condition, *sides = node.parts
             return Select(self.text(condition), *(self.text(Value(side.node, sign * side.sign)) for side in sides))
-        if node.head is Atan2 and self.any_turn and sign < 0 and self.text(node.parts[0]).could_extract_minus_sign():
+        if (
+            node.head is Atan2
+            and self.modulo_turns
+            and sign < 0
+            and self.text(node.parts[0]).could_extract_minus_sign()
+        ):
             return Atan2(self.text(-node.parts[0]), self.text(node.parts[1]))
         whole = node.head(*map(self.text, node.parts))
         return -whole if sign < 0 else whole

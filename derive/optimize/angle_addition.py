@@ -42,18 +42,18 @@ from derive.ir.symbols import (
 from derive.ir.symbols import cosine as cosine_of
 from derive.ir.symbols import sine as sine_of
 from derive.optimize.directions import Pair, lengths_of, products
-from derive.optimize.without_periods import turnless
+from derive.optimize.without_periods import angles_modulo_turns
 
 _Values = Mapping[sp.Symbol, sp.Expr]
 _Signs = Mapping[sp.Symbol, frozenset[sp.Symbol]]
 """By name: the branch signs that it depends on."""
 
 
-def angles_first(program: Program, constants: frozenset[str]) -> Program:
+def with_added_angles(program: Program, constants: frozenset[str]) -> Program:
     """The program with sums of angles before their sines and cosines, where nothing else reads those of the angles."""
     values = {let.name: let.value for let in program.lets()}
     context = _Known(values, constants, _signs(program), lengths_of(program))
-    names = _turnless_directions(program)
+    names = _directions_modulo_turns(program)
     candidates = {pair: _angle(pair, context) for pair in names}
     angles = {pair: angle for pair, angle in candidates.items() if angle is not None}
     sums = {s.pair: s for s in _sums(values, angles)}
@@ -86,7 +86,7 @@ class _Sum:
     is_opposite: bool
 
 
-def _turnless_directions(program: Program) -> dict[Pair, sp.Symbol]:
+def _directions_modulo_turns(program: Program) -> dict[Pair, sp.Symbol]:
     """The names whose arc tangent is taken, and may be a turn more or less, with the name of the angle."""
     nodes = (node for let in program.lets() for node in sp.preorder_traversal(let.value) if isinstance(node, Atan2))
     pairs = [node.args for node in dict.fromkeys(nodes) if all(a.is_Symbol for a in node.args)]
@@ -94,7 +94,7 @@ def _turnless_directions(program: Program) -> dict[Pair, sp.Symbol]:
     for pair in pairs:
         if Atan2(*pair) not in names:
             names[Atan2(*pair)] = taken.fresh(_name_of(pair))
-    free = turnless(replace(program, body=_read_by_name(program, names)))
+    free = angles_modulo_turns(replace(program, body=_read_by_name(program, names)))
     return {(s, c): names[Atan2(s, c)] for s, c in pairs if names[Atan2(s, c)] in free}
 
 

@@ -30,7 +30,7 @@ from derive.ir.tree import If, Item
 from derive.optimize.unroll import Sign, without_words
 
 
-def reused_names(
+def coalesced(
     items: Sequence[Item], wanted: Sequence[sp.Basic], signs: Sequence[Sign]
 ) -> tuple[tuple[Item, ...], Mapping[sp.Symbol, sp.Symbol]]:
     """The statements with shorter names, and what every name that is wanted behind them is called now."""

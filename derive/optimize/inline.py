@@ -59,9 +59,7 @@ def squares_where_read(program: Program) -> Program:
     return with_inputs(replace(program, body=tuple(body), outputs=outputs))
 
 
-def written_where_read(
-    items: Sequence[Item], wanted: Sequence[sp.Basic]
-) -> tuple[tuple[Item, ...], Mapping[sp.Basic, sp.Basic]]:
+def inlined(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[tuple[Item, ...], Mapping[sp.Basic, sp.Basic]]:
     """The statements without such names, and what stands for them in what is wanted."""
     on_a_path, everywhere, bound = _read(items), Counter[sp.Basic](), Counter(_bound(items))
     for value in wanted:

@@ -60,7 +60,7 @@ class _Direction:
         return value, known
 
 
-def aimed(program: Program) -> Program:
+def with_known_projections(program: Program) -> Program:
     """The program with such coordinates taken from what their directions were made of."""
     body, taken = list(program.body), Names.of(program)
     for direction in _directions(program):

@@ -37,7 +37,7 @@ _Entries = tuple[tuple[sp.Expr, ...], ...]
 """By rows: what the entries of a rotation are called, or what they are."""
 
 
-def shorter_columns(program: Program) -> Program:
+def with_rotation_identities(program: Program) -> Program:
     """The program with such products as what they are, where the direction is well known."""
     values = {let.name: let.value for let in program.lets()}
     rotations = list(_rotations(values))

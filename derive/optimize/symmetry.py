@@ -35,12 +35,12 @@ from derive.ir.symbols import (
     symbols_of,
 )
 from derive.ir.verify import verify
-from derive.optimize.without_periods import turnless
+from derive.optimize.without_periods import angles_modulo_turns
 
 
-def with_twins(program: Program) -> Program:
+def with_mirrored_branches(program: Program) -> Program:
     """The program with values taken from their twins."""
-    finder = _Finder(turnless(program))
+    finder = _Finder(angles_modulo_turns(program))
     body = tuple(found for s in program.body for found in finder.seen(s))
     outputs = tuple(Output(o.name, o.value.xreplace(finder.negatives)) for o in program.outputs)
     return verify(replace(program, body=body, outputs=outputs))
@@ -48,7 +48,7 @@ def with_twins(program: Program) -> Program:
 
 @dataclass
 class _Finder:
-    turnless: frozenset[sp.Symbol]
+    angles_modulo_turns: frozenset[sp.Symbol]
     """Angles that may be a turn more or less."""
     values: dict[sp.Expr, sp.Symbol] = field(default_factory=dict)
     """Who has a value."""
@@ -67,7 +67,7 @@ class _Finder:
         statement = rewritten(statement, lambda e: e.xreplace(self.negatives))
         if not isinstance(statement, Let):
             return (statement,)
-        mirrored = self._mirrored(statement.value) if statement.name in self.turnless else None
+        mirrored = self._mirrored(statement.value) if statement.name in self.angles_modulo_turns else None
         if mirrored is not None:
             self.negatives[statement.name] = mirrored
             return ()

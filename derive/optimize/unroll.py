@@ -40,7 +40,6 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
-    called,
     count,
     is_condition,
     real,
@@ -107,14 +106,6 @@ def unroll(program: Program, signs: Sequence[Sign]) -> Program:
         values = unroller.values(choice)
         outputs += [Output(suffixed(o.name, signs, choice), o.value.xreplace(values)) for o in program.outputs]
     return assemble(program.name, unroller.body, outputs)
-
-
-def with_limits(branch: Program, limits: Program) -> Program:
-    """One branch, then its limits. What the limits bind gets names of its own."""
-    own = {name: called(f"limit_{name.name}", name) for name in limits.bound()}
-    values = {**own, **{real(o.name): o.value for o in branch.outputs}}
-    checks = [rewritten(renamed(s, lambda n: own[n]), lambda e: e.xreplace(values)) for s in limits.body]
-    return assemble(branch.name, (*branch.body, *checks), branch.outputs)
 
 
 def specialised(program: Program, values: Mapping[sp.Symbol, sp.Expr]) -> Program:

@@ -33,7 +33,7 @@ from derive.ir.typed import check_statement
 from derive.ir.types import IllTypedError, Type, angles_in, angles_of
 
 
-def turnless(program: Program) -> frozenset[sp.Symbol]:
+def angles_modulo_turns(program: Program) -> frozenset[sp.Symbol]:
     """The names of angles whose turn nobody asks for."""
     values = [*(e for s in program.body for e in expressions(s)), *(o.value for o in program.outputs)]
     wrapped = {s for value in values for node in value.atoms(Wrap) for s in symbols_of(node)}
@@ -41,7 +41,7 @@ def turnless(program: Program) -> frozenset[sp.Symbol]:
     return frozenset(n for n, kind in angles_in(program.body).items() if kind is Type.ANGLE) - wrapped - answered
 
 
-def any_turn(program: Program) -> Program:
+def without_chosen_turns(program: Program) -> Program:
     """The program for inputs that are known to be good: no look at them, and any turn of an axis
     that is only an angle.
     """

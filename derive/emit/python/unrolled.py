@@ -35,15 +35,15 @@ from derive.ir.symbols import (
 from derive.ir.tree import Item
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.lower import lowered
-from derive.lowering.scheduling import scheduled, spared
-from derive.optimize.angle_addition import angles_first
-from derive.optimize.coalesce import reused_names
+from derive.lowering.scheduling import scheduled, without_unused
+from derive.optimize.angle_addition import with_added_angles
+from derive.optimize.coalesce import coalesced
 from derive.optimize.guards import guarded
-from derive.optimize.inline import squares_where_read, written_where_read
-from derive.optimize.known_projection import aimed
+from derive.optimize.inline import inlined, squares_where_read
+from derive.optimize.known_projection import with_known_projections
 from derive.optimize.negation import without_minus
-from derive.optimize.rotation_identities import shorter_columns
-from derive.optimize.symmetry import with_twins
+from derive.optimize.rotation_identities import with_rotation_identities
+from derive.optimize.symmetry import with_mirrored_branches
 from derive.optimize.unroll import (
     REFUSAL,
     Sign,
@@ -53,7 +53,7 @@ from derive.optimize.unroll import (
     suffixed,
     unroll,
 )
-from derive.optimize.without_periods import any_turn
+from derive.optimize.without_periods import without_chosen_turns
 from derive.solver.folds import far_from_folds
 
 NO_OFFSETS = "no_offsets"
@@ -116,18 +116,18 @@ def signs(kin: Kinematics) -> tuple[Sign, ...]:
 
 def branches(kin: Kinematics, one: Program) -> Program:
     """All branches, each axis in any turn. one: a single branch for input that is trusted."""
-    return any_turn(with_twins(unroll(one, signs(kin))))
+    return without_chosen_turns(with_mirrored_branches(unroll(one, signs(kin))))
 
 
 def _nearest(kin: Kinematics, program: Program) -> Program:
     """No turn is commanded; on plain numbers a sine costs little."""
     given = specialised(program, {j.turn: sp.Integer(0) for j in kin.period_joints})
-    return without_minus(angles_first(aimed(given), _constants(kin)))
+    return without_minus(with_added_angles(with_known_projections(given), _constants(kin)))
 
 
 def _trusted(kin: Kinematics) -> Program:
     """One branch for input that is trusted, before its turns are let go."""
-    return shorter_columns(_nearest(kin, kin.branch))
+    return with_rotation_identities(_nearest(kin, kin.branch))
 
 
 def _constants(kin: Kinematics) -> frozenset[str]:
@@ -171,7 +171,7 @@ def trusted_branch(kin: Kinematics) -> Function:
 def _shorter(kin: Kinematics, methods: Sequence[Method]) -> tuple[list[Method], tuple[Let, ...]]:
     """The methods with fewer operations, and what they read that is computed from constants."""
     named = [replace(m.program, name=m.name) for m in methods]
-    programs, parts = lowered(named, _constants(kin), any_turn=True, inverts=False)
+    programs, parts = lowered(named, _constants(kin), modulo_turns=True, inverts=False)
     return [replace(m, program=squares_where_read(p)) for m, p in zip(methods, programs, strict=True)], parts
 
 
@@ -186,7 +186,14 @@ def _methods(kin: Kinematics, one: Program) -> tuple[Method, Method]:
 def _single(kin: Kinematics, one: Program) -> Method:
     sign_values = next(a for a in branch(kin).arguments if a.name == "signs")
     text = "One branch, the axes in some turn, of input that is trusted."
-    return Method("branch", text, any_turn(with_twins(one)), (_FRAME, sign_values, _optional(kin)), "Reals | None", ())
+    return Method(
+        "branch",
+        text,
+        without_chosen_turns(with_mirrored_branches(one)),
+        (_FRAME, sign_values, _optional(kin)),
+        "Reals | None",
+        (),
+    )
 
 
 def _optional(kin: Kinematics) -> Argument:
@@ -210,7 +217,7 @@ def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Functi
     count = 2 ** len(kin.branches)
     refusals = _refusals(lambda status: repeated(f"{_REFUSED}[{status_of(status)}]", count))
     written = _Written.of(method, known)
-    items, shorter = reused_names(written.items, list(written.values.values()), signs(kin))
+    items, shorter = coalesced(written.items, list(written.values.values()), signs(kin))
     values = {name: value.xreplace(dict(shorter)) for name, value in written.values.items()}
     return written.function([*item_lines(items, refusals, _DIRECTIONS), f"return {_slots(kin, values)}"])
 
@@ -245,8 +252,8 @@ class _Written:
         """known: what the constants are that it reads."""
         method = replace(method, program=without_conversions(method.program))
         wanted = [o.value for o in method.program.outputs]
-        items = spared(scheduled(guarded(method.program.body, known), wanted), wanted)
-        items, values = written_where_read(items, wanted)
+        items = without_unused(scheduled(guarded(method.program.body, known), wanted), wanted)
+        items, values = inlined(items, wanted)
         return cls(method, items, {o.name: o.value.xreplace(dict(values)) for o in method.program.outputs})
 
     def function(self, body: list[str]) -> Function:

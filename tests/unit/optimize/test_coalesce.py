@@ -19,10 +19,10 @@ from derive.ir.symbols import (
     real,
 )
 from derive.ir.tree import If
-from derive.lowering.scheduling import scheduled, spared
-from derive.optimize.coalesce import reused_names
+from derive.lowering.scheduling import scheduled, without_unused
+from derive.optimize.coalesce import coalesced
 from derive.optimize.unroll import Sign, unroll, without_words
-from tests.unit.optimize.test_twins import values
+from tests.unit.optimize.test_symmetry import values
 
 ARM, ELBOW = Sign(real("sigma_arm"), ("front", "back")), Sign(real("sigma_elbow"), ("down", "up"))
 SIGNS = (ARM, ELBOW)
@@ -52,7 +52,7 @@ def test_a_branch_uses_the_names_of_the_one_before() -> None:
     body = (Let(P, Y * ARM.symbol + Root(X)), Let(Q, Root(P) + ELBOW.symbol), Let(R, Root(Q) + P))
     program = unrolled(*body, outputs={"o": R})
     wanted = [o.value for o in program.outputs]
-    items, names = reused_names(scheduled(program.body, wanted), wanted, SIGNS)
+    items, names = coalesced(scheduled(program.body, wanted), wanted, SIGNS)
     bound = [item.name.name for item in items if isinstance(item, Let)]
     assert bound == ["p", "q", "r_front_down", "q", "r_front_up", "p", "q", "r_back_down", "q", "r_back_up"]
     assert [names[v].name for v in sorted(names, key=str) if v.name.startswith("r_")] == [
@@ -64,7 +64,7 @@ def test_what_is_needed_at_the_same_time_keeps_its_words() -> None:
     body = (Let(P, Root(X) + ELBOW.symbol), Let(Q, P * ARM.symbol))
     program = unrolled(*body, outputs={"o": Q + P})
     wanted = [o.value for o in program.outputs]
-    _, names = reused_names(scheduled(program.body, wanted), wanted, SIGNS)
+    _, names = coalesced(scheduled(program.body, wanted), wanted, SIGNS)
     assert {names[n].name for n in names if n.name.startswith("p_")} == {"p_down", "p_up"}
 
 
@@ -83,7 +83,7 @@ def test_what_only_later_second_sides_read_is_not_bound_on_the_first() -> None:
         Let(B, Select(regular, A + 1, Root(Q))),
         Let(C, Select(regular, A + 2, Root(Q) + Q)),
     ]
-    first, _, second = spared(scheduled(body, [A, B, C]), [A, B, C])
+    first, _, second = without_unused(scheduled(body, [A, B, C]), [A, B, C])
     assert isinstance(first, If) and isinstance(second, If)
     assert [let.name for let in first.holds if isinstance(let, Let)] == [P]
     assert {let.name for let in first.fails if isinstance(let, Let)} == {P, Q}

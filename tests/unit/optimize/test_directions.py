@@ -27,12 +27,12 @@ from derive.ir.symbols import (
     real,
 )
 from derive.ir.verify import BrokenProgram
-from derive.optimize.angle_addition import angles_first
+from derive.optimize.angle_addition import with_added_angles
 from derive.optimize.directions import plain_directions
 from derive.optimize.negation import without_minus
 from derive.optimize.simplify import shorter
-from derive.optimize.without_periods import turnless
-from tests.unit.optimize.test_twins import same, values
+from derive.optimize.without_periods import angles_modulo_turns
+from tests.unit.optimize.test_symmetry import same, values
 
 C1, S1, C2, S2, C3, S3, C12, S12, C123, S123 = (
     real(f"{f}_{q}") for q in ("q1", "q2", "q3", "q12", "q123") for f in ("cos", "sin")
@@ -179,15 +179,15 @@ def test_angles_first_where_nothing_reads_sines_but_the_sum() -> None:
         Let(C3, sp.cos(X)), Let(S3, sp.sin(X)), Let(C2, A * C3 - B * S3), Let(S2, A * S3 + B * C3), *SUM,
     )  # fmt: skip
     program = of(*lets, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), outputs=(AXIS1, AXIS2, C12, S12))
-    found = values(angles_first(program, frozenset("ab")))
+    found = values(with_added_angles(program, frozenset("ab")))
     assert found["cos_q12"] == sp.cos(real("angle_q12")) and found["angle_q12"] == real("angle_q1") + real("angle_q2")
     assert isinstance(found["angle_q1"], Select) and found["angle_q1"].args[2] == T
     assert found["angle_q2"] == real("angle_of_a") + real("angle_of_q3") and found["angle_of_a"] == Atan2(B, A)
     assert not {"along", "across", "l", "cos_q1", "sin_q2"} & set(found)
     turn = (Let(A, sp.cos(E)), Let(B, sp.sin(E)))  # of length one
-    same(*(assemble("p", (*turn, *p.body), p.outputs) for p in (program, angles_first(program, frozenset("ab")))))
+    same(*(assemble("p", (*turn, *p.body), p.outputs) for p in (program, with_added_angles(program, frozenset("ab")))))
     other = of(*lets, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), outputs=(AXIS1, AXIS2, C12, S12, C2))
-    assert "cos_q2" in values(angles_first(other, frozenset("ab")))
+    assert "cos_q2" in values(with_added_angles(other, frozenset("ab")))
 
 
 def test_a_sum_of_mere_directions_is_no_cosine() -> None:
@@ -197,29 +197,29 @@ def test_a_sum_of_mere_directions_is_no_cosine() -> None:
     (s1, c1), (s2, c2) = first, second
     total = (Let(C12, c1 * c2 - s1 * s2), Let(S12, s1 * c2 + c1 * s2))
     program = of(*turned, *total, axis(AXIS1, *first), axis(AXIS2, *second), outputs=(AXIS1, AXIS2, C12, S12))
-    assert values(angles_first(program, frozenset("ab")))["cos_q12"] == c1 * c2 - s1 * s2
+    assert values(with_added_angles(program, frozenset("ab")))["cos_q12"] == c1 * c2 - s1 * s2
 
 
 def test_an_angle_whose_turns_count_is_no_sum() -> None:
     lets = (Let(C1, X * U + Y * V), Let(S1, Y * U - X * V))
     counted = of(*lets, Let(AXIS1, Wrap(Atan2(S1, C1)) / DEGREE), outputs=(AXIS1,))
-    assert angles_first(counted, frozenset()) == counted
+    assert with_added_angles(counted, frozenset()) == counted
     nearest = of(*lets, axis(AXIS1, S1, C1), outputs=(AXIS1,))
-    assert len(values(angles_first(nearest, frozenset()))["angle_q1"].free_symbols) == 2
-    same(nearest, angles_first(nearest, frozenset()))
+    assert len(values(with_added_angles(nearest, frozenset()))["angle_q1"].free_symbols) == 2
+    same(nearest, with_added_angles(nearest, frozenset()))
 
 
 def test_turns_count_wherever_more_than_a_sine_or_the_nearest_turn_is_taken() -> None:
     angle, other = real("angle"), real("other")
     bound = (Let(angle, Atan2(X, Y)), Let(other, angle - T))
-    assert turnless(of(*bound, Let(R, sp.sin(other + X)), outputs=(R,))) == {angle, other}
-    assert turnless(of(*bound, Let(R, NearestPeriod(A - other / DEGREE, N)), outputs=(R,))) == {angle, other}
-    assert turnless(of(*bound, Let(R, Wrap(other)), outputs=(R,))) == {angle}
+    assert angles_modulo_turns(of(*bound, Let(R, sp.sin(other + X)), outputs=(R,))) == {angle, other}
+    assert angles_modulo_turns(of(*bound, Let(R, NearestPeriod(A - other / DEGREE, N)), outputs=(R,))) == {angle, other}
+    assert angles_modulo_turns(of(*bound, Let(R, Wrap(other)), outputs=(R,))) == {angle}
     counted = (sp.sin(other / 2), NearestPeriod(other * X, N), NearestPeriod(X, other), Select(sp.Gt(other, 0), X, Y))
     for value in counted:
         with pytest.raises(BrokenProgram):
             of(*bound, Let(R, value), outputs=(R,))
-    assert turnless(of(*bound, outputs=(other,))) == {angle}
+    assert angles_modulo_turns(of(*bound, outputs=(other,))) == {angle}
 
 
 def test_the_opposite_direction_is_half_a_turn_away() -> None:
@@ -246,7 +246,7 @@ def test_a_divisor_that_can_be_negative_turns_the_angle() -> None:
         Let(S1, Select(sp.Gt(R**2, 1), (U * Y + V * X) / R, sp.sin(T))),
     )
     program = of(*lets, axis(AXIS1, S1, C1), outputs=(AXIS1,))
-    assert angles_first(program, frozenset()) == program
+    assert with_added_angles(program, frozenset()) == program
 
 
 def test_a_quotient_that_reads_another_keeps_its_division() -> None:
@@ -267,7 +267,7 @@ def test_half_an_angle_counts_turns_though_its_sines_cancel() -> None:
     halves = {half: sp.cos(half / 2) - sp.sin(half / 2) for half in (angle, Wrap(angle))}
     with pytest.raises(BrokenProgram):
         of(Let(angle, Atan2(X, Y)), Let(R, halves[angle]), outputs=(R,))
-    assert turnless(of(Let(angle, Atan2(X, Y)), Let(R, halves[Wrap(angle)]), outputs=(R,))) == set()
+    assert angles_modulo_turns(of(Let(angle, Atan2(X, Y)), Let(R, halves[Wrap(angle)]), outputs=(R,))) == set()
 
 
 def test_an_axis_without_a_turn_of_its_own_is_not_turned_round() -> None:

@@ -31,7 +31,7 @@ def _scaled(length: sp.Expr, condition: sp.Basic) -> Program:
 
 def mirrored(program: Program) -> Program:
     """The program as a graph, of whose angles the turn is free."""
-    (changed,), _ = lowered([program], (), any_turn=True, inverts=False)
+    (changed,), _ = lowered([program], (), modulo_turns=True, inverts=False)
     return changed
 
 

@@ -11,6 +11,7 @@ import sympy as sp
 
 from derive.description.catalogue import MECHANISMS, load
 from derive.ir.interpret import run
+from derive.ir.passes import assemble, renamed
 from derive.ir.primitives import (
     NearestPeriod,
     Root,
@@ -24,8 +25,10 @@ from derive.ir.program import (
     Require,
     Solve,
     Status,
+    rewritten,
 )
 from derive.ir.symbols import (
+    called,
     count,
     real,
 )
@@ -39,9 +42,8 @@ from derive.optimize.unroll import (
     specialised,
     suffixed,
     unroll,
-    with_limits,
 )
-from derive.optimize.without_periods import any_turn
+from derive.optimize.without_periods import without_chosen_turns
 from tests.mechanisms import kinematics_of
 
 A, B, C, X, Y = (real(n) for n in "abcxy")
@@ -147,7 +149,7 @@ def test_any_turn_knows_no_periods_and_trusts_its_input() -> None:
         Require(sp.Gt(X, 0), Status.UNREACHABLE),
         Let(A, NearestPeriod(X + 1, Y)),
     )
-    found = any_turn(program(*body, outputs={"o": A}))
+    found = without_chosen_turns(program(*body, outputs={"o": A}))
     assert lets(found) == {"a": X + 1}
     assert [r.otherwise for r in found.requires()] == [Status.UNREACHABLE]
 
@@ -174,6 +176,14 @@ def check_equal(looped: Program, unrolled: Program, signs: tuple[Sign, ...], val
 @cache
 def kinematics(name: str) -> Kinematics:
     return kinematics_of(load(MECHANISMS / f"{name}.py"))
+
+
+def with_limits(branch: Program, limits: Program) -> Program:
+    """One branch, then its limits. What the limits bind gets names of its own."""
+    own = {name: called(f"limit_{name.name}", name) for name in limits.bound()}
+    values = {**own, **{real(o.name): o.value for o in branch.outputs}}
+    checks = [rewritten(renamed(s, lambda n: own[n]), lambda e: e.xreplace(values)) for s in limits.body]
+    return assemble(branch.name, (*branch.body, *checks), branch.outputs)
 
 
 @pytest.mark.parametrize("name", SHAPES)

@@ -27,7 +27,7 @@ from derive.ir.symbols import (
 )
 from derive.ir.tree import If
 from derive.lowering.scheduling import scheduled
-from derive.optimize.rotation_identities import shorter_columns
+from derive.optimize.rotation_identities import with_rotation_identities
 
 R = sp.Matrix(3, 3, ROTATION_ENTRIES)
 T, U, MADE_X, MADE_Y = (real(n) for n in ("t", "u", "made_x", "made_y"))
@@ -66,7 +66,7 @@ def rotations(count: int) -> dict[str, np.ndarray]:
 @pytest.mark.parametrize("row", range(3))
 def test_the_third_column_takes_its_place(row: int, columns: tuple[int, int], sign: int) -> None:
     program = crossed(row, *columns, sign)
-    found = shorter_columns(program)
+    found = with_rotation_identities(program)
     (value,) = (let.value for let in found.lets() if let.name == MADE_Y)
     assert isinstance(value, Select) and value.args[0] == sp.Gt(RADIUS, KNOWN_ANGLE)
     assert not value.args[1].free_symbols & {DX, DY} and value.args[2].free_symbols >= {DX, DY}
@@ -83,7 +83,7 @@ def test_what_is_no_such_product_is_left_alone() -> None:
     for other in (dx - dy, dx + 2 * dy, dx + dy + R[0, 0], dx * R[1, 1], dx):
         body = [Let(MADE_Y, other) if isinstance(s, Let) and s.name == MADE_Y else s for s in program.body]
         changed = assemble("p", body, program.outputs)
-        assert shorter_columns(changed) == changed
+        assert with_rotation_identities(changed) == changed
 
 
 def test_what_follows_from_a_condition_is_decided_with_it() -> None:

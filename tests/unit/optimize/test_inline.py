@@ -20,14 +20,14 @@ from derive.ir.symbols import (
     real,
 )
 from derive.ir.tree import If
-from derive.optimize.inline import LONGEST, Grouped, written_where_read
+from derive.optimize.inline import LONGEST, Grouped, inlined
 
 A, B, C, D, E, F, R, X, Y, Z = (real(n) for n in "abcdefrxyz")
 REGULAR = sp.Gt(R, 1)
 
 
 def test_a_chain_becomes_one_expression() -> None:
-    items, values = written_where_read([Let(A, X * Y), Let(B, X + A), Let(C, Atan2(B, Z)), Let(D, C * R)], [D])
+    items, values = inlined([Let(A, X * Y), Let(B, X + A), Let(C, Atan2(B, Z)), Let(D, C * R)], [D])
     assert items == ()
     assert ScalarPrinter().print(values[D]) == "arctan2(x + x*y + 0.0, z + 0.0)*r"
 
@@ -35,7 +35,7 @@ def test_a_chain_becomes_one_expression() -> None:
 def test_the_order_of_operations_stays() -> None:
     """SymPy would make a cancelled sum and a product of three of these."""
     body = [Let(A, X - Y), Let(B, A + Y), Let(D, X * Y), Let(E, D * Z), Let(F, E + B)]
-    items, _ = written_where_read(body, [F, F * B, B])
+    items, _ = inlined(body, [F, F * B, B])
     text = {i.name.name: ScalarPrinter().print(i.value) for i in items if isinstance(i, Let)}
     assert text == {"b": "y + (x - y)", "f": "b + (x*y)*z"}
 
@@ -43,25 +43,25 @@ def test_the_order_of_operations_stays() -> None:
 def test_what_is_read_twice_keeps_its_name() -> None:
     for value in (A + A * X, A**2, Root(A), Select(sp.Gt(A, 0), X, Y), NearestPeriod(X, A)):
         body = (Let(A, X * Y), Let(B, value))
-        assert written_where_read(body, [B, B])[0] == body
+        assert inlined(body, [B, B])[0] == body
 
 
 def test_a_long_value_and_one_with_a_note_keep_theirs() -> None:
     long = sp.Add(*[real(f"x{i}") for i in range(LONGEST + 1)])
     body = [Let(A, long), Let(B, X + Y, "what it is"), Let(C, A * B), Let(D, C + C * X)]
-    items, _ = written_where_read(body, [D])
+    items, _ = inlined(body, [D])
     assert [i.name for i in items if isinstance(i, Let)] == [A, B, C]
 
 
 def test_a_choice_a_root_and_a_turn_keep_theirs() -> None:
     for value in (Select(REGULAR, X, Y), Root(X), NearestPeriod(X, Y)):
         body = (Let(A, value), Let(B, A + 1))
-        assert written_where_read(body, [B, B])[0] == body
+        assert inlined(body, [B, B])[0] == body
 
 
 def test_read_once_on_each_side_of_a_choice() -> None:
     choice = If(REGULAR, (Let(C, A + 1),), (Let(B, A * 2), Let(C, B - 1)), (C,))
-    items, _ = written_where_read([Let(A, X * Y), choice], [C])
+    items, _ = inlined([Let(A, X * Y), choice], [C])
     (arms,) = items
     assert isinstance(arms, If)
     assert arms.holds == (Let(C, Grouped(X * Y) + 1),)
@@ -71,16 +71,16 @@ def test_read_once_on_each_side_of_a_choice() -> None:
 def test_read_behind_a_choice_or_by_its_condition_too() -> None:
     choice = If(sp.Gt(B, 1), (Let(C, A + 1),), (Let(C, A - 1),), (C,))
     body = (Let(A, X * Y), Let(B, X + Y), choice, Let(D, A + C))
-    items, _ = written_where_read(body, [D])
+    items, _ = inlined(body, [D])
     assert items == body[:3]
 
 
 def test_what_a_choice_binds_keeps_its_name() -> None:
     choice = If(REGULAR, (Let(C, X),), (Let(C, Y + X),), (C,))
-    assert written_where_read([choice, Let(D, C + 1)], [D])[0] == (choice,)
+    assert inlined([choice, Let(D, C + 1)], [D])[0] == (choice,)
 
 
 def test_a_condition_may_be_between() -> None:
     refused = Require(sp.Gt(X, 0), Status.UNREACHABLE)
-    items, values = written_where_read([Let(A, X * Y), refused], [A])
+    items, values = inlined([Let(A, X * Y), refused], [A])
     assert items == (refused,) and values[A] == Grouped(X * Y)

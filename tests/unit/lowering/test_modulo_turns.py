@@ -12,7 +12,7 @@ from derive.ir.symbols import count, real
 from derive.lowering.lower import lowered
 from derive.optimize.unroll import Sign, unroll
 from derive.report.cost import cost_of
-from tests.unit.optimize.test_twins import same, values
+from tests.unit.optimize.test_symmetry import same, values
 
 A, B, C, L, N, P, Q, R, S, X, Y, ANGLE, AXIS = map(
     real, ("a", "b", "c", "l", "n", "p", "q", "r", "s", "x", "y", "angle", "axis")
@@ -25,7 +25,7 @@ def of(*lets: Let, outputs: tuple[sp.Symbol, ...]) -> Program:
 
 
 def shorter(program: Program, constants: str = "") -> Program:
-    (found,), _ = lowered([program], tuple(constants), any_turn=True, inverts=False)
+    (found,), _ = lowered([program], tuple(constants), modulo_turns=True, inverts=False)
     return found
 
 

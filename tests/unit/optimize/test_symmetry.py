@@ -23,7 +23,7 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     real,
 )
-from derive.optimize.symmetry import with_twins
+from derive.optimize.symmetry import with_mirrored_branches
 
 A, B, C, D, N, R, T, X, Y = (real(n) for n in "abcdnrtxy")
 C_DOWN, C_UP, S_DOWN, S_UP, M_DOWN, M_UP = (real(n) for n in ("c_down", "c_up", "s_down", "s_up", "m_down", "m_up"))
@@ -59,16 +59,16 @@ def same(first: Program, second: Program) -> None:
 
 
 def test_a_value_is_the_negative_of_its_twin_where_that_is_so() -> None:
-    found = values(with_twins(wrist()))
+    found = values(with_mirrored_branches(wrist()))
     assert found["m_up"] == Select(REGULAR, -M_DOWN, A * C_UP + B * S_UP)
 
 
 def test_an_angle_is_half_a_turn_from_its_twin() -> None:
-    found = values(with_twins(wrist()))
+    found = values(with_mirrored_branches(wrist()))
     direction, other = real("direction_of_axis_up"), D + Atan2(M_UP, C_UP) / DEGREE
     assert found[direction.name] == Select(REGULAR, AXIS_DOWN + 180, other)
     assert found["axis_up"] == NearestPeriod(direction, N)
-    same(wrist(), with_twins(wrist()))
+    same(wrist(), with_mirrored_branches(wrist()))
 
 
 def test_an_angle_mirrored_at_its_shift_needs_no_condition() -> None:
@@ -77,8 +77,8 @@ def test_an_angle_mirrored_at_its_shift_needs_no_condition() -> None:
         Let(AXIS_UP, NearestPeriod(D + Atan2(-X, Y) / DEGREE, N)),
     ]
     program = assemble("mirrored", lets, [Output("down", AXIS_DOWN), Output("up", AXIS_UP)])
-    assert values(with_twins(program))["axis_up"] == NearestPeriod(2 * D - AXIS_DOWN, N)
-    same(program, with_twins(program))
+    assert values(with_mirrored_branches(program))["axis_up"] == NearestPeriod(2 * D - AXIS_DOWN, N)
+    same(program, with_mirrored_branches(program))
 
 
 def test_another_value_on_the_other_side_is_no_twin() -> None:
@@ -90,11 +90,11 @@ def test_another_value_on_the_other_side_is_no_twin() -> None:
         Let(M_UP, A * C_UP),
     ]
     program = assemble("other", lets, [Output("down", M_DOWN + 1), Output("up", M_UP + 1)])
-    assert with_twins(program) == program
+    assert with_mirrored_branches(program) == program
 
 
 def test_an_angle_that_is_no_turn_is_left_alone() -> None:
     """Its value counts, not its direction: half a turn more would be another value."""
     lets = [Let(AXIS_DOWN, Atan2(X, Y) / DEGREE), Let(AXIS_UP, Atan2(-X, -Y) / DEGREE)]
     program = assemble("single", lets, [Output("down", AXIS_DOWN + 1), Output("up", AXIS_UP + 1)])
-    assert with_twins(program) == program
+    assert with_mirrored_branches(program) == program
