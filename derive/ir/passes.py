@@ -1,8 +1,8 @@
 """Passes over programs: fold aliases, order statements by use, hoist values that depend on parameters alone.
 
-fold    Let(cos_s, cos_heading); … cos_s …                   →  … cos_heading … order   a Let stands just before its
-first use; a Let that nothing reads disappears, and so does an unread result of a call;
-        a value that only the amount of a reason reads is written out in it
+fold    Let(cos_s, cos_heading); … cos_s …                   →  … cos_heading …
+order   a Let stands just before its first use; a Let that nothing reads disappears, and so does an unread result of a
+        call; a value that only the amount of a reason reads is written out in it
 hoist   Let(scale_a2, 2*link_length_1*link_length_2)         →  computed once, by `setup`
 """
 

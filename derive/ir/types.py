@@ -1,9 +1,10 @@
 """The types of the intermediate representation, and the operations on each.
 
-    Real     a number Bool     a condition, and a name that is one: `flag` Int      an integer: `count`. It is compared
-    with, added to and multiplied by integers; `ToReal` makes it a Real Angle    a Real modulo a turn, in radians. It
-    comes from `Atan2` and `NearestOnArc`. It has sums, integer multiples, choices,
-             a sine and a cosine. `Wrap` makes it a Real; every other use is refused
+    Real     a number
+    Bool     a condition, and a name that is one: `flag`
+    Int      an integer: `count`. It is compared with, added to and multiplied by integers; `ToReal` makes it a Real
+    Angle    a Real modulo a turn, in radians. It comes from `Atan2` and `NearestOnArc`. It has sums, integer multiples,
+             choices, a sine and a cosine. `Wrap` makes it a Real; every other use is refused
     Heading  an Angle in degrees, the unit of axes: `NearestPeriod` makes it a Real
 
 A literal integer is an Int or a Real, as its neighbours are. A flag and a count have their types by their names; a name

@@ -2,12 +2,12 @@
 
 Names that programs share:
 
-    link_length_1, offset_a1, ...   parameters and constants: outputs of `setup`, free in all other programs axis_a1,
-    ref_a1                 axis value and its reference (degrees or user's length unit) turn_a1
-    commanded period number, an integer; 0 = none is commanded sigma_elbow                     branch sign: +1 is byte
-    1, -1 is byte 2 x, y, z, r11 … r33              frame: position, rotation by rows (columns are the axes of the
-    frame). A caller's rotation
-                                    has passed `rotation_program` before: no other program checks it
+    link_length_1, offset_a1, ...   parameters and constants: outputs of `setup`, free in all other programs
+    axis_a1, ref_a1                 axis value and its reference (degrees or user's length unit)
+    turn_a1                         commanded period number, an integer; 0 = none is commanded
+    sigma_elbow                     branch sign: +1 is byte 1, -1 is byte 2
+    x, y, z, r11 … r33              frame: position, rotation by rows (columns are the axes of the frame). A caller's
+                                    rotation has passed `rotation_program` before: no other program checks it
     point_x, point_y, point_z       the point off the flange (the tool offset), in flange coordinates
 """
 
@@ -75,41 +75,42 @@ class Kinematics:
     """All programs of one mechanism.
 
     setup            parameters (all of `parameters`, flags Boolean, signs integers) → every constant that other
-    programs read.
-                     Its conditions are what Initialize refuses; all carry NOT_INITIALIZED.
-                     Among its outputs per axis: `unlimited_a1` (a flag), `lower_a1`, `upper_a1` (effective limits as
+                     programs read. Its conditions are what Initialize refuses; all carry NOT_INITIALIZED. Among its
+                     outputs per axis: `unlimited_a1` (a flag), `lower_a1`, `upper_a1` (effective limits as
                      GetAxisProperties reports them), and `check_limits` (a flag).
     setup_less_windows   as setup, without `lowest_a1` `highest_a1` `single_a1` `mid_a1` of the axes: where drives hand
-    over
-                     limits of their own, `windows.limits_of_axis` computes these; None where no axis has several turns
-    forward          axis_* → x y z r11…r33, and `branch_<name>` per branch: the signed margin, positive = byte 1,
-                     at most 1e-11 in size = byte 3 (the branches coincide)
+                         over limits of their own, `windows.limits_of_axis` computes these; None where no axis has
+                         several turns
+    forward          axis_* → x y z r11…r33, and `branch_<name>` per branch: the signed margin, positive = byte 1, at
+                     most 1e-11 in size = byte 3 (the branches coincide)
     forward_from     axis_*, start_x … start_z, start_r11 … start_r33 → as forward, which is iterative and starts at a
-    home pose;
-                     None where forward kinematics does not iterate
-    orientation      axis_* → r11…r33 branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*:
-    one branch, with periods, without limits search_given     as branch → the arguments of the root scan of that branch;
-    None where there is a closed form from_joints      angles and lengths of the joints, turn_*, ref_* → axis_*; None
-    without a root scan derived_branch   as branch, step by step as it was derived; the optimiser unrolls it limits
-    axis_* → no outputs; its conditions are the axis limits and the limits of coupled quantities singularity      axis_*
-    → one output per margin, by name; singular where one is below 1e-3 in size; and the length of a
-                     margin that has one
-    jacobian         axis_* → j11, j12, … (row, column from 1): rows are `rows`, columns the axes; per radian image
-    no inputs → zero_r11…zero_r33, rot_x rot_y rot_z (base), u_x u_y u_z (flange): R·u = rot projection       r11…r33 →
-    the nearest rotation that the flange can take; None where the task has no rotation offset_branch    x y z of the
-    point, point_*, sigma_*, turn_*, ref_* → axis_*; None without the offset interface offset_configuration   axis_*,
-    point_* → `branch_<name>`; None likewise twist            axis_* → j11 … of all six rows, x y z turn x turn y turn
-    z; None where no coupling needs it, and where
-                     the flange keeps its orientation: then the rows of `jacobian` are all
+                     home pose; None where forward kinematics does not iterate
+    orientation      axis_* → r11…r33
+    branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*: one branch, with periods, without
+                     limits
+    search_given     as branch → the arguments of the root scan of that branch; None where there is a closed form
+    from_joints      angles and lengths of the joints, turn_*, ref_* → axis_*; None without a root scan
+    derived_branch   as branch, step by step as it was derived; the optimiser unrolls it
+    limits           axis_* → no outputs; its conditions are the axis limits and the limits of coupled quantities
+    singularity      axis_* → one output per margin, by name; singular where one is below 1e-3 in size; and the length
+                     of a margin that has one
+    jacobian         axis_* → j11, j12, … (row, column from 1): rows are `rows`, columns the axes; per radian
+    image            no inputs → zero_r11…zero_r33, rot_x rot_y rot_z (base), u_x u_y u_z (flange): R·u = rot
+    projection       r11…r33 → the nearest rotation that the flange can take; None where the task has no rotation
+    offset_branch    x y z of the point, point_*, sigma_*, turn_*, ref_* → axis_*; None without the offset interface
+    offset_configuration   axis_*, point_* → `branch_<name>`; None likewise
+    twist            axis_* → j11 … of all six rows, x y z turn x turn y turn z; None where no coupling needs it, and
+                     where the flange keeps its orientation: then the rows of `jacobian` are all
 
     For an orientation kinematics, None for any other. The flange under it turns about the axis flange_axis_* in the
     frame of the flange, base_axis_* in that of the machine; both are zero for a flange that turns freely:
 
-    compatible       flange_axis_* → no outputs; its conditions say which offsets a flange that turns allows carried
-    flange_axis_*, base_axis_*, r11…r33 commanded (those it reads) → x y z from the flange to the end point total_image
-    r11…r33 one orientation of the flange, flange_axis_*, base_axis_* → the image of both together, as in
-                     `image`, if the flange keeps its orientation or turns about the same axis: it does where `apart`,
-                     the sine of the angle between the two axes, is zero
+    compatible       flange_axis_* → no outputs; its conditions say which offsets a flange that turns allows
+    carried          flange_axis_*, base_axis_*, r11…r33 commanded (those it reads) → x y z from the flange to the end
+                     point
+    total_image      r11…r33 one orientation of the flange, flange_axis_*, base_axis_* → the image of both together, as
+                     in `image`, if the flange keeps its orientation or turns about the same axis: it does where
+                     `apart`, the sine of the angle between the two axes, is zero
     """
 
     mechanism: Mechanism

@@ -2,7 +2,8 @@
 reads.
 
     added      atan2(s1 c2 + c1 s2, c1 c2 - s1 s2)    →  atan2(s1, c1) + atan2(s2, c2), up to a turn, which is chosen
-    afterwards unscaled   atan2(y/r, x/r)                        →  atan2(y, x)
+               afterwards
+    unscaled   atan2(y/r, x/r)                        →  atan2(y, x)
 
 Both also hold for what is made of a direction: a direction that it turns, or that it is multiplied with.
 """

@@ -1,11 +1,11 @@
-"""Twins: a value that another one gives by a change of sign or by half a turn is not computed again.
+"""Mirrored branches: a value that another one gives by a change of sign or by half a turn is not computed again.
 
-    c_up = select(r > tolerance, -x/r, cos(free))     where r > tolerance, c_up is -c_down m_up = a * c_up + b * s_up
-    →  m_up = select(r > tolerance, -m_down, a * c_up + b * s_up) axis_up = turn(atan2(m_up, n_up))              →
-    direction = select(r > tolerance, axis_down + 180, atan2(m_up, n_up))
-                                                      axis_up = turn(direction)
+    c_up = select(r > tolerance, -x/r, cos(free))     where r > tolerance, c_up is -c_down
+    m_up = a * c_up + b * s_up                     →  m_up = select(r > tolerance, -m_down, a * c_up + b * s_up)
+    axis_up = turn(atan2(m_up, n_up))              →  turned = select(r > tolerance, axis_down + 180, atan2(m_up, n_up))
+                                                      axis_up = turn(turned)
 
-So does a wrist that is turned over. It serves a language that computes one side of a choice alone.
+A wrist that is turned over is another case. It serves a language that computes one side of a choice alone.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from derive.optimize.without_periods import angles_modulo_turns
 
 
 def with_mirrored_branches(program: Program) -> Program:
-    """The program with values taken from their twins."""
+    """The program with values taken from those of mirrored branches."""
     finder = _Finder(angles_modulo_turns(program))
     body = tuple(found for s in program.body for found in finder.seen(s))
     outputs = tuple(Output(o.name, o.value.xreplace(finder.negatives)) for o in program.outputs)
@@ -57,10 +57,10 @@ class _Finder:
     sides: dict[tuple[sp.Basic, sp.Expr], tuple[sp.Symbol, sp.Expr]] = field(default_factory=dict)
     """Who has a value where a condition holds, and what else."""
     known: dict[sp.Basic, dict[sp.Basic, sp.Expr]] = field(default_factory=dict)
-    """By condition: what a name is there, in terms of its twin."""
+    """By condition: what a name is there, in terms of another one."""
 
     negatives: dict[sp.Basic, sp.Expr] = field(default_factory=dict)
-    """Angles that are the negative of their twins."""
+    """Angles that are the negative of another one."""
 
     def seen(self, statement: Statement) -> tuple[Statement, ...]:
         """The statement, by its twin where it has one: everywhere, or on the first side of a choice."""
