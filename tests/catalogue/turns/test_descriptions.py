@@ -51,7 +51,7 @@ def test_what_limits_an_axis_that_is_given_no_limits_is_said(mechanism: Mechanis
     """
     limits = {p.name: p for p in machine_parameters(mechanism) if p.name.startswith(("lower_", "upper_"))}
     text, meanings = (
-        text_of(mechanism),
+        " ".join(text_of(mechanism).replace("//", "").split()),  # a long sentence stands on two lines
         {p.name: p.meaning for p in robot_of(mechanism, _nominal(mechanism)).PARAMETERS},
     )
     block = controller(mechanism)[0]
