@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import softkin
 from numpy.random import Generator
-from softkin import KinematicsError, Status
+from softkin import KinematicsError, Status, _batch
 
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
@@ -107,6 +107,29 @@ def test_one_row_may_stand_for_all(machines: tuple[Machine, ...]) -> None:
         assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(one, each, strict=True))
         lists = robot.inverse_batch(positions.tolist(), rotations.tolist(), list(configuration), reference.tolist())
         assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(one, lists, strict=True))
+
+
+def test_one_configuration_may_leave_branches_open_in_many_rows(
+    machines: tuple[Machine, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In several pieces, whose sizes depend on how many branches are open: as where every row has its own."""
+    monkeypatch.setattr(_batch, "EVERY_SLOT", 24)
+    for machine in machines[:2]:
+        rng = np.random.default_rng(5)
+        axes = machine.draw(60, rng)
+        positions, rotations, _, _ = machine.robot.forward_batch(axes)
+        for _ in range(3):
+            one = np.zeros(len(machine.robot.CONFIGURATION), int)
+            one[: machine.robot.BRANCHES] = rng.integers(0, 4, machine.robot.BRANCHES)
+            for configuration in (one, one * 0):
+                rows = np.tile(configuration, (60, 1))
+                rows[0] = 1  # the rows then differ
+                found, statuses = machine.robot.inverse_batch(positions, rotations, configuration, axes)
+                own, expected = machine.robot.inverse_batch(positions, rotations, rows, axes)
+                assert (statuses[1:] == expected[1:]).all()
+                assert np.array_equal(found[1:], own[1:], equal_nan=True)
+                answered = statuses == Status.OK
+                assert answered.all() or configuration.any() or not machine.branches_meet_together
 
 
 def test_inputs_are_left_alone(machines: tuple[Machine, ...]) -> None:

@@ -32,6 +32,7 @@ __all__ = [
     "absolute",
     "advanced",
     "atan2",
+    "both_signs",
     "cos",
     "degrees",
     "elsewhere",
@@ -95,8 +96,7 @@ class Programs(ABC):
         The sign of a branch is an array along an axis of its own. So a value is computed for the signs that it depends
         on, and no others: where one branch decides it, for (2, rows).
         """
-        signs = tuple([_BOTH_SIGNS.reshape(2, *(1,) * (k + 1)) for k in range(branches)])
-        return self.branch(position, rotation, signs, turns, reference)
+        return self.branch(position, rotation, both_signs(branches), turns, reference)
 
     @abstractmethod
     def limits(self, axes: Reals) -> Codes:
@@ -119,6 +119,11 @@ class OrientationPrograms(Programs):
     @abstractmethod
     def carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
         """From a flange that turns to the end point."""
+
+
+def both_signs(branches: int) -> Signs:
+    """Both signs of every branch, each along an axis of its own: that of the first stands next to the rows."""
+    return tuple([_BOTH_SIGNS.reshape(2, *(1,) * (k + 1)) for k in range(branches)])
 
 
 def passed(*given: Values) -> Codes:

@@ -4,15 +4,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from softkin._array import Array, Codes, Programs, Real, Reals, Rotation, StartedPrograms, Vector, reasonable
+from softkin._array import (
+    Array,
+    Codes,
+    Programs,
+    Real,
+    Reals,
+    Rotation,
+    StartedPrograms,
+    Vector,
+    both_signs,
+    reasonable,
+)
 from softkin._array_rotation import made_rotations
 from softkin._columns import Bytes, Configurations, Mask, Poses, Rows, Table, columns, configurations
-from softkin._configuration import AUTOMATIC, COINCIDE, COINCIDENT, EDGE, FIRST, SECOND, slots
+from softkin._configuration import COINCIDE, COINCIDENT, EDGE, FIRST, SECOND
 from softkin._table import numbers, whole_numbers
 from softkin._types import Status
 
@@ -143,15 +155,13 @@ def _limited(robot: Mechanism, programs: Programs, axes: Reals, status: Codes) -
 
 def _chosen(robot: Mechanism, programs: Programs, poses: Poses, chosen: Configurations) -> tuple[Reals, Codes]:
     """The axes of every row on its slot, or on the nearest of those that its bytes leave open."""
-    named = chosen.are_named
-    if named.all():
+    if chosen.are_named.all():
         return _named(robot, programs, poses, chosen)
     axes, status = np.full((len(robot.AXES), poses.count), np.nan), np.full(poses.count, Status.BAD_INPUT, np.uint8)
-    for mask, solve, size in (
-        (named, _named, CHUNK),
-        (chosen.are_bytes & ~named, _nearest, EVERY_SLOT // 2**robot.BRANCHES),
-    ):
-        for rows in _pieces(mask, size):
+    for is_open, mask in chosen.by_open_branches():
+        solve = partial(_nearest, is_open=is_open) if any(is_open) else _named
+        size = min(CHUNK, EVERY_SLOT // 2 ** sum(is_open))
+        for rows in _pieces(np.broadcast_to(mask, poses.count), size):
             found, outcome = solve(robot, programs, poses.at(rows, len(status[rows])), chosen.at(rows))
             status[rows] = outcome
             for i, value in enumerate(found):
@@ -164,16 +174,17 @@ def _named(robot: Mechanism, programs: Programs, poses: Poses, chosen: Configura
     return programs.branch(poses.position, poses.rotation, chosen.signs, chosen.turns, poses.reference)
 
 
-def _nearest(robot: Mechanism, programs: Programs, poses: Poses, chosen: Configurations) -> tuple[Reals, Codes]:
-    """Every row on the nearest of the slots that its bytes leave open."""
-    position, rotation, branches = poses.position, poses.rotation, robot.BRANCHES
-    axes, status = programs.every_branch(position, rotation, branches, chosen.turns, poses.reference)
+def _nearest(
+    robot: Mechanism, programs: Programs, poses: Poses, chosen: Configurations, is_open: tuple[bool, ...]
+) -> tuple[Reals, Codes]:
+    """Every row on the nearest of the slots that its bytes leave open: is_open tells of which branches."""
+    both = both_signs(robot.BRANCHES)
+    signs = tuple([own if is_so else name for is_so, own, name in zip(is_open, both, chosen.signs, strict=True)])
+    axes, status = programs.branch(poses.position, poses.rotation, signs, chosen.turns, poses.reference)
     away = [np.broadcast_to(_distance(axes, poses.reference, c.axes), status.shape) for c in robot._criteria]
     best = _Best(robot, poses.count)
-    for number, ((slot, _), at) in enumerate(
-        zip(slots((AUTOMATIC,) * branches), np.ndindex(status.shape[:-1]), strict=True)
-    ):
-        best.take(number, [own[at] for own in away], status[at], chosen.allow(slot))
+    for number, at in enumerate(np.ndindex(status.shape[:-1])):
+        best.take(number, [own[at] for own in away], status[at])
     taken = *np.unravel_index(best.slot, status.shape[:-1]), np.arange(poses.count)
     return tuple([np.broadcast_to(value, status.shape)[taken] for value in axes]), best.status
 
@@ -196,10 +207,10 @@ class _Best:
         self.status = np.full(rows, _UNTRIED, np.uint8)
         self.least = [np.full(rows, np.inf) for _ in self.criteria]
 
-    def take(self, number: int, distances: list[Array], outcome: Codes, allowed: Mask) -> None:
-        """Try a slot for the rows that allow it."""
-        is_better = allowed & (outcome == Status.OK) & ((self.status != Status.OK) | self._are_nearer(distances))
-        self.status = np.where(is_better | (allowed & (self.status == _UNTRIED)), outcome, self.status)
+    def take(self, number: int, distances: list[Array], outcome: Codes) -> None:
+        """Try a slot."""
+        is_better = (outcome == Status.OK) & ((self.status != Status.OK) | self._are_nearer(distances))
+        self.status = np.where(is_better | (self.status == _UNTRIED), outcome, self.status)
         self.least = [np.where(is_better, own, least) for own, least in zip(distances, self.least, strict=True)]
         self.slot[is_better] = number
 

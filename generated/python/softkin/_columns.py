@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -13,7 +14,7 @@ from softkin._array import Array, Codes, Reals, Rotation, Signs, Turns, Vector, 
 from softkin._array_rotation import made_rotations
 from softkin._configuration import AUTOMATIC, COINCIDE, FIRST, SECOND
 from softkin._table import numbers
-from softkin._types import Configuration, KinematicsError, Status
+from softkin._types import KinematicsError, Status
 
 if TYPE_CHECKING:
     from softkin._core import Mechanism
@@ -98,12 +99,12 @@ class Configurations:
             named = named & ((branch == FIRST) | (branch == SECOND))
         return named
 
-    def allow(self, slot: Configuration) -> Mask:
-        """The mask of rows that name a slot or leave it open."""
-        allowed = self.are_bytes
-        for branch, byte in zip(self.branches, slot, strict=True):
-            allowed = allowed & ((branch == byte) | (branch == AUTOMATIC) | (branch == COINCIDE))
-        return allowed
+    def by_open_branches(self) -> Iterator[tuple[tuple[bool, ...], Mask]]:
+        """Which branches are left open, and the mask of the rows that leave open just these."""
+        is_open = [(branch == AUTOMATIC) | (branch == COINCIDE) for branch in self.branches]
+        number = sum([mask.astype(np.int64) << k for k, mask in enumerate(is_open)], np.zeros_like(self.are_bytes, int))
+        for pattern in np.unique(number[self.are_bytes]).tolist():
+            yield tuple(bool(pattern >> k & 1) for k in range(len(is_open))), self.are_bytes & (number == pattern)
 
     def at(self, rows: Rows) -> Configurations:
         """Those of some rows."""
