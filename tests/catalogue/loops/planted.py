@@ -61,7 +61,8 @@ def spoiled(mechanism: Mechanism, *changes: tuple[str, str]) -> type[softkin.Mec
     )
     scalar.__dict__["unrolled"] = unrolled.unrolled
     found: type[softkin.Mechanism] = getattr(scalar, original.__name__)
-    found._array_programs = lambda self: arrays.ArrayPrograms(self._constants)  # type: ignore[attr-defined,method-assign]
+    programs = arrays.ArrayPrograms  # type: ignore[attr-defined]
+    found._array_programs = lambda self: programs(self._constants)  # type: ignore[method-assign]
     return found
 
 

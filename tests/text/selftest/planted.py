@@ -40,7 +40,9 @@ def planted(mechanism: Mechanism) -> Planted:
 
 
 def _in_method(text: str, method: str, pattern: str, faults: list[str]) -> str:
-    start = text.index(re.search(rf"METHOD (?:PUBLIC|PRIVATE) {method}\b.*\n", text).group())  # type: ignore[union-attr]
+    head = re.search(rf"METHOD (?:PUBLIC|PRIVATE) {method}\b.*\n", text)
+    assert head is not None
+    start = head.start()
     end = text.index("END_METHOD", start)
 
     def wrong(found: re.Match[str]) -> str:

@@ -165,7 +165,8 @@ def test_programs_mean_the_same_in_print(x: float, y: float) -> None:
     outputs, status = run(PROGRAM, {"axis_x": np.array([x]), "axis_y": np.array([y]), "scale": np.array([2.0])})
     scalar = _compiled(scalar_body(METHOD), _scalar)(_Machine(), (x, y))  # type: ignore[operator]
     with np.errstate(all="ignore"):
-        array, codes = _compiled(array_body(METHOD), _array)(_Machine(), (np.array([x]), np.array([y])))  # type: ignore[operator]
+        on_arrays = _compiled(array_body(METHOD), _array)
+        array, codes = on_arrays(_Machine(), (np.array([x]), np.array([y])))  # type: ignore[operator]
     expected = Code[status[0].name]
     assert codes[0] == expected
     if expected is not Code.OK:

@@ -91,4 +91,5 @@ def test_a_coupled_pair_names_the_part() -> None:
 def test_an_error_travels_whole() -> None:
     error = raised(softkin.Scara2Z(**LENGTHS).inverse, ((600.0, 0.0, 0.0), NO_TURN))
     copy = pickle.loads(pickle.dumps(error))
-    assert (copy.status, str(copy), copy.refusal) == (error.status, str(error), error.refusal)  # type: ignore[union-attr]
+    assert isinstance(error, softkin.KinematicsError)
+    assert (copy.status, str(copy), copy.refusal) == (error.status, str(error), error.refusal)

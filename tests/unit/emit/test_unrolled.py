@@ -206,7 +206,8 @@ def test_trusted_calls_can_be_sent_to_another_process(name: str) -> None:
     branches, branch = (pickle.loads(pickle.dumps(call)) for call in (robot.branches, robot.branch))
     assert any(axes is not None for axes in robot.branches(plain))  # type: ignore[arg-type]
     assert branches(plain) == robot.branches(plain, zeros) == robot.branches(plain)  # type: ignore[arg-type]
-    assert branch(plain, signs) == robot.branch(plain, signs, zeros) == robot.branch(plain, signs, None)  # type: ignore[arg-type]
+    one = robot.branch(plain, signs, zeros)  # type: ignore[arg-type]
+    assert branch(plain, signs) == one == robot.branch(plain, signs, None)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("name", ["Kin_Ac6_ThreeParallel", "Kin_ArticulatedRobot_6DOF"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -266,8 +266,13 @@ def test_turns_count_once_they_are_chosen() -> None:
 
 def test_no_turn_is_chosen_that_nothing_needs() -> None:
     case = Case({"x": sp.cos(A1), "y": sp.sin(A1)}, (A1,))
-    asked: Sequence[sp.Symbol] = []
-    solve(case.problem, case.arguments, lambda angle: asked.append(angle) or ())  # type: ignore[attr-defined, func-returns-value]
+    asked: list[sp.Symbol] = []
+
+    def ask(angle: sp.Symbol) -> tuple[()]:
+        asked.append(angle)
+        return ()
+
+    solve(case.problem, case.arguments, ask)  # type: ignore[attr-defined]
     assert asked == []
 
 
