@@ -70,8 +70,9 @@ PATHS = {
 """The paths through the compiler, and a mechanism that goes along each."""
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark the quick tests, and tell xdist which tests share what they make."""
+    """Mark the quick tests, and tell xdist which tests share what they make: before xdist looks."""
     is_shared_out = hasattr(config, "workerinput")
     for item in items:
         folders = item.path.relative_to(ROOT).parts[:-1]
