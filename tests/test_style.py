@@ -53,3 +53,8 @@ def test_the_map_names_every_folder() -> None:
 @pytest.mark.parametrize("room", [room.relative_to(ROOT) for room in rooms() if room.name != "mechanisms"], ids=str)
 def test_a_folder_holds_one_idea(room: Path) -> None:
     assert len(list((ROOT / room).glob("*.py"))) <= ROOM
+
+
+def test_tests_are_shared_out_by_group(request: pytest.FixtureRequest) -> None:
+    """What runs them in several processes knows the groups of `conftest`: it then writes them behind the names."""
+    assert "@" in request.node.nodeid or not hasattr(request.config, "workerinput")
