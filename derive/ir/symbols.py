@@ -66,7 +66,7 @@ def cosine(angle: sp.Symbol) -> sp.Symbol:
 
 
 def angle_of(name: sp.Symbol) -> sp.Symbol | None:
-    """The angle whose cosine has a name; None for any other name. Nothing else reads a name."""
+    """The angle whose cosine has a name; None for any other name. Rules ask here, and look at no name themselves."""
     return real(name.name.removeprefix(_COSINE)) if name.name.startswith(_COSINE) else None
 
 

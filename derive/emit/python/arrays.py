@@ -37,8 +37,8 @@ from derive.lowering.scheduling import scheduled
 
 CALLED = frozenset((
     "DEGREE", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc",
-    "nearest_period",
-    "opposite", "passed", "reasonable", "require", "root", "select", "settled", "sin", "solve", "sqrt",
+    "nearest_period", "opposite", "passed", "reasonable", "require", "root", "select", "settled", "sin", "solve",
+    "sqrt",
 ))  # fmt: skip
 """What programs on arrays call."""
 TYPES = frozenset(("Codes", "Real", "Reals", "Rotation", "Signs", "Truth", "Turns", "Values", "Vector", "Whole"))

@@ -99,6 +99,8 @@ _EXPORTS = (
     "Axis", "ConfigurationByte", "Coupled", "Diagnosis", "Frame", "KinematicsError", "Mechanism", "OrientationImage",
     "Parameter", "Singularity", "Solution", "Status", "catalogue",
 )  # fmt: skip
+_MADE = ("Axis", "ConfigurationByte", "Diagnosis", "Parameter", "Status")
+"""The types of which a module makes values; it names all others in annotations alone."""
 _TEXT = 110
 """Columns of a docstring."""
 _CHUNK = 8192
@@ -199,6 +201,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     lean = unrolled(kin) if is_unrolled(kin) else None
     trusted = trusted_branch(kin) if is_trusted(kin) else None
     setup_lines = setup.setup_body(kin, _constants_read(kin, (*scalar, *arrays), lean or trusted))
+    types = _types(kin, scalar)
     texts = (*bodies, setup_lines, trusted.body if trusted else ())
     context = {
         **names,
@@ -210,7 +213,8 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "array_programs": array_programs,
         "bases": _bases(kin),
         "core_types": sorted({"Image", "Mechanism", "Pose"}),
-        "types": _types(kin, scalar),
+        "types": [name for name in types if name in _MADE],
+        "checked_types": [name for name in types if name not in _MADE],
         "primitives": primitives_in(line for body in texts for line in body),
         "of_limits": [
             n for n in ("beyond", "beyond_turn", "turn_inside") if any(f"{n}(" in line for b in bodies for line in b)

@@ -25,7 +25,7 @@ TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
     "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "no_offsets", "opposite", "holds",
-    "reasonable", "are_usable",
+    "reasonable",
 }  # fmt: skip
 """Names that a generated method uses for itself."""
 _ARRAY_NAMES = {"abs": "absolute"}
@@ -48,7 +48,7 @@ def literal(value: float) -> str:
 
 def primitives_in(lines: Iterable[str]) -> list[str]:
     """The primitives and constants that statements use, in alphabetical order."""
-    known = {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "are_usable", "arctan2", "solve", "sqrt"} - {"abs", "select"}
+    known = {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "reasonable", "arctan2", "solve", "sqrt"} - {"abs", "select"}
     return sorted(words(lines) & known)
 
 

@@ -124,7 +124,7 @@ def _unless(conditions: Sequence[sp.Basic]) -> str:
     """The head of what is done where conditions do not all hold."""
     sized = _sized(*conditions)
     if sized:
-        return f"if not are_usable({', '.join(map(_SCALAR.print, sized))}):"
+        return f"if not reasonable({', '.join(map(_SCALAR.print, sized))}):"
     return f"if not ({conjunction(conditions)}):"
 
 

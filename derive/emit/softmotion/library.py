@@ -23,7 +23,7 @@ from derive.emit.softmotion.self_test import PROGRAM as SELF_TEST_PROGRAM
 from derive.emit.softmotion.self_test import test_of
 from derive.emit.st.contract import Contract, load
 from derive.emit.st.expression import literal
-from derive.emit.st.layout import assigned, beside
+from derive.emit.st.layout import assigned, beside, case
 from derive.emit.st.reserved import refuse_clashes
 from derive.emit.st.rotation import rotation_function
 from derive.emit.st.scan import SEARCH
@@ -132,6 +132,7 @@ def _templates() -> Environment:
     templates.globals.update(
         assigned=assigned,
         beside=beside,
+        case=case,
         generated=GENERATED,
         degree=literal(math.pi / 180.0),
         free_angle=literal(float(FREE_ANGLE)),

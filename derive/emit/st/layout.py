@@ -14,6 +14,8 @@ _CALL = re.compile(r"\w+\([^()]*\)")
 _PLAIN_WORD = re.compile(r"[a-z]+\b")
 """A word that may begin a sentence with a capital: no name."""
 _LONG_CONDITION = 45
+_LEAST_COMMENT = 30
+"""Columns of a comment beside a declaration, however long that is."""
 _BREAKS = (" + ", " - ", " AND ", " OR ")
 
 
@@ -76,10 +78,21 @@ def commented(lines: Sequence[str], comment: str, width: int = WIDTH - INSIDE) -
 
 def beside(declaration: str, comment: str) -> list[str]:
     """A declaration with its comment beside it, on further lines where it is long."""
-    margin = " " * (len(declaration) + 2)
-    first, *others = wrap(comment, WIDTH - len(margin) - 3 - INSIDE)
-    even = " " * (len(margin) % 2)
-    return [f"{declaration}  // {first}", *(f"{margin}{even}// {line}" for line in others)]
+    if not comment:
+        return [declaration]
+    margin = " " * (len(declaration) + 2 + len(declaration) % 2)
+    first, *others = wrap(comment, max(WIDTH - len(margin) - 3 - INSIDE, _LEAST_COMMENT))
+    return [f"{declaration}  // {first}", *(f"{margin}// {line}" for line in others)]
+
+
+def case(label: int, target: str, text: str) -> list[str]:
+    """`label: target := 'text';`, on further lines where the text is long: a text cannot be broken."""
+    head, value = f"{label}:", f"'{text}';"
+    if len(f"{head} {target} := {value}") <= WIDTH - INSIDE:
+        return [f"{head} {target} := {value}"]
+    if len(f"{target} := {value}") <= WIDTH - 2 * INSIDE:
+        return [head, f"{_INDENT}{target} := {value}"]
+    return [head, f"{_INDENT}{target} :=", f"{2 * _INDENT}{value}"]
 
 
 def _place(text: str, width: int) -> int | None:

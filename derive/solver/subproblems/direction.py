@@ -28,7 +28,7 @@ from derive.ir.symbols import (
     sine,
 )
 
-AT_THE_SINGULARITY = "if singular: that of the reference"
+AT_THE_SINGULARITY = "where it is singular: the angle of the reference"
 
 
 def direction(

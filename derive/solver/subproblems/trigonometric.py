@@ -253,7 +253,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     statements: list[Statement] = [
         *amplitude.naming.lets,
         *amplitude.guard,
-        Let(less_cos, less, f"law of cosines for {angle.name}: {equation.label}: 1 - cosine, times a scale"),
+        Let(less_cos, less, f"law of cosines for {angle.name} ({equation.label}): 1 - cosine, times a scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
         Let(twice, less_cos + plus_cos, "twice the scale, as the sum of both: then cosine and sine agree"),
         Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),

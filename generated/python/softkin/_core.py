@@ -23,7 +23,7 @@ from softkin._configuration import (
 )
 from softkin._input import bytes_of, parameter_value, pose_of, position_of, reals, unusable
 from softkin._rotation import in_words, made_rotation
-from softkin._scalar import are_usable
+from softkin._scalar import reasonable
 from softkin._solutions import Solutions
 from softkin._types import (
     Axis,
@@ -381,7 +381,7 @@ class Mechanism(ABC):
         self, solve: Branches, finish: Finish | None, position: Vector, rotation: Rotation, reference: Reals
     ) -> tuple[Reals | int, ...]:
         """The same by functions of the machine; where these have no answer, one branch after the other."""
-        if finish is not None and are_usable(*position, *reference):
+        if finish is not None and reasonable(*position, *reference):
             found = solve((position, rotation), reference, _NUMBERS)
             if found:
                 return finish(found, reference)

@@ -8,14 +8,14 @@ is used as it is.
 
 from __future__ import annotations
 
-from softkin._scalar import are_usable, sqrt
+from softkin._scalar import reasonable, sqrt
 from softkin._types import Diagnosis, Rotation, Status
 
 
 def made_rotation(rotation: Rotation) -> Rotation | Diagnosis:
     """The rotation as it is used, or the reason why it is no rotation."""
     (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
-    if not are_usable(r11, r12, r13, r21, r22, r23, r31, r32, r33):
+    if not reasonable(r11, r12, r13, r21, r22, r23, r31, r32, r33):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     uneven_x = abs(r11 * r11 + r21 * r21 + r31 * r31 - 1.0)
     uneven_y = abs(r12 * r12 + r22 * r22 + r32 * r32 - 1.0)

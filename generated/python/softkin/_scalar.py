@@ -10,12 +10,12 @@ from math import cos, floor, nan, pi, sin, sqrt
 __all__ = [
     "DEGREE",
     "RADIAN",
-    "are_usable",
     "arctan2",
     "atan2",
     "cos",
     "nearest_on_arc",
     "nearest_period",
+    "reasonable",
     "root",
     "sin",
     "solve",
@@ -32,7 +32,7 @@ _MOST_TURNS = 1e18
 _HALF_AND_EDGE = 180.0 + 1e-9
 
 
-def are_usable(*numbers: float) -> bool:
+def reasonable(*numbers: float) -> bool:
     """Whether all are numbers of reasonable size."""
     for number in numbers:
         if not -1e9 <= number <= 1e9:

@@ -57,7 +57,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, solve, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, solve, sqrt
 from softkin._root import every_root, nearest_root
 from softkin._search import SearchedInverse
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
@@ -272,7 +272,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
         slope_wrist_x_tried = j6_offset_x * (goal_r12 * cos_q6_tried + goal_r11 * sin_q6_tried)
         slope_wrist_y_tried = j6_offset_x * (goal_r22 * cos_q6_tried + goal_r21 * sin_q6_tried)
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
             along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
             if distance_q1_tried > machine_scale_times_free_angle:
@@ -314,7 +314,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
         part_of_one_less_cos_q3_tried = a2_plus_effective_q3_tried - reach_tried
         part_of_one_less_cos_q3_tried_2 = a2_plus_effective_q3_tried + reach_tried
-        # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3_tried = part_of_one_less_cos_q3_tried * part_of_one_less_cos_q3_tried_2
         part_of_one_plus_cos_q3_tried = a2_minus_effective_q3_tried - reach_tried
         part_of_one_plus_cos_q3_tried_2 = a2_minus_effective_q3_tried + reach_tried
@@ -380,7 +380,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_sin_q3_tried = (
             a3_by_effective_q3_tried * slope_sin_swing_q3_tried - d4_by_effective_q3_tried * slope_cos_swing_q3_tried
         )
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if reach_tried > machine_scale_times_free_angle and freed != 1:
             arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
             arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
@@ -515,7 +515,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * j6_offset_x - d6 * goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
             along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
             length_q1_tried = distance_q1_tried if distance_q1_tried > machine_scale_times_free_angle else 1.0
@@ -534,7 +534,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         reach_tried = sqrt(
             wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
         )
-        # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3_tried = (a2_plus_effective_q3_tried + reach_tried) * (a2_plus_effective_q3_tried - reach_tried)
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = (reach_tried - a2_minus_effective_q3_tried) * (
@@ -556,7 +556,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if reach_tried > machine_scale_times_free_angle and freed != 1:
             arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
             arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
@@ -974,7 +974,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
         offset_a1, offset_a2, offset_a6, searched = k.offset_a1, k.offset_a2, k.offset_a6, k.searched
-        if not are_usable(
+        if not reasonable(
             r11, r12, r13, r21, r22, r23, r31, r32, r33, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, x, y, z
         ):
             return Status.BAD_INPUT
@@ -1055,7 +1055,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
         offset_a5, offset_a6, one_by_machine_scale = k.offset_a5, k.offset_a6, k.one_by_machine_scale
         part_of_fits, searched, size_of_j6_offset_x = k.part_of_fits, k.searched, k.size_of_j6_offset_x
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         cos_q1 = cos(q1)
@@ -1192,7 +1192,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         k = self._constants
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
         offset_a5, offset_a6 = k.offset_a5, k.offset_a6
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)
@@ -1254,7 +1254,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         offset_a5, offset_a6, searched, single_a1 = k.offset_a5, k.offset_a6, k.searched, k.single_a1
         single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
         single_a6 = k.single_a6
-        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
+        if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x_closed = x - d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y_closed = y - d6 * r23
@@ -1269,7 +1269,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         reach_closed = sqrt(
             wrist_x_from_q1_closed * wrist_x_from_q1_closed + wrist_z_from_q1_closed * wrist_z_from_q1_closed
         )
-        # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3_closed = (a2_plus_effective_q3_tried + reach_closed) * (
             a2_plus_effective_q3_tried - reach_closed
         )
@@ -1340,7 +1340,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q5 = found_q5
             q6 = found_q6
         else:
-            # if singular: that of the reference
+            # where it is singular: the angle of the reference
             if distance_q1_closed > machine_scale_times_free_angle:
                 along_q1_closed = sigma_shoulder * wrist_x_closed  # rotation by q1 that points the arm at the point
                 cos_q1_closed = along_q1_closed / distance_q1_closed
@@ -1358,7 +1358,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 * sigma_elbow
                 / divisor_of_cos_q3_closed
             )
-            # if singular: that of the reference
+            # where it is singular: the angle of the reference
             if reach_closed > machine_scale_times_free_angle:
                 arm_along_q2_closed = effective_q3_tried * sin_swing_q3_closed
                 arm_across_q2_closed = a2 + effective_q3_tried * cos_swing_q3_closed
@@ -1394,7 +1394,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             radius_q4_closed = sqrt(
                 r23_from_q1_closed * r23_from_q1_closed + r33_from_q123_closed * r33_from_q123_closed
             )
-            # polar coordinates: angle q4 from the r33 and r23 equations; if singular: that of the reference
+            # polar coordinates: angle q4 from the r33 and r23 equations; where it is singular: the angle of the
+            # reference
             if radius_q4_closed > 1e-11:
                 direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
                 direction_y_q4_closed = -sigma_wrist * r23_from_q1_closed
@@ -1479,7 +1480,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         a1, a2, a3, d1, d4, d6, j6_offset_x, offset_a1 = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
         one_by_machine_scale, part_of_fits = k.one_by_machine_scale, k.part_of_fits
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)
@@ -1581,7 +1582,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         k = self._constants
         a1, a2, a3, d1, d4, d6, j6_offset_x, offset_a1 = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)

@@ -47,7 +47,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_on_arc, nearest_period, root, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.ac6_threeparallel import unrolled
 
@@ -232,7 +232,7 @@ class Ac6ThreeParallel(Mechanism):
         a2, a3, d1, d4, d5, d6, machine_scale = k.a2, k.a3, k.d1, k.d4, k.d5, k.d6, k.machine_scale
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
         offset_a5, offset_a6 = k.offset_a5, k.offset_a6
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
@@ -306,7 +306,7 @@ class Ac6ThreeParallel(Mechanism):
         k = self._constants
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
         offset_a5, offset_a6 = k.offset_a5, k.offset_a6
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         cos_q1 = cos(q1)
@@ -365,7 +365,7 @@ class Ac6ThreeParallel(Mechanism):
         single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
         single_a5, single_a6, size_q1_for_q3 = k.single_a5, k.single_a6, k.size_q1_for_q3
         size_q1_for_q3_times_rounding, twice_d5 = k.size_q1_for_q3_times_rounding, k.twice_d5
-        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
+        if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6 * r23
@@ -379,7 +379,7 @@ class Ac6ThreeParallel(Mechanism):
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_shoulder
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d4 * wrist_y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d4 * wrist_x) / distance_q1_squared
@@ -661,7 +661,7 @@ class Ac6ThreeParallel(Mechanism):
         radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
         q6_radius_of_q5 = sigma_wrist * radius_q6
         q6_radius_of_q5_times_r33 = q6_radius_of_q5 * r33
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_q6 > 1e-11:
             along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6 / radius_q6
@@ -777,7 +777,7 @@ class Ac6ThreeParallel(Mechanism):
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -806,7 +806,8 @@ class Ac6ThreeParallel(Mechanism):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / abs(divisor_of_cos_q3)
-        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
+        # rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3 * cos_q3
             arm_across_q2 = a3 * sin_q3
@@ -874,7 +875,7 @@ class Ac6ThreeParallel(Mechanism):
         k = self._constants
         a2, a3, d4, d5, d6, machine_scale, offset_a1 = k.a2, k.a3, k.d4, k.d5, k.d6, k.machine_scale, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
@@ -925,7 +926,7 @@ class Ac6ThreeParallel(Mechanism):
         k = self._constants
         a2, a3, d1, d4, d5, d6, offset_a1, offset_a2 = k.a2, k.a3, k.d1, k.d4, k.d5, k.d6, k.offset_a1, k.offset_a2
         offset_a3, offset_a4, offset_a5 = k.offset_a3, k.offset_a4, k.offset_a5
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         cos_q1 = cos(q1)

@@ -39,7 +39,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.ac6_txtytzryrxrz import unrolled
 
@@ -187,7 +187,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         flange_x, flange_y, flange_z, offset_a1 = k.flange_x, k.flange_y, k.flange_z, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
         offset_a6 = k.offset_a6
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         a5 = DEGREE * (axis_a5 - offset_a5)
         cos_a5 = cos(a5)
@@ -225,7 +225,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
         offset_a4, offset_a5, offset_a6 = k.offset_a4, k.offset_a5, k.offset_a6
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         a5 = DEGREE * (axis_a5 - offset_a5)
         sin_a5 = sin(a5)
@@ -262,7 +262,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         mid_a6, offset_a1, offset_a2, offset_a3 = k.mid_a6, k.offset_a1, k.offset_a2, k.offset_a3
         offset_a4, offset_a5, offset_a6, single_a4 = k.offset_a4, k.offset_a5, k.offset_a6, k.single_a4
         single_a5, single_a6 = k.single_a5, k.single_a6
-        if not are_usable(x, y, z, ref_a4, ref_a5, ref_a6):
+        if not reasonable(x, y, z, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # wrist centre: the last joints do not move this point
         wrist_x = x - flange_x * r11 - flange_y * r12 - flange_z * r13
@@ -272,7 +272,8 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
         axis_a3 = offset_a3 + wrist_z
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
-        # polar coordinates: angle a4 from the r33 and r13 equations; if singular: that of the reference
+        # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+        # reference
         if radius_a4 > 1e-11:
             direction_x_a4 = sigma_wrist * r33
             direction_y_a4 = sigma_wrist * r13
@@ -326,7 +327,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
         offset_a5 = k.offset_a5
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         a5 = DEGREE * (axis_a5 - offset_a5)
         cos_a5 = cos(a5)
@@ -339,7 +340,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         flange_x, flange_y, flange_z, offset_a1 = k.flange_x, k.flange_y, k.flange_z, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
         offset_a6 = k.offset_a6
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         a4 = DEGREE * (axis_a4 - offset_a4)
         cos_a4 = cos(a4)

@@ -46,7 +46,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.articulatedrobot_6dof import unrolled
 
@@ -234,7 +234,7 @@ class ArticulatedRobot6DOF(Mechanism):
         d4_by_effective_q3, d6, machine_scale, offset_a1 = k.d4_by_effective_q3, k.d6, k.machine_scale, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
         offset_a6 = k.offset_a6
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
@@ -313,7 +313,7 @@ class ArticulatedRobot6DOF(Mechanism):
         k = self._constants
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
         offset_a5, offset_a6 = k.offset_a5, k.offset_a6
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)
@@ -379,7 +379,7 @@ class ArticulatedRobot6DOF(Mechanism):
         single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
         size_q1_for_q3, size_q1_for_q3_times_rounding = k.size_q1_for_q3, k.size_q1_for_q3_times_rounding
         twice_d3 = k.twice_d3
-        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
+        if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
         wrist_y = y - d6 * r23
@@ -396,7 +396,7 @@ class ArticulatedRobot6DOF(Mechanism):
         wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d3 * wrist_y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d3 * wrist_x) / distance_q1_squared
@@ -454,7 +454,7 @@ class ArticulatedRobot6DOF(Mechanism):
         wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
@@ -483,7 +483,7 @@ class ArticulatedRobot6DOF(Mechanism):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3 * sin_swing_q3
             arm_across_q2 = a2 + effective_q3 * cos_swing_q3
@@ -520,7 +520,8 @@ class ArticulatedRobot6DOF(Mechanism):
         r23_from_q1 = r23 * cos_q1 - r13 * sin_q1
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+        # reference
         if radius_q4 > 1e-11:
             direction_x_q4 = -sigma_hand * r13_from_q123
             direction_y_q4 = sigma_hand * r23_from_q1
@@ -584,7 +585,7 @@ class ArticulatedRobot6DOF(Mechanism):
         a1, a2, a3, a3_by_effective_q3, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3, k.d3, k.d4
         d4_by_effective_q3, d6, machine_scale, offset_a1 = k.d4_by_effective_q3, k.d6, k.machine_scale, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
@@ -637,7 +638,7 @@ class ArticulatedRobot6DOF(Mechanism):
         k = self._constants
         a1, a2, a3, d1, d3, d4, d6, offset_a1 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.d6, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)

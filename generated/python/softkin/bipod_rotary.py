@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.bipod_rotary import unrolled
 
@@ -303,7 +303,7 @@ class BipodRotary(OffsetKinematics):
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
         single_a2, tcp_displacement_minus_displacement = k.single_a2, k.tcp_displacement_minus_displacement
-        if not are_usable(x, y, z, ref_a1, ref_a2):
+        if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -315,7 +315,7 @@ class BipodRotary(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm) * (effective_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1) * (effective_a1 - inner_arm_minus_outer_arm)
@@ -339,7 +339,7 @@ class BipodRotary(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm - effective_a2) * (effective_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm) * (effective_a2 + inner_arm_plus_outer_arm)
@@ -552,7 +552,7 @@ class BipodRotary(OffsetKinematics):
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
         single_a2, tcp_displacement_minus_displacement = k.single_a2, k.tcp_displacement_minus_displacement
-        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
+        if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
@@ -566,7 +566,7 @@ class BipodRotary(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm) * (effective_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1) * (effective_a1 - inner_arm_minus_outer_arm)
@@ -590,7 +590,7 @@ class BipodRotary(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm - effective_a2) * (effective_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm) * (effective_a2 + inner_arm_plus_outer_arm)

@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._orientation import OrientationKinematics, TotalImage
-from softkin._scalar import DEGREE, RADIAN, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
@@ -191,7 +191,7 @@ class CAxis(OrientationKinematics, TwistChoice):
         """The orientations on a flange, and how far the two axes are apart."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
-        if not are_usable(flange_axis_x, flange_axis_y, flange_axis_z):
+        if not reasonable(flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         return (
             ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)),

@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._orientation import OrientationKinematics, TotalImage
-from softkin._scalar import DEGREE, RADIAN, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
@@ -212,7 +212,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         k = self._constants
         tool_z, unmet_offset, unnoticed_shift = k.tool_z, k.unmet_offset, k.unnoticed_shift
-        if not are_usable(flange_axis_x, flange_axis_y, flange_axis_z):
+        if not reasonable(flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         flange_along = flange_axis_z * tool_z  # the flange's part along the axis about which the flange turns
         part_of_flange_offset = tool_z - flange_along * flange_axis_z
@@ -232,7 +232,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self._constants
         tool_z = k.tool_z
-        if not are_usable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z):
+        if not reasonable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         flange_along = flange_axis_z * tool_z  # the flange's part along the axis about which the flange turns
         return (base_axis_x * flange_along, base_axis_y * flange_along, base_axis_z * flange_along)
@@ -241,7 +241,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         """The orientations on a flange, and how far the two axes are apart."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
-        if not are_usable(flange_axis_x, flange_axis_y, flange_axis_z):
+        if not reasonable(flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         return (
             ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)),

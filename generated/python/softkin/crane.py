@@ -36,7 +36,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, RADIAN, arctan2, are_usable, cos, nearest_on_arc, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ class Crane(OffsetKinematics):
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
         offset_phi, offset_r, offset_theta = k.offset_phi, k.offset_r, k.offset_theta
-        if not are_usable(axis_phi, axis_r, axis_theta):
+        if not reasonable(axis_phi, axis_r, axis_theta):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
@@ -159,7 +159,7 @@ class Crane(OffsetKinematics):
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
         offset_phi, offset_r = k.offset_phi, k.offset_r
-        if not are_usable(axis_phi, axis_r, axis_theta):
+        if not reasonable(axis_phi, axis_r, axis_theta):
             return Status.BAD_INPUT
         axis_r_minus_offset_r = axis_r - offset_r
         # R where the machine has no pose
@@ -181,12 +181,12 @@ class Crane(OffsetKinematics):
         k = self._constants
         machine_scale_times_free_angle, mid_theta = k.machine_scale_times_free_angle, k.mid_theta
         offset_phi, offset_r, offset_theta, single_theta = k.offset_phi, k.offset_r, k.offset_theta, k.single_theta
-        if not are_usable(x, y, z, ref_phi, ref_theta):
+        if not reasonable(x, y, z, ref_phi, ref_theta):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
         radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
         axis_r = offset_r + radius_phi
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
             direction_y_theta = y
@@ -201,7 +201,7 @@ class Crane(OffsetKinematics):
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0) / DEGREE
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
             direction_y_phi = radius_theta
@@ -232,7 +232,7 @@ class Crane(OffsetKinematics):
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
         machine_scale, offset_phi, offset_r, offset_theta = k.machine_scale, k.offset_phi, k.offset_r, k.offset_theta
-        if not are_usable(axis_phi, axis_r, axis_theta):
+        if not reasonable(axis_phi, axis_r, axis_theta):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
@@ -264,7 +264,7 @@ class Crane(OffsetKinematics):
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
         offset_phi, offset_r, offset_theta = k.offset_phi, k.offset_r, k.offset_theta
-        if not are_usable(axis_phi, axis_r, axis_theta):
+        if not reasonable(axis_phi, axis_r, axis_theta):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
@@ -303,7 +303,7 @@ class Crane(OffsetKinematics):
         k = self._constants
         machine_scale_times_free_angle, mid_theta = k.machine_scale_times_free_angle, k.mid_theta
         offset_phi, offset_r, offset_theta, single_theta = k.offset_phi, k.offset_r, k.offset_theta, k.single_theta
-        if not are_usable(x, y, z, point_x, point_y, point_z, ref_phi, ref_theta):
+        if not reasonable(x, y, z, point_x, point_y, point_z, ref_phi, ref_theta):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_z = z - point_z  # position of the flange: the point less its offset
         flange_x = x - point_x  # position of the flange: the point less its offset
@@ -313,7 +313,7 @@ class Crane(OffsetKinematics):
         # polar coordinates: the radius at angle phi
         radius_phi = sqrt(flange_z * flange_z + radius_theta * radius_theta)
         axis_r = offset_r + radius_phi
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = flange_x
             direction_y_theta = flange_y
@@ -328,7 +328,7 @@ class Crane(OffsetKinematics):
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0) / DEGREE
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = flange_z
             direction_y_phi = radius_theta
@@ -345,7 +345,7 @@ class Crane(OffsetKinematics):
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
         offset_phi, offset_r = k.offset_phi, k.offset_r
-        if not are_usable(axis_phi, axis_r, axis_theta):
+        if not reasonable(axis_phi, axis_r, axis_theta):
             return Status.BAD_INPUT
         axis_r_minus_offset_r = axis_r - offset_r
         # R where the machine has no pose
@@ -370,7 +370,7 @@ class Crane(OffsetKinematics):
         offset_r, offset_theta = k.offset_r, k.offset_theta
         radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
         radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
             direction_y_theta = y
@@ -378,7 +378,7 @@ class Crane(OffsetKinematics):
             reference_theta = (ref_theta - offset_theta) * DEGREE
             direction_x_theta = cos(reference_theta)
             direction_y_theta = sin(reference_theta)
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
             direction_y_phi = radius_theta

@@ -41,7 +41,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.delta_p3c_type3 import unrolled
 
@@ -410,7 +410,7 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_pivot_3_x, part_of_pivot_3_y = k.part_of_pivot_3_x, k.part_of_pivot_3_y
         part_of_projection_2, part_of_projection_3 = k.part_of_projection_2, k.part_of_projection_3
         sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
@@ -512,7 +512,7 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_pivot_2_y, part_of_pivot_3_x = k.part_of_pivot_2_y, k.part_of_pivot_3_x
         part_of_pivot_3_y, part_of_projection_2 = k.part_of_pivot_3_y, k.part_of_projection_2
         part_of_projection_3 = k.part_of_projection_3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
@@ -605,7 +605,7 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_pivot_3_y, part_of_type2_rods_coplanar = k.part_of_pivot_3_y, k.part_of_type2_rods_coplanar
         sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
         single_a1, single_a2, single_a3 = k.single_a1, k.single_a2, k.single_a3
-        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3):
+        if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
         span_1_y = y - part_of_pivot_1_y
@@ -619,7 +619,7 @@ class DeltaP3CType3(OffsetKinematics):
         # square of the third side of the triangle
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
         # 1 + cosine, times the scale
@@ -656,7 +656,7 @@ class DeltaP3CType3(OffsetKinematics):
         # square of the third side of the triangle
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
         # 1 + cosine, times the scale
@@ -693,7 +693,7 @@ class DeltaP3CType3(OffsetKinematics):
         # square of the third side of the triangle
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
-        # law of cosines for a3: rod 3: 1 - cosine, times a scale
+        # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
         # 1 + cosine, times the scale
@@ -809,7 +809,7 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_pivot_3_y, part_of_projection_2 = k.part_of_pivot_3_y, k.part_of_projection_2
         part_of_projection_3, sin_azimuth_1, sin_azimuth_2 = k.part_of_projection_3, k.sin_azimuth_1, k.sin_azimuth_2
         sin_azimuth_3 = k.sin_azimuth_3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
@@ -947,7 +947,7 @@ class DeltaP3CType3(OffsetKinematics):
         twice_inner_arm_2, twice_inner_arm_3 = k.twice_inner_arm_2, k.twice_inner_arm_3
         twice_sin_azimuth_1, twice_sin_azimuth_2 = k.twice_sin_azimuth_1, k.twice_sin_azimuth_2
         twice_sin_azimuth_3 = k.twice_sin_azimuth_3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
@@ -1110,7 +1110,7 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_pivot_3_y, part_of_type2_rods_coplanar = k.part_of_pivot_3_y, k.part_of_type2_rods_coplanar
         sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
         single_a1, single_a2, single_a3 = k.single_a1, k.single_a2, k.single_a3
-        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
+        if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # position of the flange: the point less its offset
         span_1_x = flange_x - part_of_pivot_1_x  # rod 1: known part of its vector
@@ -1127,7 +1127,7 @@ class DeltaP3CType3(OffsetKinematics):
         # square of the third side of the triangle
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
         # 1 + cosine, times the scale
@@ -1164,7 +1164,7 @@ class DeltaP3CType3(OffsetKinematics):
         # square of the third side of the triangle
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
         # 1 + cosine, times the scale
@@ -1201,7 +1201,7 @@ class DeltaP3CType3(OffsetKinematics):
         # square of the third side of the triangle
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
-        # law of cosines for a3: rod 3: 1 - cosine, times a scale
+        # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
         # 1 + cosine, times the scale
@@ -1302,7 +1302,7 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_pivot_3_x, part_of_pivot_3_y = k.part_of_pivot_3_x, k.part_of_pivot_3_y
         part_of_projection_2, part_of_projection_3 = k.part_of_projection_2, k.part_of_projection_3
         sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)

@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import are_usable
+from softkin._scalar import reasonable
 from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ class Gantry3(OffsetKinematics):
         axis_x, axis_y, axis_z = axes
         k = self._constants
         offset_x, offset_y, offset_z = k.offset_x, k.offset_y, k.offset_z
-        if not are_usable(axis_x, axis_y, axis_z):
+        if not reasonable(axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         joint_x = axis_x - offset_x
         joint_y = axis_y - offset_y
@@ -134,7 +134,7 @@ class Gantry3(OffsetKinematics):
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_x, axis_y, axis_z = axes
-        if not are_usable(axis_x, axis_y, axis_z):
+        if not reasonable(axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -145,7 +145,7 @@ class Gantry3(OffsetKinematics):
         x, y, z = position
         k = self._constants
         offset_x, offset_y, offset_z = k.offset_x, k.offset_y, k.offset_z
-        if not are_usable(x, y, z):
+        if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         axis_x = offset_x + x
         axis_y = offset_y + y
@@ -169,14 +169,14 @@ class Gantry3(OffsetKinematics):
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_x, axis_y, axis_z = axes
-        if not are_usable(axis_x, axis_y, axis_z):
+        if not reasonable(axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         return ()
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_x, axis_y, axis_z = axes
-        if not are_usable(axis_x, axis_y, axis_z):
+        if not reasonable(axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -192,7 +192,7 @@ class Gantry3(OffsetKinematics):
         point_x, point_y, point_z = offset
         k = self._constants
         offset_x, offset_y, offset_z = k.offset_x, k.offset_y, k.offset_z
-        if not are_usable(x, y, z, point_x, point_y, point_z):
+        if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         joint_x = x - point_x  # joint_x from the x equation, which is linear in it
         axis_x = joint_x + offset_x
@@ -205,7 +205,7 @@ class Gantry3(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_x, axis_y, axis_z = axes
-        if not are_usable(axis_x, axis_y, axis_z):
+        if not reasonable(axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         return ()
 

@@ -34,7 +34,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, RADIAN, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
@@ -145,7 +145,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         k = self._constants
         direction_r, offset_r, offset_x, offset_y = k.direction_r, k.offset_r, k.offset_x, k.offset_y
         offset_z = k.offset_z
-        if not are_usable(axis_r, axis_x, axis_y, axis_z):
+        if not reasonable(axis_r, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         joint_x = axis_x - offset_x
         joint_y = axis_y - offset_y
@@ -165,7 +165,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         axis_x, axis_y, axis_z, axis_r = axes
         k = self._constants
         direction_r, offset_r = k.direction_r, k.offset_r
-        if not are_usable(axis_r, axis_x, axis_y, axis_z):
+        if not reasonable(axis_r, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         r = DEGREE * (axis_r - offset_r)
         cos_r = cos(r)
@@ -184,7 +184,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         k = self._constants
         direction_r, mid_r, offset_r, offset_x, offset_y = k.direction_r, k.mid_r, k.offset_r, k.offset_x, k.offset_y
         offset_z, single_r = k.offset_z, k.single_r
-        if not are_usable(x, y, z, ref_r):
+        if not reasonable(x, y, z, ref_r):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
@@ -223,7 +223,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_x, axis_y, axis_z, axis_r = axes
-        if not are_usable(axis_r, axis_x, axis_y, axis_z):
+        if not reasonable(axis_r, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         return ()
 
@@ -232,7 +232,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         axis_x, axis_y, axis_z, axis_r = axes
         k = self._constants
         direction_r = k.direction_r
-        if not are_usable(axis_r, axis_x, axis_y, axis_z):
+        if not reasonable(axis_r, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, direction_r))
 
@@ -245,7 +245,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         axis_x, axis_y, axis_z, axis_r = axes
         k = self._constants
         direction_r = k.direction_r
-        if not are_usable(axis_r, axis_x, axis_y, axis_z):
+        if not reasonable(axis_r, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         return (
             (1.0, 0.0, 0.0, 0.0),
@@ -280,7 +280,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         k = self._constants
         direction_r, offset_r, offset_x, offset_y = k.direction_r, k.offset_r, k.offset_x, k.offset_y
         offset_z = k.offset_z
-        if not are_usable(x, y, z, point_x, point_y, point_z, ref_r):
+        if not reasonable(x, y, z, point_x, point_y, point_z, ref_r):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         reference_r = (ref_r - offset_r) * DEGREE
         cos_r = cos(reference_r)
@@ -301,7 +301,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_x, axis_y, axis_z, axis_r = axes
-        if not are_usable(axis_r, axis_x, axis_y, axis_z):
+        if not reasonable(axis_r, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         return ()
 

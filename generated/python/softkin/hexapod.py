@@ -51,7 +51,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, root, sin, solve, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, reasonable, root, sin, solve, sqrt
 from softkin._start import IterativeForward
 from softkin._types import Axis, Diagnosis, Parameter, Status
 
@@ -661,7 +661,7 @@ class Hexapod(IterativeForward):
         platform_4_y, platform_4_z, platform_5_x = k.platform_4_y, k.platform_4_z, k.platform_5_x
         platform_5_y, platform_5_z, platform_6_x = k.platform_5_y, k.platform_5_z, k.platform_6_x
         platform_6_y, platform_6_z, within = k.platform_6_y, k.platform_6_z, k.within
-        if not are_usable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6):
+        if not reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6):
             return Status.BAD_INPUT
         l1 = axis_l1 - offset_l1
         l2 = axis_l2 - offset_l2
@@ -968,7 +968,7 @@ class Hexapod(IterativeForward):
         (start_r11, start_r12, start_r13), (start_r21, start_r22, start_r23), (start_r31, start_r32, start_r33) = (
             start_rotation
         )
-        if not are_usable(start_x, start_y, start_z):
+        if not reasonable(start_x, start_y, start_z):
             return Status.BAD_INPUT
         # pose of the platform, by Newton's method from the given start
         found = self._find_platform(
@@ -1066,7 +1066,7 @@ class Hexapod(IterativeForward):
         platform_4_x, platform_4_y, platform_4_z = k.platform_4_x, k.platform_4_y, k.platform_4_z
         platform_5_x, platform_5_y, platform_5_z = k.platform_5_x, k.platform_5_y, k.platform_5_z
         platform_6_x, platform_6_y, platform_6_z = k.platform_6_x, k.platform_6_y, k.platform_6_z
-        if not are_usable(x, y, z):
+        if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         arm_1_x = platform_1_x * r11 + platform_1_y * r12 + platform_1_z * r13
         span_1_x = arm_1_x + x - base_1_x  # rod 1: known part of its vector

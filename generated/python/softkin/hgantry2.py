@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import are_usable
+from softkin._scalar import reasonable
 from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
@@ -153,7 +153,7 @@ class HGantry2(OffsetKinematics):
         x, y, z = position
         k = self._constants
         machine_scale_times_plane, offset_a, offset_b = k.machine_scale_times_plane, k.offset_a, k.offset_b
-        if not are_usable(x, y, z):
+        if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -214,7 +214,7 @@ class HGantry2(OffsetKinematics):
         point_x, point_y, point_z = offset
         k = self._constants
         machine_scale_times_plane, offset_a, offset_b = k.machine_scale_times_plane, k.offset_a, k.offset_b
-        if not are_usable(x, y, z, point_x, point_y, point_z):
+        if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):

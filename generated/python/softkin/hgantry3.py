@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import are_usable
+from softkin._scalar import reasonable
 from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ class HGantry3(OffsetKinematics):
         axis_a, axis_b, axis_z = axes
         k = self._constants
         offset_a, offset_b, offset_z = k.offset_a, k.offset_b, k.offset_z
-        if not are_usable(axis_a, axis_b, axis_z):
+        if not reasonable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         a = axis_a - offset_a
         b = axis_b - offset_b
@@ -151,7 +151,7 @@ class HGantry3(OffsetKinematics):
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a, axis_b, axis_z = axes
-        if not are_usable(axis_a, axis_b, axis_z):
+        if not reasonable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -162,7 +162,7 @@ class HGantry3(OffsetKinematics):
         x, y, z = position
         k = self._constants
         offset_a, offset_b, offset_z = k.offset_a, k.offset_b, k.offset_z
-        if not are_usable(x, y, z):
+        if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         a = x - y  # a and b from the x and y equations, linear in both
         axis_a = a + offset_a
@@ -197,14 +197,14 @@ class HGantry3(OffsetKinematics):
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a, axis_b, axis_z = axes
-        if not are_usable(axis_a, axis_b, axis_z):
+        if not reasonable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         return ()
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a, axis_b, axis_z = axes
-        if not are_usable(axis_a, axis_b, axis_z):
+        if not reasonable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         return ((0.5, -0.5, 0.0), (-0.5, -0.5, 0.0), (0.0, 0.0, 1.0))
 
@@ -220,7 +220,7 @@ class HGantry3(OffsetKinematics):
         point_x, point_y, point_z = offset
         k = self._constants
         offset_a, offset_b, offset_z = k.offset_a, k.offset_b, k.offset_z
-        if not are_usable(x, y, z, point_x, point_y, point_z):
+        if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         y_minus_point_y = y - point_y
         x_minus_point_x = x - point_x
@@ -235,7 +235,7 @@ class HGantry3(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a, axis_b, axis_z = axes
-        if not are_usable(axis_a, axis_b, axis_z):
+        if not reasonable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         return ()
 

@@ -38,7 +38,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.kin_5axes import unrolled
 
@@ -178,7 +178,7 @@ class Kin5Axes(Mechanism):
         k = self._constants
         offset_a, offset_b, offset_x, offset_y, offset_z = k.offset_a, k.offset_b, k.offset_x, k.offset_y, k.offset_z
         tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
-        if not are_usable(axis_a, axis_b, axis_x, axis_y, axis_z):
+        if not reasonable(axis_a, axis_b, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         a = DEGREE * (axis_a - offset_a)
         cos_a = cos(a)
@@ -208,7 +208,7 @@ class Kin5Axes(Mechanism):
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self._constants
         offset_a, offset_b, tool_side = k.offset_a, k.offset_b, k.tool_side
-        if not are_usable(axis_a, axis_b, axis_x, axis_y, axis_z):
+        if not reasonable(axis_a, axis_b, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         a = DEGREE * (axis_a - offset_a)
         cos_a = cos(a)
@@ -236,7 +236,7 @@ class Kin5Axes(Mechanism):
         mid_a, mid_b, offset_a, offset_b, offset_x = k.mid_a, k.mid_b, k.offset_a, k.offset_b, k.offset_x
         offset_y, offset_z, single_a, single_b = k.offset_y, k.offset_z, k.single_a, k.single_b
         tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
-        if not are_usable(x, y, z, ref_a, ref_b):
+        if not reasonable(x, y, z, ref_a, ref_b):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - r13 * tool_length_times_tool_side  # wrist centre: the last joints do not move this point
         axis_x = offset_x + wrist_x
@@ -247,7 +247,8 @@ class Kin5Axes(Mechanism):
         r13_of_a = r13 / tool_side
         r23_of_a = r23 / tool_side
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
-        # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
+        # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+        # reference
         if radius_a > 1e-11:
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a
@@ -292,7 +293,7 @@ class Kin5Axes(Mechanism):
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self._constants
         offset_b = k.offset_b
-        if not are_usable(axis_a, axis_b, axis_x, axis_y, axis_z):
+        if not reasonable(axis_a, axis_b, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
@@ -304,7 +305,7 @@ class Kin5Axes(Mechanism):
         k = self._constants
         offset_a, offset_b, offset_x, offset_y, offset_z = k.offset_a, k.offset_b, k.offset_x, k.offset_y, k.offset_z
         tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
-        if not are_usable(axis_a, axis_b, axis_x, axis_y, axis_z):
+        if not reasonable(axis_a, axis_b, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         a = DEGREE * (axis_a - offset_a)
         sin_a = sin(a)

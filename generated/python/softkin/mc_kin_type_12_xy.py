@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.mc_kin_type_12_xy import unrolled
 
@@ -410,7 +410,7 @@ class KinType12XY(OffsetKinematics):
         part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         part_of_type2_arms_aligned, single_a1, single_a2 = k.part_of_type2_arms_aligned, k.single_a1, k.single_a2
         swap_xy = k.swap_xy
-        if not are_usable(x, y, z, ref_a1, ref_a2):
+        if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -426,7 +426,7 @@ class KinType12XY(OffsetKinematics):
         # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x * span_upper_x + span_upper_y * span_upper_y)
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
-        # law of cosines for a1: rod upper: 1 - cosine, times a scale
+        # law of cosines for a1 (rod upper): 1 - cosine, times a scale
         one_less_cos_a1 = (divisor_a1 + link_length_1_minus_link_length_2) * (
             divisor_a1 + link_length_1_plus_link_length_2
         )
@@ -452,7 +452,7 @@ class KinType12XY(OffsetKinematics):
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
-        # law of cosines for a2: rod rear: 1 - cosine, times a scale
+        # law of cosines for a2 (rod rear): 1 - cosine, times a scale
         one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
             divisor_a2 + link_length_5_minus_link_length_4
         )
@@ -777,7 +777,7 @@ class KinType12XY(OffsetKinematics):
         part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         part_of_type2_arms_aligned, single_a1, single_a2 = k.part_of_type2_arms_aligned, k.single_a1, k.single_a2
         swap_xy = k.swap_xy
-        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
+        if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
@@ -795,7 +795,7 @@ class KinType12XY(OffsetKinematics):
         # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x * span_upper_x + span_upper_y * span_upper_y)
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
-        # law of cosines for a1: rod upper: 1 - cosine, times a scale
+        # law of cosines for a1 (rod upper): 1 - cosine, times a scale
         one_less_cos_a1 = (divisor_a1 + link_length_1_minus_link_length_2) * (
             divisor_a1 + link_length_1_plus_link_length_2
         )
@@ -821,7 +821,7 @@ class KinType12XY(OffsetKinematics):
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
-        # law of cosines for a2: rod rear: 1 - cosine, times a scale
+        # law of cosines for a2 (rod rear): 1 - cosine, times a scale
         one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
             divisor_a2 + link_length_5_minus_link_length_4
         )

@@ -36,7 +36,7 @@ from softkin._configuration import Criterion
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import are_usable, root, sqrt
+from softkin._scalar import reasonable, root, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.p2x_type1 import unrolled
 
@@ -288,7 +288,7 @@ class P2XType1(OffsetKinematics):
         machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
         offset_a1, offset_a2, part_of_type2_arms_aligned = k.offset_a1, k.offset_a2, k.part_of_type2_arms_aligned
         rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
-        if not are_usable(x, y, z):
+        if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -473,7 +473,7 @@ class P2XType1(OffsetKinematics):
         machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
         offset_a1, offset_a2, part_of_type2_arms_aligned = k.offset_a1, k.offset_a2, k.part_of_type2_arms_aligned
         rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
-        if not are_usable(x, y, z, point_x, point_y, point_z):
+        if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):

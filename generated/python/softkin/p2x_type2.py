@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import are_usable, sqrt
+from softkin._scalar import reasonable, sqrt
 from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
@@ -200,7 +200,7 @@ class P2XType2(OffsetKinematics):
         arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
         machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
         offset_a1, offset_a2, part_of_constant, span_1_x = k.offset_a1, k.offset_a2, k.part_of_constant, k.span_1_x
-        if not are_usable(x, y, z):
+        if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -310,7 +310,7 @@ class P2XType2(OffsetKinematics):
         arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
         machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
         offset_a1, offset_a2, part_of_constant, span_1_x = k.offset_a1, k.offset_a2, k.part_of_constant, k.span_1_x
-        if not are_usable(x, y, z, point_x, point_y, point_z):
+        if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):

@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn, turn_inside
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.pcc import unrolled
 
@@ -189,14 +189,14 @@ class PCC(OffsetKinematics):
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         offset_a1, offset_a2, single_a1, single_a2 = k.offset_a1, k.offset_a2, k.single_a1, k.single_a2
-        if not are_usable(x, y, z, ref_a1, ref_a2):
+        if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        # law of cosines for a2_from_a1: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach) * (
             link_length_1_plus_link_length_2 - reach
         )
@@ -230,7 +230,8 @@ class PCC(OffsetKinematics):
             * sigma_elbow
             / divisor_of_cos_a2_from_a1
         )
-        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
             arm_across_a1 = link_length_2 * sin_a2_from_a1
@@ -338,7 +339,7 @@ class PCC(OffsetKinematics):
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         offset_a1, offset_a2, single_a1, single_a2 = k.offset_a1, k.offset_a2, k.single_a1, k.single_a2
-        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
+        if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
@@ -347,7 +348,7 @@ class PCC(OffsetKinematics):
         flange_x = x - point_x  # position of the flange: the point less its offset
         flange_y = y - point_y  # position of the flange: the point less its offset
         reach = sqrt(flange_x * flange_x + flange_y * flange_y)  # distance that the remaining links must span
-        # law of cosines for a2_from_a1: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach) * (
             link_length_1_plus_link_length_2 - reach
         )
@@ -381,7 +382,8 @@ class PCC(OffsetKinematics):
             * sigma_elbow
             / divisor_of_cos_a2_from_a1
         )
-        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
             arm_across_a1 = link_length_2 * sin_a2_from_a1

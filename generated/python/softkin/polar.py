@@ -35,7 +35,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
-from softkin._scalar import DEGREE, RADIAN, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
@@ -164,14 +164,14 @@ class Polar(Mechanism):
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_plane, mid_c, offset_c = k.machine_scale_times_plane, k.mid_c, k.offset_c
         offset_r, single_c = k.offset_r, k.single_c
-        if not are_usable(x, y, z, ref_c):
+        if not reasonable(x, y, z, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y
@@ -273,7 +273,7 @@ class Polar(Mechanism):
         if not (abs(z) <= machine_scale_times_plane):
             return None
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y

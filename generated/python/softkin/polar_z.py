@@ -36,7 +36,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
-from softkin._scalar import DEGREE, RADIAN, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ class PolarZ(Mechanism):
         axis_c, axis_r, axis_z = axes
         k = self._constants
         offset_c, offset_r, offset_z = k.offset_c, k.offset_r, k.offset_z
-        if not are_usable(axis_c, axis_r, axis_z):
+        if not reasonable(axis_c, axis_r, axis_z):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
@@ -151,7 +151,7 @@ class PolarZ(Mechanism):
         axis_c, axis_r, axis_z = axes
         k = self._constants
         offset_c, offset_r = k.offset_c, k.offset_r
-        if not are_usable(axis_c, axis_r, axis_z):
+        if not reasonable(axis_c, axis_r, axis_z):
             return Status.BAD_INPUT
         axis_r_minus_offset_r = axis_r - offset_r
         # R where the machine has no pose
@@ -172,10 +172,10 @@ class PolarZ(Mechanism):
         k = self._constants
         machine_scale_times_free_angle, mid_c, offset_c = k.machine_scale_times_free_angle, k.mid_c, k.offset_c
         offset_r, offset_z, single_c = k.offset_r, k.offset_z, k.single_c
-        if not are_usable(x, y, z, ref_c):
+        if not reasonable(x, y, z, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y
@@ -211,7 +211,7 @@ class PolarZ(Mechanism):
         axis_c, axis_r, axis_z = axes
         k = self._constants
         machine_scale, offset_c, offset_r = k.machine_scale, k.offset_c, k.offset_r
-        if not are_usable(axis_c, axis_r, axis_z):
+        if not reasonable(axis_c, axis_r, axis_z):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
@@ -232,7 +232,7 @@ class PolarZ(Mechanism):
         axis_c, axis_r, axis_z = axes
         k = self._constants
         offset_c, offset_r = k.offset_c, k.offset_r
-        if not are_usable(axis_c, axis_r, axis_z):
+        if not reasonable(axis_c, axis_r, axis_z):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
@@ -252,7 +252,7 @@ class PolarZ(Mechanism):
         axis_c, axis_r, axis_z = axes
         k = self._constants
         offset_c, offset_r = k.offset_c, k.offset_r
-        if not are_usable(axis_c, axis_r, axis_z):
+        if not reasonable(axis_c, axis_r, axis_z):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
@@ -282,7 +282,7 @@ class PolarZ(Mechanism):
         machine_scale_times_free_angle, offset_c, offset_r = k.machine_scale_times_free_angle, k.offset_c, k.offset_r
         offset_z = k.offset_z
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y

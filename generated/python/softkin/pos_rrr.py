@@ -38,7 +38,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.pos_rrr import unrolled
 
@@ -188,7 +188,7 @@ class PosRRR(OffsetKinematics):
         a1, a2, a3, a3_by_effective_q3_2, d1, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3_2, k.d1, k.d3, k.d4
         d4_by_effective_q3_2, machine_scale, offset_a1 = k.d4_by_effective_q3_2, k.machine_scale, k.offset_a1
         offset_a2, offset_a3 = k.offset_a2, k.offset_a3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)
@@ -229,7 +229,7 @@ class PosRRR(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         cos_q1 = cos(q1)
@@ -265,7 +265,7 @@ class PosRRR(OffsetKinematics):
         rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
         size_q1_for_q3_2, size_q1_for_q3_2_times_rounding = k.size_q1_for_q3_2, k.size_q1_for_q3_2_times_rounding
         twice_d3 = k.twice_d3
-        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3):
+        if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
@@ -279,7 +279,7 @@ class PosRRR(OffsetKinematics):
         wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - d3 * y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + d3 * x) / distance_q1_squared
@@ -339,7 +339,7 @@ class PosRRR(OffsetKinematics):
         wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
@@ -368,7 +368,8 @@ class PosRRR(OffsetKinematics):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
+        # rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3_2 * sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
@@ -414,7 +415,7 @@ class PosRRR(OffsetKinematics):
         a1, a2, a3, a3_by_effective_q3_2, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3_2, k.d3, k.d4
         d4_by_effective_q3_2, machine_scale, offset_a1 = k.d4_by_effective_q3_2, k.machine_scale, k.offset_a1
         offset_a2, offset_a3 = k.offset_a2, k.offset_a3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)
@@ -449,7 +450,7 @@ class PosRRR(OffsetKinematics):
         k = self._constants
         a1, a2, a3, d1, d3, d4, offset_a1, offset_a2 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.offset_a1, k.offset_a2
         offset_a3 = k.offset_a3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         cos_q1 = cos(q1)
@@ -493,7 +494,7 @@ class PosRRR(OffsetKinematics):
         k = self._constants
         a1, a2, a3, d1, d3, d4, offset_a1, offset_a2 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.offset_a1, k.offset_a2
         offset_a3 = k.offset_a3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         cos_q1 = cos(q1)
@@ -547,7 +548,7 @@ class PosRRR(OffsetKinematics):
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
         rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
         twice_a2 = k.twice_a2
-        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
+        if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
         tool_z = d3 + point_y  # commanded point, in the frame of the last moving joint
@@ -568,7 +569,7 @@ class PosRRR(OffsetKinematics):
         wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - tool_z * y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + tool_z * x) / distance_q1_squared
@@ -629,7 +630,7 @@ class PosRRR(OffsetKinematics):
         # distance that the remaining links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
         a2_plus_effective_q3 = a2 + effective_q3
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         a2_minus_effective_q3 = a2 - effective_q3
         # 1 + cosine, times the scale
@@ -663,7 +664,8 @@ class PosRRR(OffsetKinematics):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = (tool_x * cos_swing_q3 + tool_y * sin_swing_q3) / effective_q3
         sin_q3 = (tool_x * sin_swing_q3 - tool_y * cos_swing_q3) / effective_q3
-        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
+        # rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = tool_y * cos_q3 + tool_x * sin_q3
             arm_across_q2 = a2 + tool_x * cos_q3 - tool_y * sin_q3
@@ -692,7 +694,7 @@ class PosRRR(OffsetKinematics):
         k = self._constants
         a1, a2, a3, d3, d4, machine_scale, offset_a1 = k.a1, k.a2, k.a3, k.d3, k.d4, k.machine_scale, k.offset_a1
         offset_a2, offset_a3 = k.offset_a2, k.offset_a3
-        if not are_usable(point_x, point_y, point_z, axis_a1, axis_a2, axis_a3):
+        if not reasonable(point_x, point_y, point_z, axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)

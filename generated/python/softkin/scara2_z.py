@@ -35,7 +35,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.scara2_z import unrolled
 
@@ -152,7 +152,7 @@ class Scara2Z(OffsetKinematics):
         k = self._constants
         arm_length_1, arm_length_2, offset_a1, offset_a2 = k.arm_length_1, k.arm_length_2, k.offset_a1, k.offset_a2
         offset_z = k.offset_z
-        if not are_usable(axis_a1, axis_a2, axis_z):
+        if not reasonable(axis_a1, axis_a2, axis_z):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -172,7 +172,7 @@ class Scara2Z(OffsetKinematics):
         axis_a1, axis_a2, axis_z = axes
         k = self._constants
         offset_a1, offset_a2 = k.offset_a1, k.offset_a2
-        if not are_usable(axis_a1, axis_a2, axis_z):
+        if not reasonable(axis_a1, axis_a2, axis_z):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -195,10 +195,10 @@ class Scara2Z(OffsetKinematics):
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         offset_a1, offset_a2, offset_z, single_a1 = k.offset_a1, k.offset_a2, k.offset_z, k.single_a1
         single_a2 = k.single_a2
-        if not are_usable(x, y, z, ref_a1, ref_a2):
+        if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach) * (arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
@@ -222,7 +222,8 @@ class Scara2Z(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = arm_length_1 + arm_length_2 * cos_a2
             arm_across_a1 = arm_length_2 * sin_a2
@@ -264,7 +265,7 @@ class Scara2Z(OffsetKinematics):
         axis_a1, axis_a2, axis_z = axes
         k = self._constants
         offset_a2 = k.offset_a2
-        if not are_usable(axis_a1, axis_a2, axis_z):
+        if not reasonable(axis_a1, axis_a2, axis_z):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
@@ -275,7 +276,7 @@ class Scara2Z(OffsetKinematics):
         axis_a1, axis_a2, axis_z = axes
         k = self._constants
         arm_length_1, arm_length_2, offset_a1, offset_a2 = k.arm_length_1, k.arm_length_2, k.offset_a1, k.offset_a2
-        if not are_usable(axis_a1, axis_a2, axis_z):
+        if not reasonable(axis_a1, axis_a2, axis_z):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -301,7 +302,7 @@ class Scara2Z(OffsetKinematics):
         axis_a1, axis_a2, axis_z = axes
         k = self._constants
         arm_length_1, arm_length_2, offset_a1, offset_a2 = k.arm_length_1, k.arm_length_2, k.offset_a1, k.offset_a2
-        if not are_usable(axis_a1, axis_a2, axis_z):
+        if not reasonable(axis_a1, axis_a2, axis_z):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -335,7 +336,7 @@ class Scara2Z(OffsetKinematics):
         arm_length_2, machine_scale_times_free_angle = k.arm_length_2, k.machine_scale_times_free_angle
         mid_a1, mid_a2, offset_a1, offset_a2, offset_z = k.mid_a1, k.mid_a2, k.offset_a1, k.offset_a2, k.offset_z
         single_a1, single_a2 = k.single_a1, k.single_a2
-        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
+        if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         tool_x = arm_length_2 + point_x  # commanded point, in the frame of the last moving joint
         effective_a2 = sqrt(point_y * point_y + tool_x * tool_x)  # effective length of the arm that a2 turns
@@ -345,7 +346,7 @@ class Scara2Z(OffsetKinematics):
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         arm_length_1_minus_reach = arm_length_1 - reach
         arm_length_1_plus_reach = arm_length_1 + reach
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (arm_length_1_minus_reach + effective_a2) * (arm_length_1_plus_reach + effective_a2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (effective_a2 - arm_length_1_plus_reach) * (arm_length_1_minus_reach - effective_a2)
@@ -370,7 +371,8 @@ class Scara2Z(OffsetKinematics):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + point_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - point_y * cos_swing_a2) / effective_a2
-        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = arm_length_1 + tool_x * cos_a2 - point_y * sin_a2
             arm_across_a1 = point_y * cos_a2 + tool_x * sin_a2
@@ -401,7 +403,7 @@ class Scara2Z(OffsetKinematics):
         k = self._constants
         arm_length_2, machine_scale, offset_a2 = k.arm_length_2, k.machine_scale, k.offset_a2
         # inputs must be numbers, and of reasonable size
-        if not are_usable(point_x, point_y, axis_a1, axis_a2, axis_z):
+        if not reasonable(point_x, point_y, axis_a1, axis_a2, axis_z):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)

@@ -39,7 +39,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.scara3_z import unrolled
@@ -170,7 +170,7 @@ class Scara3Z(TwistChoice):
         k = self._constants
         arm_length_1, arm_length_2, arm_length_3 = k.arm_length_1, k.arm_length_2, k.arm_length_3
         offset_a1, offset_a2, offset_a3, offset_z = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_z
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_z):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_z):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -194,7 +194,7 @@ class Scara3Z(TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_z = axes
         k = self._constants
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_z):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_z):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -220,7 +220,7 @@ class Scara3Z(TwistChoice):
         mid_a1, mid_a2, mid_a3, offset_a1, offset_a2 = k.mid_a1, k.mid_a2, k.mid_a3, k.offset_a1, k.offset_a2
         offset_a3, offset_z, single_a1, single_a2 = k.offset_a3, k.offset_z, k.single_a1, k.single_a2
         single_a3 = k.single_a3
-        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3):
+        if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
@@ -234,7 +234,7 @@ class Scara3Z(TwistChoice):
         sin_heading = heading_across / heading_length
         wrist_y = y - arm_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach) * (arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
@@ -258,7 +258,8 @@ class Scara3Z(TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = arm_length_1 + arm_length_2 * cos_a2
             arm_across_a1 = arm_length_2 * sin_a2
@@ -311,7 +312,7 @@ class Scara3Z(TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_z = axes
         k = self._constants
         offset_a2 = k.offset_a2
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_z):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_z):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
@@ -323,7 +324,7 @@ class Scara3Z(TwistChoice):
         k = self._constants
         arm_length_1, arm_length_2, arm_length_3 = k.arm_length_1, k.arm_length_2, k.arm_length_3
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_z):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_z):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -357,7 +358,7 @@ class Scara3Z(TwistChoice):
         k = self._constants
         arm_length_1, arm_length_2, arm_length_3 = k.arm_length_1, k.arm_length_2, k.arm_length_3
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_z):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_z):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)

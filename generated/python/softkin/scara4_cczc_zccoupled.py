@@ -43,7 +43,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.scara4_cczc_zccoupled import unrolled
@@ -209,7 +209,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         k = self._constants
         link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
         offset_a3, offset_a4, part_of_constant, part_of_z = k.offset_a3, k.offset_a4, k.part_of_constant, k.part_of_z
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
@@ -242,7 +242,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         offset_a1, offset_a2, offset_a4, part_of_constant = k.offset_a1, k.offset_a2, k.offset_a4, k.part_of_constant
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -273,7 +273,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
         offset_a4, part_of_z, single_a1, single_a2 = k.offset_a4, k.part_of_z, k.single_a1, k.single_a2
         single_a4 = k.single_a4
-        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a4):
+        if not reasonable(x, y, z, ref_a1, ref_a2, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         if flange_down:
@@ -287,7 +287,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
@@ -311,7 +311,8 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2 * cos_a2
             arm_across_a1 = link_length_2 * sin_a2
@@ -366,7 +367,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         offset_a2 = k.offset_a2
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
@@ -378,7 +379,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         k = self._constants
         link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
         part_of_constant_2 = k.part_of_constant_2
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -412,7 +413,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         k = self._constants
         link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
         part_of_constant_2 = k.part_of_constant_2
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -471,7 +472,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
         part_of_z, single_a1, single_a2 = k.part_of_z, k.single_a1, k.single_a2
-        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a4):
+        if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         reference_a4 = (ref_a4 - offset_a4) * DEGREE
         cos_a4 = cos(reference_a4)
@@ -497,7 +498,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (effective_a2 + link_length_1_minus_reach) * (effective_a2 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2) * (effective_a2 - link_length_1_minus_reach)
@@ -522,7 +523,8 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + tool_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - tool_y * cos_swing_a2) / effective_a2
-        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + tool_x * cos_a2 - tool_y * sin_a2
             arm_across_a1 = tool_y * cos_a2 + tool_x * sin_a2
@@ -556,7 +558,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         flange_down, link_length_2, machine_scale = k.flange_down, k.link_length_2, k.machine_scale
         offset_a2, offset_a4 = k.offset_a2, k.offset_a4
         # inputs must be numbers, and of reasonable size
-        if not are_usable(point_x, point_y, axis_a1, axis_a2, axis_a3, axis_a4):
+        if not reasonable(point_x, point_y, axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)

@@ -43,7 +43,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.scara4_zccc import unrolled
@@ -176,7 +176,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         k = self._constants
         link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         a3 = DEGREE * (axis_a3 - offset_a3)
@@ -200,7 +200,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         offset_a2, offset_a3, offset_a4 = k.offset_a2, k.offset_a3, k.offset_a4
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         a3 = DEGREE * (axis_a3 - offset_a3)
@@ -226,7 +226,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         mid_a2, mid_a3, mid_a4, offset_a1, offset_a2 = k.mid_a2, k.mid_a3, k.mid_a4, k.offset_a1, k.offset_a2
         offset_a3, offset_a4, single_a2, single_a3 = k.offset_a3, k.offset_a4, k.single_a2, k.single_a3
         single_a4 = k.single_a4
-        if not are_usable(x, y, z, ref_a2, ref_a3, ref_a4):
+        if not reasonable(x, y, z, ref_a2, ref_a3, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
@@ -240,7 +240,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         sin_heading = heading_across / heading_length
         wrist_y = y - link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
-        # law of cosines for a3: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a3 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
@@ -265,7 +265,8 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         axis_a1 = offset_a1 + z
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a3
-        # rotation by a2 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2 * cos_a3
             arm_across_a2 = link_length_2 * sin_a3
@@ -317,7 +318,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         offset_a3 = k.offset_a3
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a3 = DEGREE * (axis_a3 - offset_a3)
         sin_a3 = sin(a3)
@@ -329,7 +330,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         k = self._constants
         link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
         offset_a2, offset_a3, offset_a4 = k.offset_a2, k.offset_a3, k.offset_a4
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
@@ -363,7 +364,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         k = self._constants
         link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
         offset_a2, offset_a3, offset_a4 = k.offset_a2, k.offset_a3, k.offset_a4
-        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
@@ -418,7 +419,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         machine_scale_times_free_angle, mid_a2, mid_a3 = k.machine_scale_times_free_angle, k.mid_a2, k.mid_a3
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
         single_a2, single_a3 = k.single_a2, k.single_a3
-        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a2, ref_a3, ref_a4):
+        if not reasonable(x, y, z, point_x, point_y, point_z, ref_a2, ref_a3, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         reference_a4 = (ref_a4 - offset_a4) * DEGREE
         cos_a4 = cos(reference_a4)
@@ -435,7 +436,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # law of cosines for a3: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a3 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a3 = (effective_a3 + link_length_1_minus_reach) * (effective_a3 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (link_length_1_plus_reach - effective_a3) * (effective_a3 - link_length_1_minus_reach)
@@ -462,7 +463,8 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (tool_x * cos_swing_a3 + tool_y * sin_swing_a3) / effective_a3
         sin_a3 = (tool_x * sin_swing_a3 - tool_y * cos_swing_a3) / effective_a3
-        # rotation by a2 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + tool_x * cos_a3 - tool_y * sin_a3
             arm_across_a2 = tool_y * cos_a3 + tool_x * sin_a3
@@ -492,7 +494,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         link_length_2, link_length_3, machine_scale = k.link_length_2, k.link_length_3, k.machine_scale
         offset_a3, offset_a4 = k.offset_a3, k.offset_a4
         # inputs must be numbers, and of reasonable size
-        if not are_usable(point_x, point_y, axis_a1, axis_a2, axis_a3, axis_a4):
+        if not reasonable(point_x, point_y, axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a3 = DEGREE * (axis_a3 - offset_a3)
         sin_a3 = sin(a3)

@@ -45,7 +45,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn, turn_inside
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.sccc import unrolled
@@ -205,7 +205,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         coupling_12, coupling_13, coupling_23 = k.coupling_12, k.coupling_13, k.coupling_23
         link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         motor_a2 = DEGREE * (axis_a2 - offset_a2)
@@ -231,7 +231,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         k = self._constants
         coupling_12, coupling_13, coupling_23, offset_a1 = k.coupling_12, k.coupling_13, k.coupling_23, k.offset_a1
         offset_a2, offset_a3 = k.offset_a2, k.offset_a3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         motor_a2 = DEGREE * (axis_a2 - offset_a2)
@@ -260,7 +260,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         machine_scale_times_plane, mid_a1, mid_a2, mid_a3 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2, k.mid_a3
         offset_a1, offset_a2, offset_a3, part_of_open_a2 = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_open_a2
         single_a1, single_a2, single_a3 = k.single_a1, k.single_a2, k.single_a3
-        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3):
+        if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
@@ -278,7 +278,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         sin_heading = heading_across / heading_length
         wrist_y = y - link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
@@ -302,7 +302,8 @@ class SCCC(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2 * cos_a2
             arm_across_a1 = link_length_2 * sin_a2
@@ -411,7 +412,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         coupling_12, offset_a1, offset_a2 = k.coupling_12, k.offset_a1, k.offset_a2
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         motor_a2 = DEGREE * (axis_a2 - offset_a2)
@@ -428,7 +429,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
         offset_a1, offset_a2, offset_a3, part_of_constant = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_constant
         part_of_constant_2, part_of_constant_3 = k.part_of_constant_2, k.part_of_constant_3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -470,7 +471,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
         offset_a1, offset_a2, offset_a3, part_of_constant = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_constant
         part_of_constant_2, part_of_constant_3 = k.part_of_constant_2, k.part_of_constant_3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -533,7 +534,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         offset_a1, offset_a2, offset_a3, part_of_open_a2 = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_open_a2
         single_a1, single_a2 = k.single_a1, k.single_a2
-        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
+        if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
@@ -557,7 +558,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (effective_a2 + link_length_1_minus_reach) * (effective_a2 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2) * (effective_a2 - link_length_1_minus_reach)
@@ -582,7 +583,8 @@ class SCCC(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + tool_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - tool_y * cos_swing_a2) / effective_a2
-        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + tool_x * cos_a2 - tool_y * sin_a2
             arm_across_a1 = tool_y * cos_a2 + tool_x * sin_a2
@@ -619,7 +621,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         link_length_2, link_length_3, machine_scale = k.link_length_2, k.link_length_3, k.machine_scale
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
         # inputs must be numbers, and of reasonable size
-        if not are_usable(point_x, point_y, axis_a1, axis_a2, axis_a3):
+        if not reasonable(point_x, point_y, axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         motor_a2 = DEGREE * (axis_a2 - offset_a2)

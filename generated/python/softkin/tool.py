@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
-from softkin._scalar import are_usable, sqrt
+from softkin._scalar import reasonable, sqrt
 from softkin._types import Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ class Tool(OrientationKinematics):
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         k = self._constants
         tool_x, tool_y, tool_z, unnoticed_shift = k.tool_x, k.tool_y, k.tool_z, k.unnoticed_shift
-        if not are_usable(flange_axis_x, flange_axis_y, flange_axis_z):
+        if not reasonable(flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         # the flange's part along the axis about which the flange turns
         flange_along = flange_axis_x * tool_x + flange_axis_y * tool_y + flange_axis_z * tool_z
@@ -149,7 +149,7 @@ class Tool(OrientationKinematics):
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self._constants
         tool_x, tool_y, tool_z = k.tool_x, k.tool_y, k.tool_z
-        if not are_usable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z):
+        if not reasonable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         # the flange's part along the axis about which the flange turns
         flange_along = flange_axis_x * tool_x + flange_axis_y * tool_y + flange_axis_z * tool_z
@@ -160,7 +160,7 @@ class Tool(OrientationKinematics):
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
-        if not are_usable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z):
+        if not reasonable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         return (
             ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)),

@@ -39,7 +39,7 @@ from softkin._configuration import Criterion
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, root, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.tripod_linear import unrolled
 
@@ -258,7 +258,7 @@ class TripodLinear(OffsetKinematics):
         part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
         part_of_pivot_2_y_2, sin_rail_angle = k.part_of_pivot_2_y_2, k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
         pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
@@ -342,7 +342,7 @@ class TripodLinear(OffsetKinematics):
         part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
         part_of_pivot_2_y, part_of_pivot_2_y_2 = k.part_of_pivot_2_y, k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
         pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
@@ -418,7 +418,7 @@ class TripodLinear(OffsetKinematics):
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
         sin_max_angle_ball_joint, sin_rail_angle = k.sin_max_angle_ball_joint, k.sin_rail_angle
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
-        if not are_usable(x, y, z):
+        if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
         z_minus_cos_rail_angle_squared_times_z = z - z * cos_rail_angle_squared
@@ -582,7 +582,7 @@ class TripodLinear(OffsetKinematics):
         part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
         part_of_pivot_2_y_2, sin_rail_angle = k.part_of_pivot_2_y_2, k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
         pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
@@ -676,7 +676,7 @@ class TripodLinear(OffsetKinematics):
         part_of_pivot_2_y_2, part_of_slope_1_by_x = k.part_of_pivot_2_y_2, k.part_of_slope_1_by_x
         sin_rail_angle, sin_rail_angle_times_root_of_3 = k.sin_rail_angle, k.sin_rail_angle_times_root_of_3
         twice_cos_rail_angle, twice_sin_rail_angle = k.twice_cos_rail_angle, k.twice_sin_rail_angle
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
         pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
@@ -822,7 +822,7 @@ class TripodLinear(OffsetKinematics):
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
         sin_max_angle_ball_joint, sin_rail_angle = k.sin_max_angle_ball_joint, k.sin_rail_angle
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
-        if not are_usable(x, y, z, point_x, point_y, point_z):
+        if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_y = y - point_y  # position of the flange: the point less its offset
         flange_z = z - point_z  # position of the flange: the point less its offset
@@ -979,7 +979,7 @@ class TripodLinear(OffsetKinematics):
         part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
         part_of_pivot_2_y_2, sin_rail_angle = k.part_of_pivot_2_y_2, k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
         pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y

@@ -39,7 +39,7 @@ from softkin._configuration import Criterion
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import are_usable, root, sqrt
+from softkin._scalar import reasonable, root, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.tripod_p3z import unrolled
 
@@ -337,7 +337,7 @@ class TripodP3Z(OffsetKinematics):
         offset_a3, one_by_arm_length = k.offset_a3, k.one_by_arm_length
         part_of_normal_divisor, part_of_projection_2 = k.part_of_normal_divisor, k.part_of_projection_2
         part_of_projection_3, pivot_1_x, pivot_1_y = k.part_of_projection_3, k.pivot_1_x, k.pivot_1_y
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
@@ -401,7 +401,7 @@ class TripodP3Z(OffsetKinematics):
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
         part_of_normal_divisor, part_of_projection_2 = k.part_of_normal_divisor, k.part_of_projection_2
         part_of_projection_3 = k.part_of_projection_3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
@@ -455,7 +455,7 @@ class TripodP3Z(OffsetKinematics):
         part_of_span_3_y, part_of_type2_rods_coplanar = k.part_of_span_3_y, k.part_of_type2_rods_coplanar
         pivot_1_x, pivot_1_y, pivot_2_x, pivot_2_y = k.pivot_1_x, k.pivot_1_y, k.pivot_2_x, k.pivot_2_y
         pivot_3_x, pivot_3_y = k.pivot_3_x, k.pivot_3_y
-        if not are_usable(x, y, z):
+        if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x - part_of_span_1_x  # rod 1: known part of its vector
         span_1_y = y - part_of_span_1_y
@@ -539,7 +539,7 @@ class TripodP3Z(OffsetKinematics):
         part_of_projection_2, part_of_projection_3 = k.part_of_projection_2, k.part_of_projection_3
         pivot_1_x, pivot_1_y, pivot_2_x, pivot_2_y = k.pivot_1_x, k.pivot_1_y, k.pivot_2_x, k.pivot_2_y
         pivot_3_x, pivot_3_y = k.pivot_3_x, k.pivot_3_y
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
@@ -617,7 +617,7 @@ class TripodP3Z(OffsetKinematics):
         part_of_slope_1_by_y, part_of_slope_2_by_x = k.part_of_slope_1_by_y, k.part_of_slope_2_by_x
         part_of_slope_2_by_y, part_of_slope_3_by_x = k.part_of_slope_2_by_y, k.part_of_slope_3_by_x
         part_of_slope_3_by_y, pivot_1_x, pivot_1_y = k.part_of_slope_3_by_y, k.pivot_1_x, k.pivot_1_y
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
@@ -722,7 +722,7 @@ class TripodP3Z(OffsetKinematics):
         part_of_span_3_y, part_of_type2_rods_coplanar = k.part_of_span_3_y, k.part_of_type2_rods_coplanar
         pivot_1_x, pivot_1_y, pivot_2_x, pivot_2_y = k.pivot_1_x, k.pivot_1_y, k.pivot_2_x, k.pivot_2_y
         pivot_3_x, pivot_3_y = k.pivot_3_x, k.pivot_3_y
-        if not are_usable(x, y, z, point_x, point_y, point_z):
+        if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # position of the flange: the point less its offset
         span_1_x = flange_x - part_of_span_1_x  # rod 1: known part of its vector
@@ -793,7 +793,7 @@ class TripodP3Z(OffsetKinematics):
         offset_a3, one_by_arm_length = k.offset_a3, k.one_by_arm_length
         part_of_normal_divisor, part_of_projection_2 = k.part_of_normal_divisor, k.part_of_projection_2
         part_of_projection_3 = k.part_of_projection_3
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2

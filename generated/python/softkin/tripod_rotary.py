@@ -41,7 +41,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.tripod_rotary import unrolled
 
@@ -271,7 +271,7 @@ class TripodRotary(OffsetKinematics):
         half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
         offset_a2, offset_a3, part_of_normal_divisor = k.offset_a2, k.offset_a3, k.part_of_normal_divisor
         part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
@@ -361,7 +361,7 @@ class TripodRotary(OffsetKinematics):
         half_arm_length_1, offset_a1, offset_a2, offset_a3 = k.half_arm_length_1, k.offset_a1, k.offset_a2, k.offset_a3
         part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
@@ -444,7 +444,7 @@ class TripodRotary(OffsetKinematics):
         root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
         sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
         single_a3, twice_arm_length_1 = k.single_a3, k.twice_arm_length_1
-        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3):
+        if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         span_1_z = z - fixed_length_2
@@ -456,7 +456,7 @@ class TripodRotary(OffsetKinematics):
         # cosine, times the scale, without cancellation
         scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
         twice_arm_length_1_times_effective_a1 = effective_a1 * twice_arm_length_1
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -499,7 +499,7 @@ class TripodRotary(OffsetKinematics):
         # cosine, times the scale, without cancellation
         scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y) * y - part_of_scaled_cosine_a2
         arm_length_1_times_effective_a2 = arm_length_1 * effective_a2
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -540,7 +540,7 @@ class TripodRotary(OffsetKinematics):
         # cosine, times the scale, without cancellation
         scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y) * y - part_of_scaled_cosine_a2
         arm_length_1_times_effective_a3 = arm_length_1 * effective_a3
-        # law of cosines for a3: rod 3: 1 - cosine, times a scale
+        # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -688,7 +688,7 @@ class TripodRotary(OffsetKinematics):
         offset_a2, offset_a3, part_of_margin_rods_coplanar = k.offset_a2, k.offset_a3, k.part_of_margin_rods_coplanar
         part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
@@ -794,7 +794,7 @@ class TripodRotary(OffsetKinematics):
         part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
         part_of_pivot_2_y, part_of_slope_1_by_x = k.part_of_pivot_2_y, k.part_of_slope_1_by_x
         twice_arm_length_1 = k.twice_arm_length_1
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
@@ -949,7 +949,7 @@ class TripodRotary(OffsetKinematics):
         root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
         sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
         single_a3, twice_arm_length_1 = k.single_a3, k.twice_arm_length_1
-        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
+        if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # position of the flange: the point less its offset
         span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
@@ -966,7 +966,7 @@ class TripodRotary(OffsetKinematics):
             (fixed_length_1_minus_arm_1_radius - span_1_x) * flange_x - part_of_scaled_cosine_a1_2 - flange_y * flange_y
         )
         twice_arm_length_1_times_effective_a1 = effective_a1 * twice_arm_length_1
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -1009,7 +1009,7 @@ class TripodRotary(OffsetKinematics):
         # cosine, times the scale, without cancellation
         scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y) * flange_y - part_of_scaled_cosine_a2
         arm_length_1_times_effective_a2 = arm_length_1 * effective_a2
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -1050,7 +1050,7 @@ class TripodRotary(OffsetKinematics):
         # cosine, times the scale, without cancellation
         scaled_cosine_a3 = flange_y * (part_of_pivot_2_y + span_3_y) - part_of_scaled_cosine_a2
         arm_length_1_times_effective_a3 = arm_length_1 * effective_a3
-        # law of cosines for a3: rod 3: 1 - cosine, times a scale
+        # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -1193,7 +1193,7 @@ class TripodRotary(OffsetKinematics):
         half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
         offset_a2, offset_a3, part_of_normal_divisor = k.offset_a2, k.offset_a3, k.part_of_normal_divisor
         part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
-        if not are_usable(axis_a1, axis_a2, axis_a3):
+        if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)

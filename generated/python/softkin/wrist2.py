@@ -36,7 +36,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._orientation import OrientationKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.wrist2 import unrolled
 
@@ -228,7 +228,8 @@ class Wrist2(OrientationKinematics):
         r13_of_a = r13 / tool_side
         r23_of_a = r23 / tool_side
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
-        # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
+        # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+        # reference
         if radius_a > 1e-11:
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a
@@ -339,7 +340,7 @@ class Wrist2(OrientationKinematics):
         k = self._constants
         roll_axis_offset_z, unmet_offset, unnoticed_shift = k.roll_axis_offset_z, k.unmet_offset, k.unnoticed_shift
         wrist_offset = k.wrist_offset
-        if not are_usable(flange_axis_x, flange_axis_y, flange_axis_z):
+        if not reasonable(flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         # the flange's part along the axis about which the flange turns
         flange_along = flange_axis_z * roll_axis_offset_z
@@ -363,7 +364,7 @@ class Wrist2(OrientationKinematics):
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self._constants
         roll_axis_offset_z, tool_length_times_tool_side = k.roll_axis_offset_z, k.tool_length_times_tool_side
-        if not are_usable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z):
+        if not reasonable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         # the flange's part along the axis about which the flange turns
         flange_along = flange_axis_z * roll_axis_offset_z

@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._orientation import OrientationKinematics
-from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.wrist3 import unrolled
 
@@ -149,7 +149,7 @@ class Wrist3(OrientationKinematics):
         k = self._constants
         offset_a, offset_b, offset_c, tool_offset_x = k.offset_a, k.offset_b, k.offset_c, k.tool_offset_x
         tool_offset_y, tool_offset_z = k.tool_offset_y, k.tool_offset_z
-        if not are_usable(axis_a, axis_b, axis_c):
+        if not reasonable(axis_a, axis_b, axis_c):
             return Status.BAD_INPUT
         b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
@@ -184,7 +184,7 @@ class Wrist3(OrientationKinematics):
         axis_a, axis_b, axis_c = axes
         k = self._constants
         offset_a, offset_b, offset_c = k.offset_a, k.offset_b, k.offset_c
-        if not are_usable(axis_a, axis_b, axis_c):
+        if not reasonable(axis_a, axis_b, axis_c):
             return Status.BAD_INPUT
         b = DEGREE * (axis_b - offset_b)
         cos_b = cos(b)
@@ -218,10 +218,11 @@ class Wrist3(OrientationKinematics):
         k = self._constants
         mid_a, mid_b, mid_c, offset_a, offset_b = k.mid_a, k.mid_b, k.mid_c, k.offset_a, k.offset_b
         offset_c, single_a, single_b, single_c = k.offset_c, k.single_a, k.single_b, k.single_c
-        if not are_usable(ref_a, ref_b, ref_c):
+        if not reasonable(ref_a, ref_b, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
-        # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
+        # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+        # reference
         if radius_c > 1e-11:
             direction_x_c = sigma_hand * r31
             direction_y_c = -sigma_hand * r32
@@ -268,7 +269,7 @@ class Wrist3(OrientationKinematics):
         axis_a, axis_b, axis_c = axes
         k = self._constants
         offset_b = k.offset_b
-        if not are_usable(axis_a, axis_b, axis_c):
+        if not reasonable(axis_a, axis_b, axis_c):
             return Status.BAD_INPUT
         b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
@@ -279,7 +280,7 @@ class Wrist3(OrientationKinematics):
         axis_a, axis_b, axis_c = axes
         k = self._constants
         offset_a, offset_b = k.offset_a, k.offset_b
-        if not are_usable(axis_a, axis_b, axis_c):
+        if not reasonable(axis_a, axis_b, axis_c):
             return Status.BAD_INPUT
         a = DEGREE * (axis_a - offset_a)
         sin_a = sin(a)
@@ -301,7 +302,7 @@ class Wrist3(OrientationKinematics):
         k = self._constants
         offset_a, offset_b, offset_c, tool_offset_x = k.offset_a, k.offset_b, k.offset_c, k.tool_offset_x
         tool_offset_y, tool_offset_z = k.tool_offset_y, k.tool_offset_z
-        if not are_usable(axis_a, axis_b, axis_c):
+        if not reasonable(axis_a, axis_b, axis_c):
             return Status.BAD_INPUT
         a = DEGREE * (axis_a - offset_a)
         sin_a = sin(a)

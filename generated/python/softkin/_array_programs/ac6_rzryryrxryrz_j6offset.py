@@ -98,7 +98,7 @@ class ArrayPrograms(Programs):
         slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried * cos_q1_tried) * one_by_distance_q1_tried
         slope_across_q1_tried = wanted_shoulder * slope_wrist_y_tried
         slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried * sin_q1_tried) * one_by_distance_q1_tried
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried = elsewhere(
             (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
@@ -115,7 +115,7 @@ class ArrayPrograms(Programs):
         )
         part_of_one_less_cos_q3_tried = k.a2_plus_effective_q3_tried - reach_tried
         part_of_one_less_cos_q3_tried_2 = k.a2_plus_effective_q3_tried + reach_tried
-        # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3_tried = part_of_one_less_cos_q3_tried * part_of_one_less_cos_q3_tried_2
         part_of_one_plus_cos_q3_tried = k.a2_minus_effective_q3_tried - reach_tried
         part_of_one_plus_cos_q3_tried_2 = k.a2_minus_effective_q3_tried + reach_tried
@@ -229,7 +229,7 @@ class ArrayPrograms(Programs):
         slope_sin_q2_tried = (
             slope_across_q2_tried - slope_length_q2_tried * sin_q2_tried
         ) * one_by_root_of_length_q2_tried
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried = elsewhere(
             (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
@@ -329,7 +329,7 @@ class ArrayPrograms(Programs):
         cos_q1_tried = along_q1_tried / length_q1_tried
         across_q1_tried = wanted_shoulder * wrist_y_tried
         sin_q1_tried = across_q1_tried / length_q1_tried
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         cos_q1_tried, sin_q1_tried = elsewhere(
             (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried),
@@ -344,7 +344,7 @@ class ArrayPrograms(Programs):
         reach_tried = sqrt(
             wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
         )
-        # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3_tried = (k.a2_plus_effective_q3_tried + reach_tried) * (
             k.a2_plus_effective_q3_tried - reach_tried
         )
@@ -383,7 +383,7 @@ class ArrayPrograms(Programs):
         )
         cos_q2_tried = along_q2_tried / length_q2_tried
         sin_q2_tried = across_q2_tried / length_q2_tried
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         cos_q2_tried, sin_q2_tried = elsewhere(
             (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried),
@@ -955,7 +955,7 @@ class ArrayPrograms(Programs):
         reach_closed = sqrt(
             wrist_x_from_q1_closed * wrist_x_from_q1_closed + wrist_z_from_q1_closed * wrist_z_from_q1_closed
         )
-        # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3_closed = (k.a2_plus_effective_q3_tried + reach_closed) * (
             k.a2_plus_effective_q3_tried - reach_closed
         )
@@ -1025,7 +1025,7 @@ class ArrayPrograms(Programs):
             cos_q1_closed = along_q1_closed / distance_q1_closed
             across_q1_closed = sigma_shoulder * wrist_y_closed
             sin_q1_closed = across_q1_closed / distance_q1_closed
-            # if singular: that of the reference
+            # where it is singular: the angle of the reference
             cos_q1_closed, sin_q1_closed = elsewhere(
                 distance_q1_closed > k.machine_scale_times_free_angle,
                 (cos_q1_closed, sin_q1_closed),
@@ -1055,7 +1055,7 @@ class ArrayPrograms(Programs):
             length_q2_closed = select(part_of_length_q2_closed > 0.0, root(part_of_length_q2_closed), 1.0)
             cos_q2_closed = along_q2_closed / length_q2_closed
             sin_q2_closed = across_q2_closed / length_q2_closed
-            # if singular: that of the reference
+            # where it is singular: the angle of the reference
             cos_q2_closed, sin_q2_closed = elsewhere(
                 reach_closed > k.machine_scale_times_free_angle,
                 (cos_q2_closed, sin_q2_closed),
@@ -1089,7 +1089,8 @@ class ArrayPrograms(Programs):
 
             direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
             direction_y_q4_closed = -sigma_wrist * r23_from_q1_closed
-            # polar coordinates: angle q4 from the r33 and r23 equations; if singular: that of the reference
+            # polar coordinates: angle q4 from the r33 and r23 equations; where it is singular: the angle of the
+            # reference
             direction_x_q4_closed, direction_y_q4_closed = elsewhere(
                 radius_q4_closed > 1e-11,
                 (direction_x_q4_closed, direction_y_q4_closed),

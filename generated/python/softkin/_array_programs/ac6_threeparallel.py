@@ -138,7 +138,7 @@ class ArrayPrograms(Programs):
 
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - k.d4 * wrist_y) / distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + k.d4 * wrist_x) / distance_q1_squared
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > k.machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -576,7 +576,7 @@ class ArrayPrograms(Programs):
         cos_q6_before_q6_of_q3 = along_q6 / radius_q6
         across_q6 = sigma_wrist * r22_from_q1
         sin_q6_before_q6_of_q3 = across_q6 / radius_q6
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3 = elsewhere(
             radius_q6 > 1e-11,
             (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
@@ -731,7 +731,7 @@ class ArrayPrograms(Programs):
         wrist_y_from_q1 = wrist_y_from_q1_fixed + k.d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (k.a2_plus_a3 + reach) * (k.a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - k.a2_minus_a3) * (k.a2_minus_a3 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -754,7 +754,8 @@ class ArrayPrograms(Programs):
         arm_across_q2 = k.a3 * sin_q3
         direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
         direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
-        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
+        # rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         direction_x_q2, direction_y_q2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_q2, direction_y_q2),

@@ -144,7 +144,7 @@ class ArrayPrograms(Programs):
 
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - k.d3 * wrist_y) / distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + k.d3 * wrist_x) / distance_q1_squared
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > k.machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -255,7 +255,7 @@ class ArrayPrograms(Programs):
         wrist_x_from_q1 = ahead_q1 - k.a1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (k.a2_plus_effective_q3 + reach) * (k.a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - k.a2_minus_effective_q3) * (k.a2_minus_effective_q3 + reach)
@@ -286,7 +286,7 @@ class ArrayPrograms(Programs):
         )
         cos_q2 = along_q2 / length_q2
         sin_q2 = across_q2 / length_q2
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         cos_q2, sin_q2 = elsewhere(
             reach > k.machine_scale_times_free_angle, (cos_q2, sin_q2), elsewhere_cos_q2, (ref_a2,)
         )
@@ -315,7 +315,8 @@ class ArrayPrograms(Programs):
 
         direction_x_q4 = -sigma_hand * r13_from_q123
         direction_y_q4 = sigma_hand * r23_from_q1
-        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+        # reference
         direction_x_q4, direction_y_q4 = elsewhere(
             radius_q4 > 1e-11, (direction_x_q4, direction_y_q4), elsewhere_direction_x_q4, (ref_a4,)
         )

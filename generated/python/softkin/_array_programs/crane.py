@@ -83,7 +83,7 @@ class ArrayPrograms(Programs):
             direction_y_theta = sin(reference_theta)
             return (direction_x_theta, direction_y_theta)
 
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         direction_x_theta, direction_y_theta = elsewhere(
             radius_theta > k.machine_scale_times_free_angle, (x, y), elsewhere_direction_x_theta, (ref_theta,)
         )
@@ -100,7 +100,7 @@ class ArrayPrograms(Programs):
             direction_y_phi = sin(part_of_direction_y_phi)
             return (direction_x_phi, direction_y_phi)
 
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         direction_x_phi, direction_y_phi = elsewhere(
             radius_phi > k.machine_scale_times_free_angle, (z, radius_theta), elsewhere_direction_x_phi, (ref_phi,)
         )

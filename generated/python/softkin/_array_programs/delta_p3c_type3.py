@@ -151,7 +151,7 @@ class ArrayPrograms(Programs):
         third_square_a1 = (k.outer_arm_1 + part_of_third_square_a1) * (k.outer_arm_1 - part_of_third_square_a1)
         divisor_a1 = select(effective_a1 > k.inner_arm_1_times_shortest_link, effective_a1, 1.0)
         effective_a1_minus_inner_arm_1 = divisor_a1 - k.inner_arm_1
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = divisor_a1 + k.inner_arm_1
         # 1 + cosine, times the scale
@@ -169,7 +169,7 @@ class ArrayPrograms(Programs):
         third_square_a2 = (k.outer_arm_2 + part_of_third_square_a2) * (k.outer_arm_2 - part_of_third_square_a2)
         divisor_a2 = select(effective_a2 > k.inner_arm_2_times_shortest_link, effective_a2, 1.0)
         effective_a2_minus_inner_arm_2 = divisor_a2 - k.inner_arm_2
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = divisor_a2 + k.inner_arm_2
         # 1 + cosine, times the scale
@@ -187,7 +187,7 @@ class ArrayPrograms(Programs):
         third_square_a3 = (k.outer_arm_3 + part_of_third_square_a3) * (k.outer_arm_3 - part_of_third_square_a3)
         divisor_a3 = select(effective_a3 > k.inner_arm_3_times_shortest_link, effective_a3, 1.0)
         effective_a3_minus_inner_arm_3 = divisor_a3 - k.inner_arm_3
-        # law of cosines for a3: rod 3: 1 - cosine, times a scale
+        # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = divisor_a3 + k.inner_arm_3
         # 1 + cosine, times the scale

@@ -137,7 +137,7 @@ class ArrayPrograms(Programs):
         # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x * span_upper_x + span_upper_y * span_upper_y)
         divisor_a1 = select(effective_a1 > k.link_length_1_times_shortest_link, effective_a1, 1.0)
-        # law of cosines for a1: rod upper: 1 - cosine, times a scale
+        # law of cosines for a1 (rod upper): 1 - cosine, times a scale
         one_less_cos_a1 = (divisor_a1 + k.link_length_1_minus_link_length_2) * (
             divisor_a1 + k.link_length_1_plus_link_length_2
         )
@@ -161,7 +161,7 @@ class ArrayPrograms(Programs):
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = select(effective_a2 > k.link_length_5_times_shortest_link, effective_a2, 1.0)
-        # law of cosines for a2: rod rear: 1 - cosine, times a scale
+        # law of cosines for a2 (rod rear): 1 - cosine, times a scale
         one_less_cos_a2 = (divisor_a2 + k.link_length_4_plus_link_length_5) * (
             divisor_a2 + k.link_length_5_minus_link_length_4
         )

@@ -104,7 +104,7 @@ class ArrayPrograms(Programs):
         y_squared = y * y
         effective_a1 = root(y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
         divisor_a1 = select(effective_a1 > k.inner_arm_times_shortest_link, effective_a1, 1.0)
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = (k.inner_arm_plus_outer_arm - divisor_a1) * (divisor_a1 - k.inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1 + k.inner_arm_minus_outer_arm) * (divisor_a1 + k.inner_arm_plus_outer_arm)
@@ -115,7 +115,7 @@ class ArrayPrograms(Programs):
         span_2_x = k.part_of_pivot_1_x + x  # rod 2: known part of its vector
         effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         divisor_a2 = select(effective_a2 > k.inner_arm_times_shortest_link, effective_a2, 1.0)
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = (k.inner_arm_plus_outer_arm - divisor_a2) * (divisor_a2 - k.inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + k.inner_arm_minus_outer_arm) * (divisor_a2 + k.inner_arm_plus_outer_arm)

@@ -70,7 +70,7 @@ class ArrayPrograms(Programs):
             direction_y_c = sin(reference_c)
             return (direction_x_c, direction_y_c)
 
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         direction_x_c, direction_y_c = elsewhere(
             radius_c > k.machine_scale_times_free_angle, (x, y), elsewhere_direction_x_c, (ref_c,)
         )

@@ -103,7 +103,7 @@ class ArrayPrograms(Programs):
 
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - k.d3 * y) / distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + k.d3 * x) / distance_q1_squared
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > k.machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -216,7 +216,7 @@ class ArrayPrograms(Programs):
         wrist_x_from_q1 = ahead_q1 - k.a1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (k.a2_plus_effective_q3_2 + reach) * (k.a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - k.a2_minus_effective_q3_2) * (k.a2_minus_effective_q3_2 + reach)
@@ -240,7 +240,8 @@ class ArrayPrograms(Programs):
         arm_across_q2 = k.a2 + k.effective_q3_2 * cos_swing_q3
         direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
         direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
-        # rotation by q2 that takes the arm to its target point; if singular: that of the reference
+        # rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         direction_x_q2, direction_y_q2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_q2, direction_y_q2),

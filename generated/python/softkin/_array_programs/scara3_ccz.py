@@ -66,7 +66,7 @@ class ArrayPrograms(Programs):
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a1, ref_a2, x, y, z), Status.BAD_INPUT)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (k.link_length_1_plus_link_length_2 + reach) * (k.link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
@@ -87,7 +87,8 @@ class ArrayPrograms(Programs):
         arm_across_a1 = k.link_length_2 * sin_a2
         direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
         direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
-        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),

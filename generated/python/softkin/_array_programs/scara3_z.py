@@ -84,7 +84,7 @@ class ArrayPrograms(Programs):
         sin_heading = heading_across / heading_divisor
         wrist_y = y - k.arm_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (k.arm_length_1_plus_arm_length_2 + reach) * (k.arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.arm_length_1_minus_arm_length_2) * (k.arm_length_1_minus_arm_length_2 + reach)
@@ -105,7 +105,8 @@ class ArrayPrograms(Programs):
         arm_across_a1 = k.arm_length_2 * sin_a2
         direction_x_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
         direction_y_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
-        # rotation by a1 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),

@@ -80,7 +80,7 @@ class ArrayPrograms(Programs):
         sin_heading = heading_across / heading_divisor
         wrist_y = y - k.link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
-        # law of cosines for a3: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a3 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a3 = (k.link_length_1_plus_link_length_2 + reach) * (k.link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
@@ -102,7 +102,8 @@ class ArrayPrograms(Programs):
         arm_across_a2 = k.link_length_2 * sin_a3
         direction_x_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
         direction_y_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
-        # rotation by a2 that takes the arm to its target point; if singular: that of the reference
+        # rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
+        # reference
         direction_x_a2, direction_y_a2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_a2, direction_y_a2),

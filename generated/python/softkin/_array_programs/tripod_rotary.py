@@ -142,7 +142,7 @@ class ArrayPrograms(Programs):
         scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (k.fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
         divisor_a1 = select(effective_a1 > k.arm_length_1_times_shortest_link, effective_a1, 1.0)
         twice_arm_length_1_times_effective_a1 = divisor_a1 * k.twice_arm_length_1
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -161,7 +161,7 @@ class ArrayPrograms(Programs):
         scaled_cosine_a2 = (span_2_y - k.part_of_pivot_2_y) * y - part_of_scaled_cosine_a2
         divisor_a2 = select(effective_a2 > k.part_of_divisor_a2, effective_a2, 1.0)
         arm_length_1_times_effective_a2 = k.arm_length_1 * divisor_a2
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -175,7 +175,7 @@ class ArrayPrograms(Programs):
         scaled_cosine_a3 = (k.part_of_pivot_2_y + span_3_y) * y - part_of_scaled_cosine_a2
         divisor_a3 = select(effective_a3 > k.part_of_divisor_a2, effective_a3, 1.0)
         arm_length_1_times_effective_a3 = k.arm_length_1 * divisor_a3
-        # law of cosines for a3: rod 3: 1 - cosine, times a scale
+        # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree

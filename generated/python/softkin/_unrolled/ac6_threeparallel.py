@@ -59,7 +59,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return 8 * (refused[Status.UNREACHABLE],)
             ahead_q1_before_q1_for_q3 = 0.0
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
             part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
@@ -82,7 +82,7 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1 = r22 * cos_q1_before_q1_for_q3_left - r12 * sin_q1_before_q1_for_q3_left
         # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = -(r21_from_q1 / radius_q6)
             sin_q6_before_q6_of_q3_down = r22_from_q1 / radius_q6
@@ -199,7 +199,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -325,7 +325,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -361,7 +361,7 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1 = r22 * cos_q1_before_q1_for_q3_right - r12 * sin_q1_before_q1_for_q3_right
         # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = -(r21_from_q1 / radius_q6)
             sin_q6_before_q6_of_q3_down = r22_from_q1 / radius_q6
@@ -477,7 +477,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -603,7 +603,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -737,7 +737,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return None
             ahead_q1_before_q1_for_q3 = 0.0
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d4 * wrist_y) / divisor_q1
@@ -752,7 +752,7 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1 = r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3
         # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
-        # if singular: that of the reference
+        # where it is singular: the angle of the reference
         if radius_q6 > 1e-11:
             along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6 / radius_q6
@@ -863,7 +863,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree

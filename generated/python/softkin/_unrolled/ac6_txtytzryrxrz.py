@@ -40,7 +40,8 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
         axis_a3 = offset_a3 + wrist_z
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
-        # polar coordinates: angle a4 from the r33 and r13 equations; if singular: that of the reference
+        # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+        # reference
         if radius_a4 > 1e-11:
             direction_x_a4_upright = r33
             direction_y_a4_upright = r13
@@ -90,7 +91,8 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - flange_x * r21 - flange_y * r22 - flange_z * r23
         wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
-        # polar coordinates: angle a4 from the r33 and r13 equations; if singular: that of the reference
+        # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+        # reference
         if radius_a4 > 1e-11:
             direction_x_a4 = sigma_wrist * r33
             direction_y_a4 = sigma_wrist * r13

@@ -63,7 +63,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y_from_q1 = z - d6 * r33 - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
@@ -72,7 +72,7 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
             part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
@@ -115,7 +115,8 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
         r11_from_q1 = r11 * cos_q1_before_q1_for_q3_front + r21 * sin_q1_before_q1_for_q3_front
         r12_from_q1 = r12 * cos_q1_before_q1_for_q3_front + r22 * sin_q1_before_q1_for_q3_front
-        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+        # reference
         if radius_q4 > 0.1:
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -127,7 +128,8 @@ def unrolled(k: Constants) -> Unrolled:
             sin_of_reference_a4 = sin(reference_a4)
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_front - r11 * sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_front - r12 * sin_q1_before_q1_for_q3_front
-            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = -r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -171,7 +173,8 @@ def unrolled(k: Constants) -> Unrolled:
         r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+        # reference
         if radius_q4 > 0.1:
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -183,7 +186,8 @@ def unrolled(k: Constants) -> Unrolled:
             sin_of_reference_a4 = sin(reference_a4)
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_front - r11 * sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_front - r12 * sin_q1_before_q1_for_q3_front
-            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = -r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -222,7 +226,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
@@ -257,7 +261,8 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
         r11_from_q1 = r11 * cos_q1_before_q1_for_q3_back + r21 * sin_q1_before_q1_for_q3_back
         r12_from_q1 = r12 * cos_q1_before_q1_for_q3_back + r22 * sin_q1_before_q1_for_q3_back
-        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+        # reference
         if radius_q4 > 0.1:
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -269,7 +274,8 @@ def unrolled(k: Constants) -> Unrolled:
             sin_of_reference_a4 = sin(reference_a4)
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_back - r11 * sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_back - r12 * sin_q1_before_q1_for_q3_back
-            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = -r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -313,7 +319,8 @@ def unrolled(k: Constants) -> Unrolled:
         r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+        # reference
         if radius_q4 > 0.1:
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -325,7 +332,8 @@ def unrolled(k: Constants) -> Unrolled:
             sin_of_reference_a4 = sin(reference_a4)
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_back - r11 * sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_back - r12 * sin_q1_before_q1_for_q3_back
-            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = -r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -469,7 +477,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
@@ -480,7 +488,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d3 * wrist_y) / divisor_q1
@@ -506,7 +514,8 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23 * cos_q1_before_q1_for_q3 - r13 * sin_q1_before_q1_for_q3
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+        # reference
         if radius_q4 > 0.1:
             direction_x_q4 = -sigma_hand * r13_from_q123
             direction_y_q4 = sigma_hand * r23_from_q1
@@ -517,7 +526,8 @@ def unrolled(k: Constants) -> Unrolled:
                 (r11 * cos_q1_before_q1_for_q3 + r21 * sin_q1_before_q1_for_q3) * cos_q23 + r31 * sin_q23
             )
         else:
-            # polar coordinates: angle q4 from the r13 and r23 equations; if singular: that of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # reference
             if radius_q4 > 1e-11:
                 direction_x_q4 = -sigma_hand * r13_from_q123
                 direction_y_q4 = sigma_hand * r23_from_q1

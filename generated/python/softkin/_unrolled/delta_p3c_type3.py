@@ -63,7 +63,7 @@ def unrolled(k: Constants) -> Unrolled:
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
         effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = divisor_a1 + inner_arm_1
         # 1 + cosine, times the scale
@@ -87,7 +87,7 @@ def unrolled(k: Constants) -> Unrolled:
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
         effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = divisor_a2 + inner_arm_2
         # 1 + cosine, times the scale
@@ -111,7 +111,7 @@ def unrolled(k: Constants) -> Unrolled:
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
         effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
-        # law of cosines for a3: rod 3: 1 - cosine, times a scale
+        # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = divisor_a3 + inner_arm_3
         # 1 + cosine, times the scale
@@ -285,7 +285,7 @@ def unrolled(k: Constants) -> Unrolled:
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
         effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = divisor_a1 + inner_arm_1
         # 1 + cosine, times the scale
@@ -309,7 +309,7 @@ def unrolled(k: Constants) -> Unrolled:
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
         effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = divisor_a2 + inner_arm_2
         # 1 + cosine, times the scale
@@ -333,7 +333,7 @@ def unrolled(k: Constants) -> Unrolled:
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
         effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
-        # law of cosines for a3: rod 3: 1 - cosine, times a scale
+        # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = divisor_a3 + inner_arm_3
         # 1 + cosine, times the scale

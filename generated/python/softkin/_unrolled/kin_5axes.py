@@ -39,7 +39,8 @@ def unrolled(k: Constants) -> Unrolled:
         r13_of_a = r13 / tool_side
         r23_of_a = r23 / tool_side
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
-        # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
+        # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+        # reference
         if radius_a > 1e-11:
             direction_x_a_positive = r13_of_a
             direction_y_a_positive = r23_of_a
@@ -72,7 +73,8 @@ def unrolled(k: Constants) -> Unrolled:
         r13_of_a = r13 / tool_side
         r23_of_a = r23 / tool_side
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
-        # polar coordinates: angle a from the r13 and r23 equations; if singular: that of the reference
+        # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+        # reference
         if radius_a > 1e-11:
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a

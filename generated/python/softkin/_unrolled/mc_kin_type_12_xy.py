@@ -63,7 +63,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > link_length_1_times_shortest_link_2):
             return 4 * (refused[Status.UNREACHABLE],)
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
-        # law of cosines for a1: rod upper: 1 - cosine, times a scale
+        # law of cosines for a1 (rod upper): 1 - cosine, times a scale
         one_less_cos_a1 = (divisor_a1 + link_length_1_minus_link_length_2_2) * (
             divisor_a1 + link_length_1_plus_link_length_2_2
         )
@@ -111,7 +111,7 @@ def unrolled(k: Constants) -> Unrolled:
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
-        # law of cosines for a2: rod rear: 1 - cosine, times a scale
+        # law of cosines for a2 (rod rear): 1 - cosine, times a scale
         one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5_2) * (
             divisor_a2 + link_length_5_minus_link_length_4_2
         )
@@ -172,7 +172,7 @@ def unrolled(k: Constants) -> Unrolled:
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
-        # law of cosines for a2: rod rear: 1 - cosine, times a scale
+        # law of cosines for a2 (rod rear): 1 - cosine, times a scale
         one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5_2) * (
             divisor_a2 + link_length_5_minus_link_length_4_2
         )
@@ -263,7 +263,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > link_length_1_times_shortest_link_2):
             return None
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
-        # law of cosines for a1: rod upper: 1 - cosine, times a scale
+        # law of cosines for a1 (rod upper): 1 - cosine, times a scale
         one_less_cos_a1 = (divisor_a1 + link_length_1_minus_link_length_2_2) * (
             divisor_a1 + link_length_1_plus_link_length_2_2
         )
@@ -292,7 +292,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a2 > link_length_5_times_shortest_link_2):
             return None
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
-        # law of cosines for a2: rod rear: 1 - cosine, times a scale
+        # law of cosines for a2 (rod rear): 1 - cosine, times a scale
         one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5_2) * (
             divisor_a2 + link_length_5_minus_link_length_4_2
         )

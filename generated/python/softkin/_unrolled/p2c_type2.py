@@ -45,7 +45,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > inner_arm_times_shortest_link_2):
             return 4 * (refused[Status.UNREACHABLE],)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = (inner_arm_plus_outer_arm_2 - divisor_a1) * (divisor_a1 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm_2) * (divisor_a1 + inner_arm_plus_outer_arm_2)
@@ -62,7 +62,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a2 > inner_arm_times_shortest_link_2):
             return 4 * (refused[Status.UNREACHABLE],)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm_2 - divisor_a2) * (divisor_a2 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm_2) * (divisor_a2 + inner_arm_plus_outer_arm_2)
@@ -149,7 +149,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > inner_arm_times_shortest_link_2):
             return None
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = (inner_arm_plus_outer_arm_2 - divisor_a1) * (divisor_a1 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm_2) * (divisor_a1 + inner_arm_plus_outer_arm_2)
@@ -166,7 +166,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a2 > inner_arm_times_shortest_link_2):
             return None
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm_2 - divisor_a2) * (divisor_a2 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm_2) * (divisor_a2 + inner_arm_plus_outer_arm_2)

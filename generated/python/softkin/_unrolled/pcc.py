@@ -35,7 +35,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane_2):
             return 2 * (refused[Status.UNREACHABLE],)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        # law of cosines for a2_from_a1: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2_2 + reach) * (
             link_length_1_plus_link_length_2_2 - reach
         )
@@ -84,7 +84,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        # law of cosines for a2_from_a1: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2_2 + reach) * (
             link_length_1_plus_link_length_2_2 - reach
         )

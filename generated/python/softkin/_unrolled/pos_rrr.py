@@ -55,7 +55,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach)
@@ -64,7 +64,7 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
             ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3 * x
@@ -98,7 +98,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach)
@@ -175,7 +175,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach)
@@ -186,7 +186,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
-        # rotation by q1 that points the arm at the point; if singular: that of the reference
+        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - d3 * y) / divisor_q1

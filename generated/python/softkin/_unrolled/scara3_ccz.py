@@ -35,7 +35,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_a1, _, _ = 3 * (0.0,) if reference is None else reference
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
@@ -69,7 +69,7 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_elbow,) = signs
         ref_a1, _, _ = 3 * (0.0,) if reference is None else reference
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)

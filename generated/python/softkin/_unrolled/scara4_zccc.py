@@ -48,7 +48,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across / heading_divisor
         wrist_y = y - link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
-        # law of cosines for a3: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a3 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
@@ -100,7 +100,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across / heading_divisor
         wrist_y = y - link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
-        # law of cosines for a3: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a3 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)

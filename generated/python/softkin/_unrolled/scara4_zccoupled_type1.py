@@ -44,7 +44,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 2 * (refused[Status.UNREACHABLE],)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
@@ -99,7 +99,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return None
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
-        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
+        # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)

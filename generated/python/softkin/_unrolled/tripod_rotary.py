@@ -56,7 +56,7 @@ def unrolled(k: Constants) -> Unrolled:
         scaled_cosine_a1 = part_of_scaled_cosine_a1_3 - (arm_1_radius_minus_fixed_length_1 + span_1_x) * x - y * y
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
         twice_arm_length_1_2_times_effective_a1 = divisor_a1 * twice_arm_length_1_2
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = twice_arm_length_1_2_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_2_times_effective_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -81,7 +81,7 @@ def unrolled(k: Constants) -> Unrolled:
         scaled_cosine_a2 = part_of_scaled_cosine_a2 + (part_of_span_2_y + span_2_y) * y
         divisor_a2 = effective_a2 if effective_a2 > part_of_divisor_a2_2 else 1.0
         arm_length_1_times_effective_a2 = arm_length_1 * divisor_a2
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -102,7 +102,7 @@ def unrolled(k: Constants) -> Unrolled:
         scaled_cosine_a3 = part_of_scaled_cosine_a2 + (span_3_y - part_of_span_2_y) * y
         divisor_a3 = effective_a3 if effective_a3 > part_of_divisor_a2_2 else 1.0
         arm_length_1_times_effective_a3 = arm_length_1 * divisor_a3
-        # law of cosines for a3: rod 3: 1 - cosine, times a scale
+        # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -304,7 +304,7 @@ def unrolled(k: Constants) -> Unrolled:
         scaled_cosine_a1 = part_of_scaled_cosine_a1_3 - (arm_1_radius_minus_fixed_length_1 + span_1_x) * x - y * y
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
         twice_arm_length_1_2_times_effective_a1 = divisor_a1 * twice_arm_length_1_2
-        # law of cosines for a1: rod 1: 1 - cosine, times a scale
+        # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = twice_arm_length_1_2_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_2_times_effective_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -329,7 +329,7 @@ def unrolled(k: Constants) -> Unrolled:
         scaled_cosine_a2 = part_of_scaled_cosine_a2 + (part_of_span_2_y + span_2_y) * y
         divisor_a2 = effective_a2 if effective_a2 > part_of_divisor_a2_2 else 1.0
         arm_length_1_times_effective_a2 = arm_length_1 * divisor_a2
-        # law of cosines for a2: rod 2: 1 - cosine, times a scale
+        # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
@@ -350,7 +350,7 @@ def unrolled(k: Constants) -> Unrolled:
         scaled_cosine_a3 = part_of_scaled_cosine_a2 + (span_3_y - part_of_span_2_y) * y
         divisor_a3 = effective_a3 if effective_a3 > part_of_divisor_a2_2 else 1.0
         arm_length_1_times_effective_a3 = arm_length_1 * divisor_a3
-        # law of cosines for a3: rod 3: 1 - cosine, times a scale
+        # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree

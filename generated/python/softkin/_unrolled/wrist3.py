@@ -31,7 +31,8 @@ def unrolled(k: Constants) -> Unrolled:
         _, ((r11, r12, _), (r21, r22, _), (r31, r32, r33)) = frame
         _, _, ref_c = 3 * (0.0,) if reference is None else reference
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
-        # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
+        # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+        # reference
         if radius_c > 1e-11:
             direction_x_c_down = r31
             direction_y_c_down = -r32
@@ -71,7 +72,8 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_hand,) = signs
         _, _, ref_c = 3 * (0.0,) if reference is None else reference
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
-        # polar coordinates: angle c from the r31 and r32 equations; if singular: that of the reference
+        # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+        # reference
         if radius_c > 1e-11:
             direction_x_c = sigma_hand * r31
             direction_y_c = -sigma_hand * r32
