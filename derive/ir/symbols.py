@@ -1,8 +1,11 @@
-"""Every name that programs share, as a symbol."""
+"""Every name that programs share, as a symbol; branch signs, and what values are called that stand for some of them."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cache
+from itertools import product
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
@@ -109,3 +112,38 @@ START_ROTATION = tuple(real(f"start_{r.name}") for r in ROTATION_ENTRIES)
 TRIED, SIDE, FREED, FREED_ANGLE = real("tried"), count("side"), count("freed"), real("freed_angle")
 PLACE = (TRIED, SIDE, FREED, FREED_ANGLE)
 """Where a trial is made: see `FindRoot`."""
+
+REFUSAL = "refusal"
+"""The output of a branch that is 0, or the number of the status that refuses it: its place in `Status`."""
+
+Choice = tuple[int, ...]
+"""+1 or -1 for each of some signs."""
+
+
+@dataclass(frozen=True)
+class Sign:
+    """A branch sign, and what its two values are called."""
+
+    symbol: sp.Symbol
+    words: tuple[str, str]
+    """For +1 and for -1."""
+
+
+def choices(count: int) -> Iterator[Choice]:
+    """All assignments of that many signs, slot by slot: the first sign varies fastest, +1 before -1."""
+    return (tuple(reversed(choice)) for choice in product((1, -1), repeat=count))
+
+
+def suffixed(name: str, signs: Sequence[Sign], choice: Choice) -> str:
+    """A name with the words of the signs behind it: `axis_a1_right`."""
+    return "_".join([name, *(s.words[0] if value > 0 else s.words[1] for s, value in zip(signs, choice, strict=True))])
+
+
+def without_words(name: str, signs: Sequence[Sign]) -> tuple[str, tuple[str, ...]]:
+    """A name without the words of signs behind it, and these words."""
+    found: list[str] = []
+    for sign in reversed(signs):
+        word = next((w for w in sign.words if name.endswith(f"_{w}")), None)
+        if word is not None:
+            name, found = name.removesuffix(f"_{word}"), [word, *found]
+    return name, tuple(found)

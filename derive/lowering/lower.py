@@ -2,36 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from derive.ir.graph import Graph, Node, reached
 from derive.ir.passes import calling
 from derive.ir.program import Let, Program
+from derive.ir.symbols import Sign
 from derive.lowering.coefficients import collected, distributed
-from derive.lowering.dividing import Dividing
 from derive.lowering.draft import Draft, Effect, Reader, changed, values_of
-from derive.lowering.factoring import Factoring
+from derive.lowering.factoring import Dividing, Factoring
 from derive.lowering.hoisting import Constant, Gathering, hoisted
-from derive.lowering.mirrored import Mirrored
 from derive.lowering.opening import opened
 from derive.lowering.sharing import Sharing
+from derive.lowering.symmetry import Mirrored, Symmetry
+from derive.lowering.unrolling import unrolled
 from derive.lowering.writing import written
 
 
 def lowered(
-    programs: Sequence[Program], constants: Collection[str], *, modulo_turns: bool = False, inverts: bool = True
+    programs: Sequence[Program],
+    constants: Collection[str],
+    *,
+    modulo_turns: bool = False,
+    inverts: bool = True,
+    branches: Mapping[str, Sequence[Sign]] | None = None,
 ) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
     """The programs, and what they read of constants alone. A program that others call comes before them.
 
     modulo_turns: whether an angle may be a turn more or less, unless its value is taken; inverts: whether a division
-    takes longer than several multiplications.
+    takes longer than several multiplications; branches: by name of a program, the signs whose branches are unrolled.
     """
     reader = Reader()
     graph, constant = reader.graph, Constant(constants)
     drafts = [reader.draft(p) for p in programs]
+    signs = branches or {}
+    drafts = [unrolled(d, graph, signs[d.program.name]) if d.program.name in signs else d for d in drafts]
     if modulo_turns:
         drafts = [changed(draft, Mirrored(graph, _nodes(draft))) for draft in drafts]
+        drafts = [changed(draft, Symmetry(graph, [v.node for v in values_of(draft)], draft.names)) for draft in drafts]
     drafts = [_shorter(draft, graph, constant) for draft in drafts]
     if inverts:
         drafts = [changed(draft, Dividing(graph, _nodes(draft), constant)) for draft in drafts]

@@ -23,11 +23,12 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
+    Sign,
     called,
     symbols_of,
+    without_words,
 )
 from derive.ir.tree import If, Item
-from derive.optimize.unroll import Sign, without_words
 
 
 def coalesced(

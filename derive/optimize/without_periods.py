@@ -8,6 +8,7 @@ is shift + angle/DEGREE, unless a statement reads it as a real number: as what a
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import sympy as sp
@@ -19,12 +20,14 @@ from derive.ir.primitives import (
 )
 from derive.ir.program import (
     Let,
+    Output,
     Program,
     Require,
     Statement,
     Status,
     expressions,
     reads,
+    rewritten,
 )
 from derive.ir.symbols import (
     symbols_of,
@@ -39,6 +42,12 @@ def angles_modulo_turns(program: Program) -> frozenset[sp.Symbol]:
     wrapped = {s for value in values for node in value.atoms(Wrap) for s in symbols_of(node)}
     answered = {s for output in program.outputs for s in symbols_of(output.value)}
     return frozenset(n for n, kind in angles_in(program.body).items() if kind is Type.ANGLE) - wrapped - answered
+
+
+def specialised(program: Program, values: Mapping[sp.Symbol, sp.Expr]) -> Program:
+    """The program with some inputs given: choices that this decides disappear."""
+    body = [rewritten(s, lambda e: e.xreplace(dict(values))) for s in program.body]
+    return assemble(program.name, body, [Output(o.name, o.value.xreplace(dict(values))) for o in program.outputs])
 
 
 def without_chosen_turns(program: Program) -> Program:

@@ -8,7 +8,6 @@ from derive.description.mechanism import Joint
 from derive.emit.python.layout import tuple_of
 from derive.ir.program import Program
 from derive.kinematics.kinematics import Kinematics
-from derive.optimize.symmetry import with_mirrored_branches
 from derive.optimize.without_periods import turns_that_count
 
 
@@ -34,7 +33,7 @@ def finish(kin: Kinematics, trusted: Program) -> Function | None:
     if kin.limited or any(joint.coupling != 0 for joint in kin.period_joints):
         return None
     joints = kin.mechanism.joints
-    counted = {s.name for s in turns_that_count(with_mirrored_branches(trusted))}
+    counted = {s.name for s in turns_that_count(trusted)}
     open_joints = [joint for joint in joints if joint.multi_turn and joint.axis.name not in counted]
     text = "Every slot of `branches` with the axes on their turns, or the number of its status; limits are tested."
     arguments = "found: tuple[Reals | int, ...], reference: Reals"

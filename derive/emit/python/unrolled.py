@@ -29,13 +29,18 @@ from derive.ir.program import (
     Status,
 )
 from derive.ir.symbols import (
+    REFUSAL,
+    Sign,
     branch_sign,
+    choices,
+    suffixed,
     symbols_of,
 )
 from derive.ir.tree import Item
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.lower import lowered
 from derive.lowering.scheduling import scheduled, without_unused
+from derive.lowering.unrolling import is_straight
 from derive.optimize.angle_addition import with_added_angles
 from derive.optimize.coalesce import coalesced
 from derive.optimize.guards import guarded
@@ -43,17 +48,7 @@ from derive.optimize.inline import inlined, squares_where_read
 from derive.optimize.known_projection import with_known_projections
 from derive.optimize.negation import without_minus
 from derive.optimize.rotation_identities import with_rotation_identities
-from derive.optimize.symmetry import with_mirrored_branches
-from derive.optimize.unroll import (
-    REFUSAL,
-    Sign,
-    choices,
-    is_straight,
-    specialised,
-    suffixed,
-    unroll,
-)
-from derive.optimize.without_periods import without_chosen_turns
+from derive.optimize.without_periods import specialised, without_chosen_turns
 from derive.solver.folds import far_from_folds
 
 NO_OFFSETS = "no_offsets"
@@ -114,11 +109,6 @@ def signs(kin: Kinematics) -> tuple[Sign, ...]:
     return tuple(Sign(branch_sign(b.name), b.names) for b in kin.branches)
 
 
-def branches(kin: Kinematics, one: Program) -> Program:
-    """All branches, each axis in any turn. one: a single branch for input that is trusted."""
-    return without_chosen_turns(with_mirrored_branches(unroll(one, signs(kin))))
-
-
 def _nearest(kin: Kinematics, program: Program) -> Program:
     """No turn is commanded; on plain numbers a sine costs little."""
     given = specialised(program, {j.turn: sp.Integer(0) for j in kin.period_joints})
@@ -171,14 +161,18 @@ def trusted_branch(kin: Kinematics) -> Function:
 def _shorter(kin: Kinematics, methods: Sequence[Method]) -> tuple[list[Method], tuple[Let, ...]]:
     """The methods with fewer operations, and what they read that is computed from constants."""
     named = [replace(m.program, name=m.name) for m in methods]
-    programs, parts = lowered(named, _constants(kin), modulo_turns=True, inverts=False)
+    programs, parts = lowered(
+        named, _constants(kin), modulo_turns=True, inverts=False, branches={"branches": signs(kin)}
+    )
     return [replace(m, program=squares_where_read(p)) for m, p in zip(methods, programs, strict=True)], parts
 
 
 def _methods(kin: Kinematics, one: Program) -> tuple[Method, Method]:
     text = "Every slot, the axes in some turn, of input that is trusted."
     return (
-        Method("branches", text, branches(kin, one), (_FRAME, _optional(kin), _WHERE_REFUSED), "tuple[Any, ...]", ()),
+        Method(
+            "branches", text, without_chosen_turns(one), (_FRAME, _optional(kin), _WHERE_REFUSED), "tuple[Any, ...]", ()
+        ),
         _single(kin, one),
     )
 
@@ -189,7 +183,7 @@ def _single(kin: Kinematics, one: Program) -> Method:
     return Method(
         "branch",
         text,
-        without_chosen_turns(with_mirrored_branches(one)),
+        without_chosen_turns(one),
         (_FRAME, sign_values, _optional(kin)),
         "Reals | None",
         (),

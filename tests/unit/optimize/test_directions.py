@@ -32,7 +32,7 @@ from derive.optimize.directions import plain_directions
 from derive.optimize.negation import without_minus
 from derive.optimize.simplify import shorter
 from derive.optimize.without_periods import angles_modulo_turns
-from tests.unit.optimize.test_symmetry import same, values
+from tests.unit.answers import same, values
 
 C1, S1, C2, S2, C3, S3, C12, S12, C123, S123 = (
     real(f"{f}_{q}") for q in ("q1", "q2", "q3", "q12", "q123") for f in ("cos", "sin")

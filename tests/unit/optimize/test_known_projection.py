@@ -18,7 +18,7 @@ from derive.ir.symbols import (
     real,
 )
 from derive.optimize.known_projection import with_known_projections
-from tests.unit.optimize.test_symmetry import same, values
+from tests.unit.answers import same, values
 
 B, C, D, E, H, L, S, T, X, Y = (real(n) for n in ("b", "cos_q1", "d", "e", "h", "l", "sin_q1", "t", "x", "y"))
 FAR = sp.Gt(D, T)

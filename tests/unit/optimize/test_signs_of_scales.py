@@ -11,11 +11,11 @@ from derive.ir.interpret import run
 from derive.ir.passes import assemble
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, ToReal
 from derive.ir.program import Let, Output, Program
-from derive.ir.symbols import count, real
+from derive.ir.symbols import Sign, count, real
 from derive.lowering.lower import lowered
+from derive.lowering.unrolling import unroll
 from derive.optimize.directions import plain_directions
 from derive.optimize.negation import without_minus
-from derive.optimize.unroll import Sign, unroll
 
 X, Y, K, COS, SIN, LENGTH, DIVISOR, AXIS = map(real, ("x", "y", "k", "cos_q", "sin_q", "length", "divisor", "axis_q"))
 RNG = np.random.default_rng(5)

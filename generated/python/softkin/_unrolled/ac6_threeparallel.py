@@ -31,7 +31,6 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_free_angle_2 = 1e-11 * machine_scale
     size_q1_for_q3_times_rounding_2 = 1e-12 * size_q1_for_q3
     part_of_cos_q6_left_down = 1.000000001 * size_q1_for_q3
-    twice_offset_a5 = 2.0 * offset_a5
     a2_squared_plus_a3_squared_2 = a2 * a2 + a3 * a3
     a2_plus_a3_2 = a2 + a3
     a2_minus_a3_2 = a2 - a3
@@ -62,8 +61,8 @@ def unrolled(k: Constants) -> Unrolled:
         # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
-            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
             d4_times_wrist_y = d4 * wrist_y
+            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
             cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - part_of_cos_q1_before_q1_for_q3) / divisor_q1
             d4_times_wrist_x = d4 * wrist_x
             part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
@@ -96,10 +95,10 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_down = sin_of_reference_a6
             cos_q6_before_q6_of_q3_up = cos_of_reference_a6
             sin_q6_before_q6_of_q3_up = sin_of_reference_a6
-        r33_times_radius_q6 = r33 * radius_q6
+        radius_q6_left_times_r33 = r33 * radius_q6
         r21_from_q1_before_q56_before_q6_of_q3_down = (
             r31 * cos_q6_before_q6_of_q3_down - r32 * sin_q6_before_q6_of_q3_down
-        ) * cos_q5 - r33_times_radius_q6
+        ) * cos_q5 - radius_q6_left_times_r33
         wrist_x_from_q1_before_q6_of_q3 = -ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = (
             r32 * cos_q6_before_q6_of_q3_down + r31 * sin_q6_before_q6_of_q3_down
@@ -122,7 +121,8 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            r33_times_radius_q6_left_times_d5 = d5 * r33_times_radius_q6
+            r33_times_d5 = d5 * r33
+            r33_times_d5_times_radius_q6 = r33_times_d5 * radius_q6
             wrist_y_from_q1_across = d5 * r31
             wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
             wrist_y_from_q1_along = d5 * r32
@@ -134,7 +134,7 @@ def unrolled(k: Constants) -> Unrolled:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = r33_times_radius_q6_left_times_d5 - ahead_q1_before_q1_for_q3
+                wrist_x_from_q1_fixed = r33_times_d5_times_radius_q6 - ahead_q1_before_q1_for_q3
                 along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
                 across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
@@ -193,7 +193,7 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q56 = (r31 * cos_q6 - r32 * sin_q6) * cos_q5 - r33_times_radius_q6
+            r21_from_q1_before_q56 = (r31 * cos_q6 - r32 * sin_q6) * cos_q5 - radius_q6_left_times_r33
             wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
@@ -224,14 +224,16 @@ def unrolled(k: Constants) -> Unrolled:
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_left_up_down - angle_q3_down) * RADIAN
-        axis_a5_left_down = offset_a5 + arctan2(radius_q6, cos_q5) * RADIAN
+        part_of_axis_a5 = arctan2(radius_q6, cos_q5) * RADIAN
+        axis_a5_left_down = offset_a5 + part_of_axis_a5
         axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         if radius_q6 > 1e-11:
             r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
             r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
         else:
+            r21_from_q1_before_q6_before_q6_of_q3 = r31 * cos_q6_before_q6_of_q3_up - r32 * sin_q6_before_q6_of_q3_up
             r21_from_q1_before_q56_before_q6_of_q3_up = (
-                r33_times_radius_q6 + (r31 * cos_q6_before_q6_of_q3_up - r32 * sin_q6_before_q6_of_q3_up) * cos_q5
+                radius_q6_left_times_r33 + r21_from_q1_before_q6_before_q6_of_q3 * cos_q5
             )
             r22_from_q1_before_q6_before_q6_of_q3_up = r32 * cos_q6_before_q6_of_q3_up + r31 * sin_q6_before_q6_of_q3_up
         wrist_x_from_q1_before_q6_of_q3 = -ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3_up
@@ -243,11 +245,17 @@ def unrolled(k: Constants) -> Unrolled:
             - a2_squared_plus_a3_squared_2
         )
         # moved so that q3 has a solution
+        # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
+            r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_up
+            wrist_x_from_q1 = wrist_x_from_q1_before_q6_of_q3
+            r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_up
+            wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            r33_times_radius_q6_left_times_d5 = d5 * r33_times_radius_q6
+            r33_times_d5 = d5 * r33
+            r33_times_d5_times_radius_q6 = r33_times_d5 * radius_q6
             wrist_y_from_q1_across = d5 * r31
             wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
             wrist_y_from_q1_along = d5 * r32
@@ -259,7 +267,7 @@ def unrolled(k: Constants) -> Unrolled:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - r33_times_radius_q6_left_times_d5
+                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - r33_times_d5_times_radius_q6
                 along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
                 across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
@@ -317,12 +325,10 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-        r21_from_q1_before_q56 = r33_times_radius_q6 + (r31 * cos_q6 - r32 * sin_q6) * cos_q5
-        # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56
-        r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
-        # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
+            r21_from_q1_before_q56 = radius_q6_left_times_r33 + (r31 * cos_q6 - r32 * sin_q6) * cos_q5
+            wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56
+            r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
+            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
@@ -349,7 +355,7 @@ def unrolled(k: Constants) -> Unrolled:
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_left_up_up - angle_q3_up) * RADIAN
-        axis_a5_left_up = twice_offset_a5 - axis_a5_left_down
+        axis_a5_left_up = offset_a5 - part_of_axis_a5
         axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_left_down_down) * RADIAN
@@ -375,10 +381,10 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_down = sin_of_reference_a6
             cos_q6_before_q6_of_q3_up = cos_of_reference_a6
             sin_q6_before_q6_of_q3_up = sin_of_reference_a6
-        r33_times_radius_q6 = r33 * radius_q6
+        radius_q6_right_times_r33 = r33 * radius_q6
         r21_from_q1_before_q56_before_q6_of_q3_down = (
             r31 * cos_q6_before_q6_of_q3_down - r32 * sin_q6_before_q6_of_q3_down
-        ) * cos_q5 - r33_times_radius_q6
+        ) * cos_q5 - radius_q6_right_times_r33
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = (
             r32 * cos_q6_before_q6_of_q3_down + r31 * sin_q6_before_q6_of_q3_down
@@ -400,11 +406,12 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
+            r33_times_d5 = d5 * r33
             wrist_y_from_q1_across = d5 * r31
             wrist_y_from_q1_along = d5 * r32
             part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
             part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
-            r33_times_radius_q6_right_times_d5 = d5 * r33_times_radius_q6
+            r33_times_d5_times_radius_q6 = r33_times_d5 * radius_q6
             wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
             wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
             # moved so that q3 has a solution
@@ -412,7 +419,7 @@ def unrolled(k: Constants) -> Unrolled:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + r33_times_radius_q6_right_times_d5
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + r33_times_d5_times_radius_q6
                 along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
                 across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
@@ -471,7 +478,7 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q56 = (r31 * cos_q6 - r32 * sin_q6) * cos_q5 - r33_times_radius_q6
+            r21_from_q1_before_q56 = (r31 * cos_q6 - r32 * sin_q6) * cos_q5 - radius_q6_right_times_r33
             wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
@@ -502,14 +509,16 @@ def unrolled(k: Constants) -> Unrolled:
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_up_down = offset_a4 + (angle_with_q4_down - angle_q2_right_up_down - angle_q3_down) * RADIAN
-        axis_a5_right_down = offset_a5 + arctan2(radius_q6, cos_q5) * RADIAN
+        part_of_axis_a5 = arctan2(radius_q6, cos_q5) * RADIAN
+        axis_a5_right_down = offset_a5 + part_of_axis_a5
         axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         if radius_q6 > 1e-11:
             r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
             r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
         else:
+            r21_from_q1_before_q6_before_q6_of_q3 = r31 * cos_q6_before_q6_of_q3_up - r32 * sin_q6_before_q6_of_q3_up
             r21_from_q1_before_q56_before_q6_of_q3_up = (
-                r33_times_radius_q6 + (r31 * cos_q6_before_q6_of_q3_up - r32 * sin_q6_before_q6_of_q3_up) * cos_q5
+                radius_q6_right_times_r33 + r21_from_q1_before_q6_before_q6_of_q3 * cos_q5
             )
             r22_from_q1_before_q6_before_q6_of_q3_up = r32 * cos_q6_before_q6_of_q3_up + r31 * sin_q6_before_q6_of_q3_up
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3_up
@@ -521,15 +530,21 @@ def unrolled(k: Constants) -> Unrolled:
             - a2_squared_plus_a3_squared_2
         )
         # moved so that q3 has a solution
+        # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
+            r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_up
+            wrist_x_from_q1 = wrist_x_from_q1_before_q6_of_q3
+            r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_up
+            wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
+            r33_times_d5 = d5 * r33
             wrist_y_from_q1_across = d5 * r31
             wrist_y_from_q1_along = d5 * r32
             part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
             part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
-            r33_times_radius_q6_right_times_d5 = d5 * r33_times_radius_q6
+            r33_times_d5_times_radius_q6 = r33_times_d5 * radius_q6
             wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
             wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
             # moved so that q3 has a solution
@@ -537,7 +552,7 @@ def unrolled(k: Constants) -> Unrolled:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - r33_times_radius_q6_right_times_d5
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - r33_times_d5_times_radius_q6
                 along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
                 across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
@@ -595,12 +610,10 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-        r21_from_q1_before_q56 = r33_times_radius_q6 + (r31 * cos_q6 - r32 * sin_q6) * cos_q5
-        # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56
-        r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
-        # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
+            r21_from_q1_before_q56 = radius_q6_right_times_r33 + (r31 * cos_q6 - r32 * sin_q6) * cos_q5
+            wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56
+            r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
+            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
@@ -627,7 +640,7 @@ def unrolled(k: Constants) -> Unrolled:
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_right_up_up - angle_q3_up) * RADIAN
-        axis_a5_right_up = twice_offset_a5 - axis_a5_right_down
+        axis_a5_right_up = offset_a5 - part_of_axis_a5
         axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_right_down_down) * RADIAN
@@ -792,15 +805,12 @@ def unrolled(k: Constants) -> Unrolled:
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
                 wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + d5 * q6_radius_of_q5_times_r33
-                wrist_y_from_q1_across = d5 * r31
-                wrist_y_from_q1_along = d5 * r32
+                cos_q5_times_d5 = d5 * cos_q5
                 along_q6_of_q3 = (
-                    2.0 * (-wrist_y_from_q1_across * cos_q5) * wrist_x_from_q1_fixed
-                    + 2.0 * wrist_y_from_q1_along * wrist_y_from_q1_fixed
+                    2.0 * (-r31 * cos_q5_times_d5) * wrist_x_from_q1_fixed + 2.0 * (d5 * r32) * wrist_y_from_q1_fixed
                 )
                 across_q6_of_q3 = (
-                    2.0 * (wrist_y_from_q1_along * cos_q5) * wrist_x_from_q1_fixed
-                    + 2.0 * wrist_y_from_q1_across * wrist_y_from_q1_fixed
+                    2.0 * (r32 * cos_q5_times_d5) * wrist_x_from_q1_fixed + 2.0 * (d5 * r31) * wrist_y_from_q1_fixed
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends

@@ -61,23 +61,23 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a4_flipped = direction_y_a4_upright
             scaled_r11_from_a4_flipped = direction_x_a4_flipped * r11 - direction_y_a4_flipped * r31
             direction_y_a6_flipped = direction_y_a4_flipped * r32 - direction_x_a4_flipped * r12
-        axis_a4 = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright) * RADIAN
-        axis_a6 = offset_a6 + arctan2(direction_y_a6_upright, scaled_r11_from_a4_upright) * RADIAN
+        axis_a4_upright = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright) * RADIAN
+        axis_a6_upright = offset_a6 + arctan2(direction_y_a6_upright, scaled_r11_from_a4_upright) * RADIAN
         if radius_a4 > 1e-11:
-            direction_of_axis_a4 = 180.0 + axis_a4
-            direction_of_axis_a6 = 180.0 + axis_a6
+            axis_a4_flipped = 180.0 + axis_a4_upright
+            axis_a6_flipped = 180.0 + axis_a6_upright
         else:
-            direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped, direction_x_a4_flipped) * RADIAN
-            direction_of_axis_a6 = offset_a6 + arctan2(direction_y_a6_flipped, scaled_r11_from_a4_flipped) * RADIAN
+            axis_a4_flipped = offset_a4 + arctan2(direction_y_a4_flipped, direction_x_a4_flipped) * RADIAN
+            axis_a6_flipped = offset_a6 + arctan2(direction_y_a6_flipped, scaled_r11_from_a4_flipped) * RADIAN
         return (
-            (axis_a1, axis_a2, axis_a3, axis_a4, offset_a5 - arctan2(r23, radius_a4) * RADIAN, axis_a6),
+            (axis_a1, axis_a2, axis_a3, axis_a4_upright, offset_a5 - arctan2(r23, radius_a4) * RADIAN, axis_a6_upright),
             (
                 axis_a1,
                 axis_a2,
                 axis_a3,
-                direction_of_axis_a4,
+                axis_a4_flipped,
                 offset_a5 - arctan2(r23, -radius_a4) * RADIAN,
-                direction_of_axis_a6,
+                axis_a6_flipped,
             ),
         )
 

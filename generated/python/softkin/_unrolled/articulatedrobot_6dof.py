@@ -30,7 +30,6 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_squared_times_plane_2 = 1e-6 * machine_scale * machine_scale
     machine_scale_times_free_angle_2 = 1e-11 * machine_scale
     part_of_angle_q3_front_down = arctan2(d4 / effective_q3 + 0.0, a3 / effective_q3 + 0.0)
-    twice_offset_a5 = 2.0 * offset_a5
     a2_plus_effective_q3_2 = a2 + effective_q3
     a2_minus_effective_q3_2 = a2 - effective_q3
     offset_a6_plus_180 = 180.0 + offset_a6
@@ -75,11 +74,11 @@ def unrolled(k: Constants) -> Unrolled:
         # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
-            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
             d3_times_wrist_y = d3 * wrist_y
+            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
             cos_q1_before_q1_for_q3_front = (part_of_cos_q1_before_q1_for_q3 - d3_times_wrist_y) / divisor_q1
-            part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
             d3_times_wrist_x = d3 * wrist_x
+            part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
             sin_q1_before_q1_for_q3_front = (d3_times_wrist_x + part_of_sin_q1_before_q1_for_q3) / divisor_q1
             cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - part_of_cos_q1_before_q1_for_q3) / divisor_q1
             sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - part_of_sin_q1_before_q1_for_q3) / divisor_q1
@@ -152,16 +151,16 @@ def unrolled(k: Constants) -> Unrolled:
                 minus_scaled_r22_from_q1234_up = direction_x_q4_up * r22_from_q1 + direction_y_q4_up * r12_from_q123
         axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4, cos_q5) * RADIAN
+        part_of_axis_a5_front_down_down = arctan2(radius_q4, cos_q5) * RADIAN
         axis_a6_front_down_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down) * RADIAN
         )
         if radius_q4 > 1e-11:
-            direction_of_axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
-            direction_of_axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
+            axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
+            axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
         else:
-            direction_of_axis_a4_front_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-            direction_of_axis_a6_front_down_up = (
+            axis_a4_front_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
+            axis_a6_front_down_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
             )
         axis_a2_front_up = offset_a2 + angle_q2_up * RADIAN
@@ -210,16 +209,16 @@ def unrolled(k: Constants) -> Unrolled:
                 minus_scaled_r22_from_q1234_up = direction_x_q4_up * r22_from_q1 + direction_y_q4_up * r12_from_q123
         axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4, cos_q5) * RADIAN
+        part_of_axis_a5_front_up_down = arctan2(radius_q4, cos_q5) * RADIAN
         axis_a6_front_up_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down) * RADIAN
         )
         if radius_q4 > 1e-11:
-            direction_of_axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
-            direction_of_axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
+            axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
+            axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
         else:
-            direction_of_axis_a4_front_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-            direction_of_axis_a6_front_up_up = (
+            axis_a4_front_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
+            axis_a6_front_up_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
             )
         # coordinate of the point that the remaining links must reach
@@ -298,16 +297,16 @@ def unrolled(k: Constants) -> Unrolled:
                 minus_scaled_r22_from_q1234_up = direction_x_q4_up * r22_from_q1 + direction_y_q4_up * r12_from_q123
         axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4, cos_q5) * RADIAN
+        part_of_axis_a5_back_down_down = arctan2(radius_q4, cos_q5) * RADIAN
         axis_a6_back_down_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down) * RADIAN
         )
         if radius_q4 > 1e-11:
-            direction_of_axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
-            direction_of_axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
+            axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
+            axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
         else:
-            direction_of_axis_a4_back_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-            direction_of_axis_a6_back_down_up = (
+            axis_a4_back_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
+            axis_a6_back_down_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
             )
         axis_a2_back_up = offset_a2 + angle_q2_up * RADIAN
@@ -356,16 +355,16 @@ def unrolled(k: Constants) -> Unrolled:
                 minus_scaled_r22_from_q1234_up = direction_x_q4_up * r22_from_q1 + direction_y_q4_up * r12_from_q123
         axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4, cos_q5) * RADIAN
+        part_of_axis_a5_back_up_down = arctan2(radius_q4, cos_q5) * RADIAN
         axis_a6_back_up_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down) * RADIAN
         )
         if radius_q4 > 1e-11:
-            direction_of_axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
-            direction_of_axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
+            axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
+            axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
         else:
-            direction_of_axis_a4_back_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-            direction_of_axis_a6_back_up_up = (
+            axis_a4_back_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
+            axis_a6_back_up_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
             )
         return (
@@ -374,7 +373,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_front_down,
                 axis_a3_front_down,
                 axis_a4_front_down_down,
-                axis_a5_front_down_down,
+                offset_a5 + part_of_axis_a5_front_down_down,
                 axis_a6_front_down_down,
             )
             if refusal_front == 0
@@ -384,7 +383,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_back_down,
                 axis_a3_back_down,
                 axis_a4_back_down_down,
-                axis_a5_back_down_down,
+                offset_a5 + part_of_axis_a5_back_down_down,
                 axis_a6_back_down_down,
             )
             if refusal_back == 0
@@ -394,7 +393,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_front_up,
                 axis_a3_front_up,
                 axis_a4_front_up_down,
-                axis_a5_front_up_down,
+                offset_a5 + part_of_axis_a5_front_up_down,
                 axis_a6_front_up_down,
             )
             if refusal_front == 0
@@ -404,7 +403,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_back_up,
                 axis_a3_back_up,
                 axis_a4_back_up_down,
-                axis_a5_back_up_down,
+                offset_a5 + part_of_axis_a5_back_up_down,
                 axis_a6_back_up_down,
             )
             if refusal_back == 0
@@ -413,9 +412,9 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a1_front,
                 axis_a2_front_down,
                 axis_a3_front_down,
-                direction_of_axis_a4_front_down_up,
-                twice_offset_a5 - axis_a5_front_down_down,
-                direction_of_axis_a6_front_down_up,
+                axis_a4_front_down_up,
+                offset_a5 - part_of_axis_a5_front_down_down,
+                axis_a6_front_down_up,
             )
             if refusal_front == 0
             else refused[refusal_front],
@@ -423,9 +422,9 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a1_back,
                 axis_a2_back_down,
                 axis_a3_back_down,
-                direction_of_axis_a4_back_down_up,
-                twice_offset_a5 - axis_a5_back_down_down,
-                direction_of_axis_a6_back_down_up,
+                axis_a4_back_down_up,
+                offset_a5 - part_of_axis_a5_back_down_down,
+                axis_a6_back_down_up,
             )
             if refusal_back == 0
             else refused[refusal_back],
@@ -433,9 +432,9 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a1_front,
                 axis_a2_front_up,
                 axis_a3_front_up,
-                direction_of_axis_a4_front_up_up,
-                twice_offset_a5 - axis_a5_front_up_down,
-                direction_of_axis_a6_front_up_up,
+                axis_a4_front_up_up,
+                offset_a5 - part_of_axis_a5_front_up_down,
+                axis_a6_front_up_up,
             )
             if refusal_front == 0
             else refused[refusal_front],
@@ -443,9 +442,9 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a1_back,
                 axis_a2_back_up,
                 axis_a3_back_up,
-                direction_of_axis_a4_back_up_up,
-                twice_offset_a5 - axis_a5_back_up_down,
-                direction_of_axis_a6_back_up_up,
+                axis_a4_back_up_up,
+                offset_a5 - part_of_axis_a5_back_up_down,
+                axis_a6_back_up_up,
             )
             if refusal_back == 0
             else refused[refusal_back],

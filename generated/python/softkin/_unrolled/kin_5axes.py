@@ -22,7 +22,6 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_z, mid_a, mid_b, offset_a, offset_b = k.lowest_z, k.mid_a, k.mid_b, k.offset_a, k.offset_b
     offset_x, offset_y, offset_z, single_a, single_b = k.offset_x, k.offset_y, k.offset_z, k.single_a, k.single_b
     tool_length, tool_side = k.tool_length, k.tool_side
-    twice_offset_b = 2.0 * offset_b
     tool_length_times_tool_side_2 = tool_length * tool_side
     no_offsets = not any((offset_a, offset_b, offset_x, offset_y, offset_z))
 
@@ -52,16 +51,16 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a_positive = sin(reference_a)
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
-        axis_a = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive) * RADIAN
-        axis_b = offset_b + arctan2(radius_a, r33) * RADIAN
-        direction_of_axis_a = (
-            180.0 + axis_a
+        axis_a_positive = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive) * RADIAN
+        part_of_axis_b = arctan2(radius_a, r33) * RADIAN
+        axis_a_negative = (
+            180.0 + axis_a_positive
             if radius_a > 1e-11
             else offset_a + arctan2(direction_y_a_negative, direction_x_a_negative) * RADIAN
         )
         return (
-            (axis_x, axis_y, axis_z, axis_a, axis_b),
-            (axis_x, axis_y, axis_z, direction_of_axis_a, twice_offset_b - axis_b),
+            (axis_x, axis_y, axis_z, axis_a_positive, offset_b + part_of_axis_b),
+            (axis_x, axis_y, axis_z, axis_a_negative, offset_b - part_of_axis_b),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -82,32 +82,15 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) / divisor_of_cos_a1
         sin_swing_a1_right_times_span_upper_y = span_upper_y * sin_swing_a1
-        sin_a1_left = (cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y) / divisor_a1
-        pivot_upper_x_left = -link_length_1 * sin_a1_left  # rod upper: centre about which it swings
+        sin_a1 = (cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y) / divisor_a1
+        span_rear_x = -link_length_3_by_link_length_2_2 * span_upper_x  # rod rear: known part of its vector
+        along_a2 = span_rear_x - part_of_along_a2_left * sin_a1
         cos_swing_a1_times_span_upper_y = span_upper_y * cos_swing_a1
         sin_swing_a1_right_times_span_upper_x = span_upper_x * sin_swing_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1_left = (cos_swing_a1_times_span_upper_y + sin_swing_a1_right_times_span_upper_x) / divisor_a1
-        pivot_upper_y_left = -link_length_1 * cos_a1_left
-        sin_a1_right = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y) / divisor_a1
-        pivot_upper_x_right = -link_length_1 * sin_a1_right  # rod upper: centre about which it swings
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1_right = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x) / divisor_a1
-        pivot_upper_y_right = -link_length_1 * cos_a1_right
-        if swap_xy:
-            centre_1_x_left = pivot_upper_y_left
-            centre_1_y_left = pivot_upper_x_left
-            centre_1_x_right = pivot_upper_y_right
-            centre_1_y_right = pivot_upper_x_right
-        else:
-            centre_1_x_left = pivot_upper_x_left
-            centre_1_y_left = pivot_upper_y_left
-            centre_1_x_right = pivot_upper_x_right
-            centre_1_y_right = pivot_upper_y_right
-        span_rear_x = -link_length_3_by_link_length_2_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - part_of_along_a2_left * sin_a1_left
+        cos_a1 = (cos_swing_a1_times_span_upper_y + sin_swing_a1_right_times_span_upper_x) / divisor_a1
         span_rear_y = -link_length_3_by_link_length_2_2 * span_upper_y
-        across_a2 = part_of_along_a2_left * cos_a1_left - span_rear_y
+        across_a2 = part_of_along_a2_left * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
@@ -123,10 +106,10 @@ def unrolled(k: Constants) -> Unrolled:
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
-        along_a2_left_times_cos_swing_a2 = along_a2 * cos_swing_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
         part_of_cos_a2 = across_a2 * sin_swing_a2
+        along_a2_left_times_cos_swing_a2 = along_a2 * cos_swing_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_left_left = (along_a2_left_times_cos_swing_a2 + part_of_cos_a2) / divisor_a2
         part_of_sin_a2 = along_a2 * sin_swing_a2
@@ -137,12 +120,20 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_left_right = (across_a2_left_times_cos_swing_a2 + part_of_sin_a2) / divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if effective_a2 > link_length_5_times_shortest_link_2 and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
-            rod_1_x = x - centre_1_x_left
-            rod_1_y = y - centre_1_y_left
-            part_of_pivot_rear_x_left_left_2 = pivot_upper_x_left - part_of_pivot_rear_x_left_left * sin_a1_left
+            pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
+            pivot_upper_y = -link_length_1 * cos_a1
+            if swap_xy:
+                centre_1_x = pivot_upper_y
+                centre_1_y = pivot_upper_x
+            else:
+                centre_1_x = pivot_upper_x
+                centre_1_y = pivot_upper_y
+            rod_1_x = x - centre_1_x
+            rod_1_y = y - centre_1_y
+            part_of_pivot_rear_x_left_left_2 = pivot_upper_x - part_of_pivot_rear_x_left_left * sin_a1
             # rod rear: centre about which it swings
             pivot_rear_x_left = -part_of_pivot_rear_x_left_left_2 - link_length_5 * cos_a2_left_left
-            part_of_pivot_rear_y = pivot_upper_y_left - part_of_pivot_rear_x_left_left * cos_a1_left
+            part_of_pivot_rear_y = pivot_upper_y - part_of_pivot_rear_x_left_left * cos_a1
             pivot_rear_y_left = link_length_5 * sin_a2_left_left - part_of_pivot_rear_y
             centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left) * link_length_2_by_link_length_3_2
             centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left) * link_length_2_by_link_length_3_2
@@ -166,9 +157,12 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_left_left = 3
             refusal_left_right = 3
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left) * RADIAN
-        along_a2 = span_rear_x - part_of_along_a2_left * sin_a1_right
-        across_a2 = part_of_along_a2_left * cos_a1_right - span_rear_y
+        axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
+        sin_a1 = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y) / divisor_a1
+        along_a2 = span_rear_x - part_of_along_a2_left * sin_a1
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_a1 = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x) / divisor_a1
+        across_a2 = part_of_along_a2_left * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
@@ -184,10 +178,10 @@ def unrolled(k: Constants) -> Unrolled:
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
-        along_a2_right_times_cos_swing_a2 = along_a2 * cos_swing_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
         part_of_cos_a2 = across_a2 * sin_swing_a2
+        along_a2_right_times_cos_swing_a2 = along_a2 * cos_swing_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_right_left = (along_a2_right_times_cos_swing_a2 + part_of_cos_a2) / divisor_a2
         part_of_sin_a2 = along_a2 * sin_swing_a2
@@ -198,12 +192,20 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_right_right = (across_a2_right_times_cos_swing_a2 + part_of_sin_a2) / divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if effective_a2 > link_length_5_times_shortest_link_2 and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
-            rod_1_x = x - centre_1_x_right
-            rod_1_y = y - centre_1_y_right
-            part_of_pivot_rear_x = pivot_upper_x_right - part_of_pivot_rear_x_left_left * sin_a1_right
+            pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
+            pivot_upper_y = -link_length_1 * cos_a1
+            if swap_xy:
+                centre_1_x = pivot_upper_y
+                centre_1_y = pivot_upper_x
+            else:
+                centre_1_x = pivot_upper_x
+                centre_1_y = pivot_upper_y
+            rod_1_x = x - centre_1_x
+            rod_1_y = y - centre_1_y
+            part_of_pivot_rear_x = pivot_upper_x - part_of_pivot_rear_x_left_left * sin_a1
             # rod rear: centre about which it swings
             pivot_rear_x_left = -part_of_pivot_rear_x - link_length_5 * cos_a2_right_left
-            part_of_pivot_rear_y = pivot_upper_y_right - part_of_pivot_rear_x_left_left * cos_a1_right
+            part_of_pivot_rear_y = pivot_upper_y - part_of_pivot_rear_x_left_left * cos_a1
             pivot_rear_y_left = link_length_5 * sin_a2_right_left - part_of_pivot_rear_y
             centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left) * link_length_2_by_link_length_3_2
             centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left) * link_length_2_by_link_length_3_2
@@ -227,7 +229,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_right_left = 3
             refusal_right_right = 3
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right) * RADIAN
+        axis_a1_right = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         return (
             (axis_a1_left, offset_a2 + arctan2(sin_a2_left_left, cos_a2_left_left) * RADIAN)
             if refusal_left_left == 0

@@ -57,21 +57,21 @@ def unrolled(k: Constants) -> Unrolled:
             root_of_radicand_a2 = 0.0
         span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
         a2 = root_of_radicand_a2 + span_2_x
-        rod_2_x_right_times_span_1_y = (span_2_x - a2) * span_1_y
+        span_1_y_times_rod_2_x_right = (span_2_x - a2) * span_1_y
         span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
         a1 = span_1_x - root_of_radicand_a1
         rod_1_x_left_times_span_2_y = (span_1_x - a1) * span_2_y
         type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
-            rod_1_x_left_times_span_2_y - rod_2_x_right_times_span_1_y
+            rod_1_x_left_times_span_2_y - span_1_y_times_rod_2_x_right
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_left = a1 + offset_a1
         axis_a2_right = a2 + offset_a2
         a2 = span_2_x - root_of_radicand_a2
-        rod_2_x_left_times_span_1_y = (span_2_x - a2) * span_1_y
+        span_1_y_times_rod_2_x_left = (span_2_x - a2) * span_1_y
         type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
-            rod_1_x_left_times_span_2_y - rod_2_x_left_times_span_1_y
+            rod_1_x_left_times_span_2_y - span_1_y_times_rod_2_x_left
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = 0 if type2_arms_aligned >= min_type2_margin else 3
@@ -79,13 +79,13 @@ def unrolled(k: Constants) -> Unrolled:
         a1 = root_of_radicand_a1 + span_1_x
         rod_1_x_right_times_span_2_y = (span_1_x - a1) * span_2_y
         type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
-            rod_1_x_right_times_span_2_y - rod_2_x_right_times_span_1_y
+            rod_1_x_right_times_span_2_y - span_1_y_times_rod_2_x_right
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_right = a1 + offset_a1
         type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
-            rod_1_x_right_times_span_2_y - rod_2_x_left_times_span_1_y
+            rod_1_x_right_times_span_2_y - span_1_y_times_rod_2_x_left
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_left = 0 if type2_arms_aligned >= min_type2_margin else 3

@@ -67,11 +67,11 @@ def unrolled(k: Constants) -> Unrolled:
         # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
-            ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3 * x
             d3_times_y = d3 * y
+            ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3 * x
             cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_x - d3_times_y) / divisor_q1
-            ahead_q1_before_q1_for_q3_front_times_y = ahead_q1_before_q1_for_q3 * y
             d3_times_x = d3 * x
+            ahead_q1_before_q1_for_q3_front_times_y = ahead_q1_before_q1_for_q3 * y
             sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_y + d3_times_x) / divisor_q1
             cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front_times_x - d3_times_y) / divisor_q1
             sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_front_times_y) / divisor_q1

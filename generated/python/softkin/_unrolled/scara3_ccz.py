@@ -23,7 +23,6 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale, mid_a1, mid_a2, offset_a1 = k.machine_scale, k.mid_a1, k.mid_a2, k.offset_a1
     offset_a2, offset_a3, single_a1, single_a2 = k.offset_a2, k.offset_a3, k.single_a1, k.single_a2
     machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    twice_offset_a2 = 2.0 * offset_a2
     link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
@@ -56,11 +55,11 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             angle_a1_right = (ref_a1 - offset_a1) * DEGREE
             angle_a1_left = angle_a1_right
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
+        part_of_axis_a2 = arctan2(sin_a2, cos_a2) * RADIAN
         axis_a3 = offset_a3 + z
         return (
-            (offset_a1 + angle_a1_right * RADIAN, axis_a2, axis_a3),
-            (offset_a1 + angle_a1_left * RADIAN, twice_offset_a2 - axis_a2, axis_a3),
+            (offset_a1 + angle_a1_right * RADIAN, offset_a2 + part_of_axis_a2, axis_a3),
+            (offset_a1 + angle_a1_left * RADIAN, offset_a2 - part_of_axis_a2, axis_a3),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

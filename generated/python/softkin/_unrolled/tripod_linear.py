@@ -119,22 +119,22 @@ def unrolled(k: Constants) -> Unrolled:
         part_of_middle_a2_2 = cos_rail_angle_times_z - half_sin_rail_angle_2 * span_2_x
         middle_a2 = -part_of_middle_a2_2 - part_of_middle_a2 * span_2_y
         a2 = middle_a2 + root_of_radicand_a2
-        rod_2_x_below = span_2_x - a2 * half_sin_rail_angle_2
-        rod_2_y_below = span_2_y + a2 * part_of_middle_a2
-        rod_2_z_below = z - (-a2 * cos_rail_angle)
+        rod_2_x = span_2_x - a2 * half_sin_rail_angle_2
+        rod_2_z = z - (-a2 * cos_rail_angle)
         middle_a3 = part_of_middle_a2 * span_3_y - part_of_middle_a2_2
         a3 = middle_a3 + root_of_radicand_a3
         rod_3_x_below = span_2_x - a3 * half_sin_rail_angle_2
-        rod_3_y_below = span_3_y - a3 * part_of_middle_a2
         rod_3_z_below = z - (-a3 * cos_rail_angle)
-        part_of_type2_rods_coplanar_below_below_below_2 = (
-            rod_2_x_below * rod_3_z_below - rod_2_z_below * rod_3_x_below
-        ) * y
-        type2_rods_coplanar = -part_of_type2_rods_coplanar_below_below_below * (
-            part_of_type2_rods_coplanar_below_below_below_2
-            + (rod_2_z_below * rod_3_y_below - rod_2_y_below * rod_3_z_below) * rod_1_x
-            + (rod_2_y_below * rod_3_x_below - rod_2_x_below * rod_3_y_below) * rod_1_z
-        )
+        part_of_type2_rods_coplanar_below_below_below_2 = (rod_2_x * rod_3_z_below - rod_2_z * rod_3_x_below) * y
+        rod_2_y = span_2_y + a2 * part_of_middle_a2
+        rod_3_y_below = span_3_y - a3 * part_of_middle_a2
+        part_of_type2_rods_coplanar_below_below_below_3 = rod_2_y * rod_3_z_below - rod_2_z * rod_3_y_below
+        part_of_type2_rods_coplanar_below_below_below_4 = rod_2_x * rod_3_y_below - rod_2_y * rod_3_x_below
+        type2_rods_coplanar = (
+            part_of_type2_rods_coplanar_below_below_below_3 * rod_1_x
+            + part_of_type2_rods_coplanar_below_below_below_4 * rod_1_z
+            - part_of_type2_rods_coplanar_below_below_below_2
+        ) * part_of_type2_rods_coplanar_below_below_below
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_below = a1 + offset_a1
@@ -142,86 +142,73 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3_below = a3 + offset_a3
         a3 = middle_a3 - root_of_radicand_a3
         rod_3_x_above = span_2_x - a3 * half_sin_rail_angle_2
-        rod_3_y_above = span_3_y - a3 * part_of_middle_a2
         rod_3_z_above = z - (-a3 * cos_rail_angle)
-        part_of_type2_rods_coplanar_below_below_above = (
-            rod_2_x_below * rod_3_z_above - rod_2_z_below * rod_3_x_above
-        ) * y
+        part_of_type2_rods_coplanar_below_above = (rod_2_x * rod_3_z_above - rod_2_z * rod_3_x_above) * y
+        rod_3_y_above = span_3_y - a3 * part_of_middle_a2
+        part_of_type2_rods_coplanar_below_below_above_2 = rod_2_y * rod_3_z_above - rod_2_z * rod_3_y_above
+        part_of_type2_rods_coplanar_below_below_above_3 = rod_2_x * rod_3_y_above - rod_2_y * rod_3_x_above
         type2_rods_coplanar = (
-            -(
-                part_of_type2_rods_coplanar_below_below_above
-                + (rod_2_z_below * rod_3_y_above - rod_2_y_below * rod_3_z_above) * rod_1_x
-                + (rod_2_y_below * rod_3_x_above - rod_2_x_below * rod_3_y_above) * rod_1_z
-            )
-            * part_of_type2_rods_coplanar_below_below_below
-        )
+            part_of_type2_rods_coplanar_below_below_above_2 * rod_1_x
+            + part_of_type2_rods_coplanar_below_below_above_3 * rod_1_z
+            - part_of_type2_rods_coplanar_below_above
+        ) * part_of_type2_rods_coplanar_below_below_below
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_above = a3 + offset_a3
         a2 = middle_a2 - root_of_radicand_a2
-        rod_2_x_above = span_2_x - a2 * half_sin_rail_angle_2
-        rod_2_y_above = span_2_y + a2 * part_of_middle_a2
-        rod_2_z_above = z - (-a2 * cos_rail_angle)
-        part_of_type2_rods_coplanar_below_above_below = (
-            rod_2_x_above * rod_3_z_below - rod_2_z_above * rod_3_x_below
-        ) * y
+        rod_2_x = span_2_x - a2 * half_sin_rail_angle_2
+        rod_2_z = z - (-a2 * cos_rail_angle)
+        part_of_type2_rods_coplanar_above_below = (rod_2_x * rod_3_z_below - rod_2_z * rod_3_x_below) * y
+        rod_2_y = span_2_y + a2 * part_of_middle_a2
+        part_of_type2_rods_coplanar_below_above_below_2 = rod_2_y * rod_3_z_below - rod_2_z * rod_3_y_below
+        part_of_type2_rods_coplanar_below_above_below_3 = rod_2_x * rod_3_y_below - rod_2_y * rod_3_x_below
         type2_rods_coplanar = (
-            -(
-                part_of_type2_rods_coplanar_below_above_below
-                + (rod_2_z_above * rod_3_y_below - rod_2_y_above * rod_3_z_below) * rod_1_x
-                + (rod_2_y_above * rod_3_x_below - rod_2_x_above * rod_3_y_below) * rod_1_z
-            )
-            * part_of_type2_rods_coplanar_below_below_below
-        )
+            part_of_type2_rods_coplanar_below_above_below_2 * rod_1_x
+            + part_of_type2_rods_coplanar_below_above_below_3 * rod_1_z
+            - part_of_type2_rods_coplanar_above_below
+        ) * part_of_type2_rods_coplanar_below_below_below
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_above = a2 + offset_a2
-        part_of_type2_rods_coplanar_below_above_above = (
-            rod_2_x_above * rod_3_z_above - rod_2_z_above * rod_3_x_above
-        ) * y
+        part_of_type2_rods_coplanar_above_above = (rod_2_x * rod_3_z_above - rod_2_z * rod_3_x_above) * y
+        part_of_type2_rods_coplanar_below_above_above_2 = rod_2_y * rod_3_z_above - rod_2_z * rod_3_y_above
+        part_of_type2_rods_coplanar_below_above_above_3 = rod_2_x * rod_3_y_above - rod_2_y * rod_3_x_above
         type2_rods_coplanar = (
-            -(
-                part_of_type2_rods_coplanar_below_above_above
-                + (rod_2_z_above * rod_3_y_above - rod_2_y_above * rod_3_z_above) * rod_1_x
-                + (rod_2_y_above * rod_3_x_above - rod_2_x_above * rod_3_y_above) * rod_1_z
-            )
-            * part_of_type2_rods_coplanar_below_below_below
-        )
+            part_of_type2_rods_coplanar_below_above_above_2 * rod_1_x
+            + part_of_type2_rods_coplanar_below_above_above_3 * rod_1_z
+            - part_of_type2_rods_coplanar_above_above
+        ) * part_of_type2_rods_coplanar_below_below_below
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         a1 = -middle_a1 - root_of_radicand_a1
         rod_1_x = span_1_x + a1 * sin_rail_angle
         rod_1_z = z - (-a1 * cos_rail_angle)
-        part_of_type2_rods_coplanar_above_below_below = rod_1_x * rod_3_z_below - rod_1_z * rod_3_x_below
-        part_of_type2_rods_coplanar_above_below_below_2 = rod_1_z * rod_2_x_below - rod_1_x * rod_2_z_below
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_below_below * rod_2_y_below
-            + part_of_type2_rods_coplanar_above_below_below_2 * rod_3_y_below
+            part_of_type2_rods_coplanar_below_below_below_3 * rod_1_x
+            + part_of_type2_rods_coplanar_below_below_below_4 * rod_1_z
             - part_of_type2_rods_coplanar_below_below_below_2
         ) * part_of_type2_rods_coplanar_below_below_below
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_above = a1 + offset_a1
-        part_of_type2_rods_coplanar_above_below_above = rod_1_x * rod_3_z_above - rod_1_z * rod_3_x_above
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_below_above * rod_2_y_below
-            + part_of_type2_rods_coplanar_above_below_below_2 * rod_3_y_above
-            - part_of_type2_rods_coplanar_below_below_above
+            part_of_type2_rods_coplanar_below_below_above_2 * rod_1_x
+            + part_of_type2_rods_coplanar_below_below_above_3 * rod_1_z
+            - part_of_type2_rods_coplanar_below_above
         ) * part_of_type2_rods_coplanar_below_below_below
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        part_of_type2_rods_coplanar_above_above_below = rod_1_z * rod_2_x_above - rod_1_x * rod_2_z_above
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_above_below * rod_3_y_below
-            + part_of_type2_rods_coplanar_above_below_below * rod_2_y_above
-            - part_of_type2_rods_coplanar_below_above_below
+            part_of_type2_rods_coplanar_below_above_below_2 * rod_1_x
+            + part_of_type2_rods_coplanar_below_above_below_3 * rod_1_z
+            - part_of_type2_rods_coplanar_above_below
         ) * part_of_type2_rods_coplanar_below_below_below
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_above_below * rod_3_y_above
-            + part_of_type2_rods_coplanar_above_below_above * rod_2_y_above
-            - part_of_type2_rods_coplanar_below_above_above
+            part_of_type2_rods_coplanar_below_above_above_2 * rod_1_x
+            + part_of_type2_rods_coplanar_below_above_above_3 * rod_1_z
+            - part_of_type2_rods_coplanar_above_above
         ) * part_of_type2_rods_coplanar_below_below_below
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3

@@ -134,38 +134,40 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a1_times_span_1_z = span_1_z * cos_swing_a1
         sin_a1 = (cos_swing_a1_times_span_1_z + sin_swing_a1_outward_times_span_1_x) / divisor_a1
         rod_1_z = span_1_z + arm_length_1 * sin_a1
+        along_a2_times_cos_swing_a2 = along_a2 * cos_swing_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
         across_a2_times_sin_swing_a2 = across_a2 * sin_swing_a2
-        along_a2_times_cos_swing_a2 = along_a2 * cos_swing_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2_times_cos_swing_a2 - across_a2_times_sin_swing_a2) / divisor_a2
-        rod_2_x_outward = span_2_x - half_arm_length_1_2 * cos_a2
-        rod_2_y_outward = span_2_y + arm_length_1_times_root_of_3_times_half_2 * cos_a2
-        along_a2_times_sin_swing_a2 = along_a2 * sin_swing_a2
+        rod_2_x = span_2_x - half_arm_length_1_2 * cos_a2
         across_a2_times_cos_swing_a2 = across_a2 * cos_swing_a2
+        along_a2_times_sin_swing_a2 = along_a2 * sin_swing_a2
         sin_a2 = (-across_a2_times_cos_swing_a2 - along_a2_times_sin_swing_a2) / divisor_a2
-        rod_2_z_outward = span_1_z + arm_length_1 * sin_a2
+        rod_2_z = span_1_z + arm_length_1 * sin_a2
+        along_a3_times_cos_swing_a3 = along_a3 * cos_swing_a3
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) / divisor_of_cos_a3
         across_a2_times_sin_swing_a3 = across_a2 * sin_swing_a3
-        along_a3_times_cos_swing_a3 = along_a3 * cos_swing_a3
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (along_a3_times_cos_swing_a3 - across_a2_times_sin_swing_a3) / divisor_a3
         rod_3_x_outward = span_2_x - half_arm_length_1_2 * cos_a3
-        rod_3_y_outward = span_3_y - arm_length_1_times_root_of_3_times_half_2 * cos_a3
-        along_a3_times_sin_swing_a3 = along_a3 * sin_swing_a3
         across_a2_times_cos_swing_a3 = across_a2 * cos_swing_a3
+        along_a3_times_sin_swing_a3 = along_a3 * sin_swing_a3
         sin_a3 = (-across_a2_times_cos_swing_a3 - along_a3_times_sin_swing_a3) / divisor_a3
         rod_3_z_outward = span_1_z + arm_length_1 * sin_a3
         part_of_type2_rods_coplanar_outward_outward_outward_2 = (
-            rod_2_x_outward * rod_3_z_outward - rod_2_z_outward * rod_3_x_outward
+            rod_2_x * rod_3_z_outward - rod_2_z * rod_3_x_outward
         ) * y
-        type2_rods_coplanar = -part_of_type2_rods_coplanar_outward_outward_outward * (
-            part_of_type2_rods_coplanar_outward_outward_outward_2
-            + (rod_2_z_outward * rod_3_y_outward - rod_2_y_outward * rod_3_z_outward) * rod_1_x
-            + (rod_2_y_outward * rod_3_x_outward - rod_2_x_outward * rod_3_y_outward) * rod_1_z
-        )
+        rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half_2 * cos_a2
+        rod_3_y_outward = span_3_y - arm_length_1_times_root_of_3_times_half_2 * cos_a3
+        part_of_type2_rods_coplanar_outward_outward_outward_3 = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
+        part_of_type2_rods_coplanar_outward_outward_outward_4 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
+        type2_rods_coplanar = (
+            part_of_type2_rods_coplanar_outward_outward_outward_3 * rod_1_x
+            + part_of_type2_rods_coplanar_outward_outward_outward_4 * rod_1_z
+            - part_of_type2_rods_coplanar_outward_outward_outward_2
+        ) * part_of_type2_rods_coplanar_outward_outward_outward
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
@@ -174,54 +176,45 @@ def unrolled(k: Constants) -> Unrolled:
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (across_a2_times_sin_swing_a3 + along_a3_times_cos_swing_a3) / divisor_a3
         rod_3_x_inward = span_2_x - half_arm_length_1_2 * cos_a3
-        rod_3_y_inward = span_3_y - arm_length_1_times_root_of_3_times_half_2 * cos_a3
         sin_a3 = (along_a3_times_sin_swing_a3 - across_a2_times_cos_swing_a3) / divisor_a3
         rod_3_z_inward = span_1_z + arm_length_1 * sin_a3
-        part_of_type2_rods_coplanar_outward_outward_inward = (
-            rod_2_x_outward * rod_3_z_inward - rod_2_z_outward * rod_3_x_inward
-        ) * y
+        part_of_type2_rods_coplanar_outward_inward = (rod_2_x * rod_3_z_inward - rod_2_z * rod_3_x_inward) * y
+        rod_3_y_inward = span_3_y - arm_length_1_times_root_of_3_times_half_2 * cos_a3
+        part_of_type2_rods_coplanar_outward_outward_inward_2 = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
+        part_of_type2_rods_coplanar_outward_outward_inward_3 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
         type2_rods_coplanar = (
-            -(
-                part_of_type2_rods_coplanar_outward_outward_inward
-                + (rod_2_z_outward * rod_3_y_inward - rod_2_y_outward * rod_3_z_inward) * rod_1_x
-                + (rod_2_y_outward * rod_3_x_inward - rod_2_x_outward * rod_3_y_inward) * rod_1_z
-            )
-            * part_of_type2_rods_coplanar_outward_outward_outward
-        )
+            part_of_type2_rods_coplanar_outward_outward_inward_2 * rod_1_x
+            + part_of_type2_rods_coplanar_outward_outward_inward_3 * rod_1_z
+            - part_of_type2_rods_coplanar_outward_inward
+        ) * part_of_type2_rods_coplanar_outward_outward_outward
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (across_a2_times_sin_swing_a2 + along_a2_times_cos_swing_a2) / divisor_a2
-        rod_2_x_inward = span_2_x - half_arm_length_1_2 * cos_a2
-        rod_2_y_inward = span_2_y + arm_length_1_times_root_of_3_times_half_2 * cos_a2
+        rod_2_x = span_2_x - half_arm_length_1_2 * cos_a2
         sin_a2 = (along_a2_times_sin_swing_a2 - across_a2_times_cos_swing_a2) / divisor_a2
-        rod_2_z_inward = span_1_z + arm_length_1 * sin_a2
-        part_of_type2_rods_coplanar_outward_inward_outward = (
-            rod_2_x_inward * rod_3_z_outward - rod_2_z_inward * rod_3_x_outward
-        ) * y
+        rod_2_z = span_1_z + arm_length_1 * sin_a2
+        part_of_type2_rods_coplanar_inward_outward = (rod_2_x * rod_3_z_outward - rod_2_z * rod_3_x_outward) * y
+        rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half_2 * cos_a2
+        part_of_type2_rods_coplanar_outward_inward_outward_2 = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
+        part_of_type2_rods_coplanar_outward_inward_outward_3 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
         type2_rods_coplanar = (
-            -(
-                part_of_type2_rods_coplanar_outward_inward_outward
-                + (rod_2_z_inward * rod_3_y_outward - rod_2_y_inward * rod_3_z_outward) * rod_1_x
-                + (rod_2_y_inward * rod_3_x_outward - rod_2_x_inward * rod_3_y_outward) * rod_1_z
-            )
-            * part_of_type2_rods_coplanar_outward_outward_outward
-        )
+            part_of_type2_rods_coplanar_outward_inward_outward_2 * rod_1_x
+            + part_of_type2_rods_coplanar_outward_inward_outward_3 * rod_1_z
+            - part_of_type2_rods_coplanar_inward_outward
+        ) * part_of_type2_rods_coplanar_outward_outward_outward
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
-        part_of_type2_rods_coplanar_outward_inward_inward = (
-            rod_2_x_inward * rod_3_z_inward - rod_2_z_inward * rod_3_x_inward
-        ) * y
+        part_of_type2_rods_coplanar_inward_inward = (rod_2_x * rod_3_z_inward - rod_2_z * rod_3_x_inward) * y
+        part_of_type2_rods_coplanar_outward_inward_inward_2 = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
+        part_of_type2_rods_coplanar_outward_inward_inward_3 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
         type2_rods_coplanar = (
-            -(
-                part_of_type2_rods_coplanar_outward_inward_inward
-                + (rod_2_z_inward * rod_3_y_inward - rod_2_y_inward * rod_3_z_inward) * rod_1_x
-                + (rod_2_y_inward * rod_3_x_inward - rod_2_x_inward * rod_3_y_inward) * rod_1_z
-            )
-            * part_of_type2_rods_coplanar_outward_outward_outward
-        )
+            part_of_type2_rods_coplanar_outward_inward_inward_2 * rod_1_x
+            + part_of_type2_rods_coplanar_outward_inward_inward_3 * rod_1_z
+            - part_of_type2_rods_coplanar_inward_inward
+        ) * part_of_type2_rods_coplanar_outward_outward_outward
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -229,36 +222,32 @@ def unrolled(k: Constants) -> Unrolled:
         rod_1_x = span_1_x + arm_length_1 * cos_a1
         sin_a1 = (cos_swing_a1_times_span_1_z - sin_swing_a1_outward_times_span_1_x) / divisor_a1
         rod_1_z = span_1_z + arm_length_1 * sin_a1
-        part_of_type2_rods_coplanar_inward_outward_outward = rod_1_x * rod_3_z_outward - rod_1_z * rod_3_x_outward
-        part_of_type2_rods_coplanar_inward_outward_outward_2 = rod_1_z * rod_2_x_outward - rod_1_x * rod_2_z_outward
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_inward_outward_outward * rod_2_y_outward
-            + part_of_type2_rods_coplanar_inward_outward_outward_2 * rod_3_y_outward
+            part_of_type2_rods_coplanar_outward_outward_outward_3 * rod_1_x
+            + part_of_type2_rods_coplanar_outward_outward_outward_4 * rod_1_z
             - part_of_type2_rods_coplanar_outward_outward_outward_2
         ) * part_of_type2_rods_coplanar_outward_outward_outward
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
-        part_of_type2_rods_coplanar_inward_outward_inward = rod_1_x * rod_3_z_inward - rod_1_z * rod_3_x_inward
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_inward_outward_inward * rod_2_y_outward
-            + part_of_type2_rods_coplanar_inward_outward_outward_2 * rod_3_y_inward
-            - part_of_type2_rods_coplanar_outward_outward_inward
+            part_of_type2_rods_coplanar_outward_outward_inward_2 * rod_1_x
+            + part_of_type2_rods_coplanar_outward_outward_inward_3 * rod_1_z
+            - part_of_type2_rods_coplanar_outward_inward
         ) * part_of_type2_rods_coplanar_outward_outward_outward
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        part_of_type2_rods_coplanar_inward_inward_outward = rod_1_z * rod_2_x_inward - rod_1_x * rod_2_z_inward
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_inward_inward_outward * rod_3_y_outward
-            + part_of_type2_rods_coplanar_inward_outward_outward * rod_2_y_inward
-            - part_of_type2_rods_coplanar_outward_inward_outward
+            part_of_type2_rods_coplanar_outward_inward_outward_2 * rod_1_x
+            + part_of_type2_rods_coplanar_outward_inward_outward_3 * rod_1_z
+            - part_of_type2_rods_coplanar_inward_outward
         ) * part_of_type2_rods_coplanar_outward_outward_outward
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_inward_inward_outward * rod_3_y_inward
-            + part_of_type2_rods_coplanar_inward_outward_inward * rod_2_y_inward
-            - part_of_type2_rods_coplanar_outward_inward_inward
+            part_of_type2_rods_coplanar_outward_inward_inward_2 * rod_1_x
+            + part_of_type2_rods_coplanar_outward_inward_inward_3 * rod_1_z
+            - part_of_type2_rods_coplanar_inward_inward
         ) * part_of_type2_rods_coplanar_outward_outward_outward
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3

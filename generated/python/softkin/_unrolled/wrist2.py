@@ -20,7 +20,6 @@ def unrolled(k: Constants) -> Unrolled:
     highest_a, highest_b, lowest_a, lowest_b, mid_a = k.highest_a, k.highest_b, k.lowest_a, k.lowest_b, k.mid_a
     mid_b, offset_a, offset_b, single_a, single_b = k.mid_b, k.offset_a, k.offset_b, k.single_a, k.single_b
     tool_side = k.tool_side
-    twice_offset_b = 2.0 * offset_b
     no_offsets = not any((offset_a, offset_b))
 
     def branches(
@@ -45,14 +44,14 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a_positive = sin(reference_a)
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
-        axis_a = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive) * RADIAN
-        axis_b = offset_b + arctan2(radius_a, r33) * RADIAN
-        direction_of_axis_a = (
-            180.0 + axis_a
+        axis_a_positive = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive) * RADIAN
+        part_of_axis_b = arctan2(radius_a, r33) * RADIAN
+        axis_a_negative = (
+            180.0 + axis_a_positive
             if radius_a > 1e-11
             else offset_a + arctan2(direction_y_a_negative, direction_x_a_negative) * RADIAN
         )
-        return ((axis_a, axis_b), (direction_of_axis_a, twice_offset_b - axis_b))
+        return ((axis_a_positive, offset_b + part_of_axis_b), (axis_a_negative, offset_b - part_of_axis_b))
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""

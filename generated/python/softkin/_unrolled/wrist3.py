@@ -21,7 +21,6 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_b, lowest_c, mid_a, mid_b, mid_c = k.lowest_b, k.lowest_c, k.mid_a, k.mid_b, k.mid_c
     offset_a, offset_b, offset_c, single_a, single_b = k.offset_a, k.offset_b, k.offset_c, k.single_a, k.single_b
     single_c = k.single_c
-    twice_offset_b = 2.0 * offset_b
     no_offsets = not any((offset_a, offset_b, offset_c))
 
     def branches(
@@ -42,7 +41,7 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_c_down = sin(reference_c)
             direction_x_c_up = direction_x_c_down
             direction_y_c_up = direction_y_c_down
-        axis_a = (
+        axis_a_down = (
             offset_a
             + arctan2(
                 -direction_x_c_down * r12 - direction_y_c_down * r11,
@@ -50,21 +49,24 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * RADIAN
         )
-        axis_b = offset_b + arctan2(radius_c, r33) * RADIAN
-        axis_c = offset_c + arctan2(direction_y_c_down, direction_x_c_down) * RADIAN
+        part_of_axis_b = arctan2(radius_c, r33) * RADIAN
+        axis_c_down = offset_c + arctan2(direction_y_c_down, direction_x_c_down) * RADIAN
         if radius_c > 1e-11:
-            direction_of_axis_a = 180.0 + axis_a
-            direction_of_axis_c = 180.0 + axis_c
+            axis_a_up = 180.0 + axis_a_down
+            axis_c_up = 180.0 + axis_c_down
         else:
-            direction_of_axis_a = (
+            axis_a_up = (
                 offset_a
                 + arctan2(
                     -direction_x_c_up * r12 - direction_y_c_up * r11, direction_x_c_up * r22 + direction_y_c_up * r21
                 )
                 * RADIAN
             )
-            direction_of_axis_c = offset_c + arctan2(direction_y_c_up, direction_x_c_up) * RADIAN
-        return ((axis_a, axis_b, axis_c), (direction_of_axis_a, twice_offset_b - axis_b, direction_of_axis_c))
+            axis_c_up = offset_c + arctan2(direction_y_c_up, direction_x_c_up) * RADIAN
+        return (
+            (axis_a_down, offset_b + part_of_axis_b, axis_c_down),
+            (axis_a_up, offset_b - part_of_axis_b, axis_c_up),
+        )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""

@@ -28,22 +28,18 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
+    REFUSAL,
+    Sign,
     called,
+    choices,
     count,
     real,
+    suffixed,
 )
 from derive.ir.verify import BrokenProgram, verify
 from derive.kinematics.kinematics import Kinematics
-from derive.optimize.unroll import (
-    REFUSAL,
-    Sign,
-    choices,
-    is_straight,
-    specialised,
-    suffixed,
-    unroll,
-)
-from derive.optimize.without_periods import without_chosen_turns
+from derive.lowering.unrolling import is_straight, unroll
+from derive.optimize.without_periods import specialised, without_chosen_turns
 from tests.mechanisms import kinematics_of
 
 A, B, C, X, Y = (real(n) for n in "abcxy")
@@ -71,10 +67,12 @@ def test_a_statement_stands_once_for_every_assignment_of_the_signs_it_depends_on
         "a": Root(X),
         "b_right": Y + A,
         "b_left": Y - A,
-        "c_right_down": Root(real("b_right")) + A,
-        "c_left_down": Root(real("b_left")) + A,
-        "c_right_up": Root(real("b_right")) - A,
-        "c_left_up": Root(real("b_left")) - A,
+        "root_of_b_right": Root(real("b_right")),
+        "root_of_b_left": Root(real("b_left")),
+        "c_right_down": real("root_of_b_right") + A,
+        "c_left_down": real("root_of_b_left") + A,
+        "c_right_up": real("root_of_b_right") - A,
+        "c_left_up": real("root_of_b_left") - A,
     }
     one_after_the_other = ["o_right_down", "o_right_up", "o_left_down", "o_left_up"]
     assert [o.name for o in found.outputs if o.name.startswith("o")] == one_after_the_other

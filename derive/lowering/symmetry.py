@@ -1,0 +1,164 @@
+"""Symmetry: a value that another one gives by a change of sign or by half a turn is not computed again.
+
+    c_up = select(r > tolerance, -x/r, cos(free))     where r > tolerance, c_up is -c_down
+    m_up = a * c_up + b * s_up                     →  m_up = select(r > tolerance, -m_down, a * c_up + b * s_up)
+    axis_up = shift + atan2(m_up, n_up)/DEGREE     →  axis_up = select(r > tolerance, axis_down + 180, shift + …)
+
+    angle_up = atan2(-s, c)                        →  angle_up = -angle_down    where angle_down = atan2(s, c)
+
+The condition of a choice is assumed; then a node is compared with those before it. A direction is taken in its first
+quadrant, so that a mirrored or an opposite one has the same angle but for its sign and half a turn. It serves a
+language that computes one side of a choice alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.ir.constants import DEGREE
+from derive.ir.graph import PRODUCT, SUM, Graph, Node, Value, reached
+from derive.ir.primitives import Atan2, NearestPeriod, Select, Wrap
+from derive.lowering.draft import Rewriting
+from derive.lowering.writing import is_condition
+
+_HALF = 180
+
+
+class Mirrored(Rewriting):
+    """Takes the minus sign of a sine in front of the angle, unless something takes the value of the angle."""
+
+    def __init__(self, graph: Graph, nodes: Iterable[Node]) -> None:
+        super().__init__(graph)
+        self._counted = set(reached(node for node in nodes if node.head is Wrap))
+
+    def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
+        """An angle with a sine that has no minus sign."""
+        if node.head is not Atan2 or node in self._counted or parts[0].sign > 0:
+            return super().rewritten(node, parts)
+        return -self.graph.apply(Atan2, (-parts[0], parts[1]))
+
+
+class Symmetry(Rewriting):
+    """Values with a name, and angles whose turn is chosen, by those of mirrored branches: everywhere, or on the first
+    side of a choice.
+    """
+
+    def __init__(self, graph: Graph, starts: Collection[Node], named: Iterable[Node]) -> None:
+        """starts: what the statements and the outputs of a draft read; named: the nodes that have a name."""
+        super().__init__(graph)
+        counted = set(reached(node for node in reached(starts) if node.head is Wrap))
+        always = _always_needed(starts)
+        turned = {node.parts[0].node for node in always if node.head is NearestPeriod}
+        candidates = sorted((n for n in always & {*named, *turned} if not is_condition(n)), key=lambda n: n.place)
+        conditions = {node.parts[0].node for node in always if node.head is Select}
+        self._twins: dict[Node, _Twin] = {}
+        for condition in (None, *sorted(conditions, key=lambda n: n.place)):
+            self._look(candidates, Assumed(graph, condition, counted))
+
+    def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
+        """The choice between what another node gives and the node."""
+        own = super().rewritten(node, parts)
+        twin = self._twins.get(node)
+        if twin is None:
+            return own
+        other = self(twin.other)
+        if twin.shift != 0:
+            other = self.graph.sum([other, _number(self.graph, twin.shift)])
+        if twin.condition is None:
+            return other
+        return self.graph.apply(Select, (self(Value(twin.condition, 1)), other, own))
+
+    def _look(self, candidates: Sequence[Node], assumed: Assumed) -> None:
+        first: dict[Node, tuple[Node, int, sp.Expr]] = {}
+        condition = assumed.condition
+        for node in candidates:
+            value = assumed(Value(node, 1))
+            shift = assumed.shift(Value(node, 1))
+            if value.node.is_leaf:
+                continue
+            other, sign, away = first.setdefault(value.node, (node, value.sign, shift))
+            is_decided = node.head is Select and node.parts[0].node is condition
+            if other is node or node in self._twins or is_decided or (condition is not None and value.node is node):
+                continue
+            sign *= value.sign
+            self._twins[node] = _Twin(condition, Value(other, sign), _modulo_turns(shift - sign * away))
+
+
+@dataclass(frozen=True)
+class _Twin:
+    """Where a condition holds, or everywhere, a node is another one, with a sign, and half a turn or none."""
+
+    condition: Node | None
+    other: Value
+    shift: sp.Expr
+
+
+class Assumed(Rewriting):
+    """Values where a condition holds; what has angles is a value and a shift, a number of half turns."""
+
+    def __init__(self, graph: Graph, condition: Node | None, counted: Iterable[Node]) -> None:
+        """counted: what takes the value of an angle, and may not be a turn more or less."""
+        super().__init__(graph)
+        self.condition, self._counted = condition, frozenset(counted)
+        self._shifts: dict[Node, sp.Expr] = {}
+
+    def shift(self, value: Value) -> sp.Expr:
+        """What has to be added to the assumed value."""
+        return value.sign * self._shifts.get(value.node, sp.Integer(0))
+
+    def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
+        """The value without its shift."""
+        value, shift = self._apart(node, parts)
+        if shift != 0:
+            self._shifts[node] = shift
+        return value
+
+    def _apart(self, node: Node, parts: tuple[Value, ...]) -> tuple[Value, sp.Expr]:
+        shifts = [self.shift(part) for part in node.parts]
+        if node.head is Select and node.parts[0].node is self.condition:
+            return parts[1], shifts[1]
+        if node.head is Atan2 and node not in self._counted:
+            sine, cosine = parts
+            value = self.graph.apply(Atan2, (Value(sine.node, 1), Value(cosine.node, 1)))
+            away = _HALF * DEGREE if cosine.sign < 0 else sp.Integer(0)
+            return Value(value.node, value.sign * sine.sign * cosine.sign), away
+        if not any(shifts):
+            return super().rewritten(node, parts), sp.Integer(0)
+        if node.head is SUM:
+            return super().rewritten(node, parts), sp.Add(*shifts)
+        if node.head is PRODUCT and all(n.is_number or n.head == DEGREE or n in self._shifts for n in node.sources()):
+            factors = [s if s != 0 else p.sign * p.node.head for s, p in zip(shifts, node.parts, strict=True)]
+            if sum(s != 0 for s in shifts) == 1:
+                away = sp.Mul(*factors) / sp.Mul(*(d.head for d in node.divisors))
+                return super().rewritten(node, parts), away
+        whole = [
+            p if s == 0 else self.graph.sum([p, _number(self.graph, s)]) for p, s in zip(parts, shifts, strict=True)
+        ]
+        return super().rewritten(node, tuple(whole)), sp.Integer(0)
+
+
+def _always_needed(starts: Iterable[Node]) -> set[Node]:
+    """What is read without a choice: what one side of a choice alone reads is not computed for the sake of others."""
+    found: set[Node] = set()
+    pending = list(starts)
+    while pending:
+        node = pending.pop()
+        if node not in found:
+            found.add(node)
+            pending += (node.parts[0].node,) if node.head is Select else node.sources()
+    return found
+
+
+def _number(graph: Graph, shift: sp.Expr) -> Value:
+    """Half turns as a value, in degrees or in radians."""
+    degrees, is_radian = (shift / DEGREE, True) if shift.has(DEGREE) else (shift, False)
+    value = graph.leaf(degrees)
+    return graph.product([value, graph.leaf(DEGREE)]) if is_radian else value
+
+
+def _modulo_turns(shift: sp.Expr) -> sp.Expr:
+    unit = DEGREE if shift.has(DEGREE) else sp.Integer(1)
+    return sp.Mod(shift / unit, 2 * _HALF) * unit

@@ -1,0 +1,23 @@
+"""What a program binds, and whether two programs answer the same."""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from derive.ir.interpret import run
+from derive.ir.program import Program
+
+
+def values(program: Program) -> dict[str, sp.Expr]:
+    """What the names of a program are bound to."""
+    return {let.name.name: let.value for let in program.lets()}
+
+
+def same(first: Program, second: Program) -> None:
+    """Both answer the same, whatever they are given."""
+    random = np.random.default_rng(3)
+    given = {s.name: random.uniform(-3, 3, 200) for s in {*first.inputs, *second.inputs}}
+    (wanted, _), (found, _) = (run(p, {s.name: given[s.name] for s in p.inputs}) for p in (first, second))
+    for name, value in wanted.items():
+        np.testing.assert_allclose(found[name], value, rtol=1e-12, atol=1e-11)

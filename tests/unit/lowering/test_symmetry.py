@@ -1,0 +1,118 @@
+"""Mirrored branches: the program before and after, and the same answers."""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+
+from derive.ir.constants import DEGREE
+from derive.ir.passes import assemble
+from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, Wrap
+from derive.ir.program import Let, Output, Program
+from derive.ir.symbols import real
+from derive.lowering.draft import Reader, changed, values_of
+from derive.lowering.symmetry import Symmetry
+from derive.lowering.writing import written
+from derive.report.cost import cost_of
+from tests.unit.answers import same, values
+
+A, B, C, D, N, R, T, X, Y = (real(n) for n in "abcdnrtxy")
+C_DOWN, C_UP, S_DOWN, S_UP, M_DOWN, M_UP = (real(n) for n in ("c_down", "c_up", "s_down", "s_up", "m_down", "m_up"))
+AXIS_DOWN, AXIS_UP = real("axis_down"), real("axis_up")
+REGULAR = sp.Gt(R, 1)
+
+
+def with_symmetry(program: Program) -> Program:
+    reader = Reader()
+    draft = reader.draft(program)
+    starts = [value.node for value in values_of(draft)]
+    return written(changed(draft, Symmetry(reader.graph, starts, draft.names)), {}, modulo_turns=True)
+
+
+def axes(*lets: Let, down: sp.Expr, up: sp.Expr) -> Program:
+    """A program with two axes on the turns that are nearest to N."""
+    ends = [Let(AXIS_DOWN, NearestPeriod(down, N)), Let(AXIS_UP, NearestPeriod(up, N))]
+    return assemble("axes", [*lets, *ends], [Output("down", AXIS_DOWN), Output("up", AXIS_UP)])
+
+
+def wrist() -> Program:
+    """A wrist and the same turned over: where it is not regular, both are at the same angle."""
+    lets = [
+        Let(C_DOWN, Select(REGULAR, X / 2, sp.cos(T))),
+        Let(S_DOWN, Select(REGULAR, Y / 2, sp.sin(T))),
+        Let(C_UP, Select(REGULAR, -X / 2, sp.cos(T))),
+        Let(S_UP, Select(REGULAR, -Y / 2, sp.sin(T))),
+        Let(M_DOWN, A * C_DOWN + B * S_DOWN),
+        Let(M_UP, A * C_UP + B * S_UP),
+    ]
+    return axes(*lets, down=D + Atan2(M_DOWN, C_DOWN) / DEGREE, up=D + Atan2(M_UP, C_UP) / DEGREE)
+
+
+def test_a_value_is_the_negative_of_another_where_a_condition_holds() -> None:
+    found = values(with_symmetry(wrist()))
+    assert found["m_up"] == Select(REGULAR, -M_DOWN, A * C_UP + B * S_UP)
+
+
+def test_an_angle_is_half_a_turn_from_another_where_a_condition_holds() -> None:
+    found = values(with_symmetry(wrist()))
+    down = next(real(name) for name, value in found.items() if value == D + Atan2(M_DOWN, C_DOWN) / DEGREE)
+    assert found["axis_up"] == NearestPeriod(Select(REGULAR, down + 180, D + Atan2(M_UP, C_UP) / DEGREE), N)
+    same(wrist(), with_symmetry(wrist()))
+
+
+@pytest.mark.parametrize("sine", [X, -X])
+@pytest.mark.parametrize("cosine", [Y, -Y])
+@pytest.mark.parametrize("sense", [1, -1])
+def test_a_mirrored_or_opposite_direction_has_the_same_angle_but_for_half_a_turn(
+    sine: sp.Expr, cosine: sp.Expr, sense: int
+) -> None:
+    """In a sum with another angle, too, and where the sum itself is taken negative."""
+    angles = [Let(S_DOWN, Atan2(X, Y)), Let(S_UP, Atan2(sine, cosine))]
+    program = axes(*angles, down=D + S_DOWN / DEGREE, up=A + (sense * S_UP + 3 * T * DEGREE) / DEGREE)
+    found = with_symmetry(program)
+    assert cost_of(found).trigonometric == 1
+    same(program, found)
+
+
+def test_half_a_turn_in_a_sine_is_written_out() -> None:
+    angles = [Let(S_DOWN, Atan2(X, Y)), Let(S_UP, Atan2(-X, -Y))]
+    ends = [Let(A, sp.sin(S_UP + R * DEGREE)), Let(B, sp.cos(S_DOWN - R * DEGREE))]
+    program = assemble("sines", [*angles, *ends], [Output("a", A), Output("b", B)])
+    same(program, with_symmetry(program))
+
+
+def test_another_value_on_the_other_side_is_kept() -> None:
+    """The second sides of C differ: what is made of it is the negative on the first side alone."""
+    lets = [
+        Let(C_DOWN, Select(REGULAR, X / 2, sp.cos(T))),
+        Let(C_UP, Select(REGULAR, -X / 2, sp.sin(T))),
+        Let(M_DOWN, A * C_DOWN),
+        Let(M_UP, A * C_UP),
+    ]
+    program = assemble("other", lets, [Output("down", M_DOWN + 1), Output("up", M_UP + 1)])
+    assert values(with_symmetry(program))["m_up"] == Select(REGULAR, -M_DOWN, A * C_UP)
+    same(program, with_symmetry(program))
+
+
+def test_values_that_differ_on_the_first_side_stay() -> None:
+    lets = [Let(C_DOWN, Select(REGULAR, X, T)), Let(C_UP, Select(REGULAR, -2 * X, T))]
+    lets += [Let(M_DOWN, Root(A + C_DOWN)), Let(M_UP, Root(A + C_UP))]
+    program = assemble("other", lets, [Output("down", M_DOWN + 1), Output("up", M_UP + 1)])
+    assert values(with_symmetry(program)) == values(program)
+
+
+def test_what_one_side_of_a_choice_alone_reads_is_not_computed_for_another_value() -> None:
+    """M of the first wrist is needed where R is large alone: the second one does not wait for it."""
+    far = sp.Gt(R, 2)
+    lets = [Let(C_DOWN, Select(REGULAR, X, T)), Let(C_UP, Select(REGULAR, -X, T))]
+    lets += [Let(M_DOWN, A * C_DOWN + 1), Let(M_UP, -A * C_UP + 1), Let(B, Select(far, M_DOWN, Y))]
+    program = assemble("rare", lets, [Output("down", B), Output("up", M_UP)])
+    assert values(with_symmetry(program))["m_up"] == 1 - A * C_UP
+    same(program, with_symmetry(program))
+
+
+def test_an_angle_whose_value_is_taken_is_left_alone() -> None:
+    """Its value counts, not its direction: half a turn more would be another value."""
+    program = axes(down=Wrap(Atan2(X, Y)) / DEGREE, up=Wrap(Atan2(-X, -Y)) / DEGREE / 3)
+    assert cost_of(with_symmetry(program)).trigonometric == 2
+    same(program, with_symmetry(program))
