@@ -86,6 +86,11 @@ class Reader:
         outputs = tuple(reading.value(o.value) for o in program.outputs)
         return Draft(program, items, outputs, reading.names)
 
+    def constant(self, let: Let) -> tuple[Node, Named]:
+        """What is bound elsewhere, in terms of other names that are."""
+        value = _Reading(self.graph).value(let.value)
+        return value.node, Named(let.name, value.sign, "", 0)
+
 
 @dataclass
 class _Reading:

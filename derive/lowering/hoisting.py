@@ -5,7 +5,7 @@ x = l1 * cos_q + l2 - l3         →  setup: l2_minus_l3 = l2 - l3;   x = l1 * c
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import sympy as sp
@@ -82,30 +82,35 @@ class Gathering(Rewriting):
 
 
 def hoisted(
-    drafts: Sequence[Draft], constant: Constant, taken: Iterable[str]
+    drafts: Sequence[Draft], constant: Constant, taken: Iterable[str], known: Mapping[Node, Named]
 ) -> tuple[dict[Node, Named], tuple[Let, ...]]:
-    """The constants that the drafts read, by name, and their bindings. taken: names that are not free."""
+    """The constants that the drafts read, by name, and their bindings. taken: names that are not free; known: constants
+    that are bound elsewhere.
+    """
     read = {node for draft in drafts for node in _constants_read(draft, constant)}
     given = {node: named for draft in reversed(drafts) for node, named in draft.names.items()}
     readers = _readers(drafts)
     varying = {named.name.name for d in drafts for n, named in d.names.items() if not constant(n)}
     free = Names({*taken, *varying})
-    names: dict[Node, Named] = {}
+    names = {node: named for node, named in known.items() if not node.is_leaf}
+    elsewhere = dict(names)
 
     def called(node: Node) -> sp.Expr | None:
         return names[node].sign * names[node].name if node in names else None
 
     inner = {node for node in reached(read) if node in given}
-    for order, node in enumerate(sorted(read | inner, key=lambda n: n.place)):
-        own = given.get(node)
-        if own is not None:
-            names[node] = replace(own, name=free.fresh(own.name.name, own.name), order=order)
+    for order, node in enumerate(sorted((read | inner) - elsewhere.keys(), key=lambda n: n.place)):
+        named = given.get(node)
+        if named is not None:
+            names[node] = replace(named, name=free.fresh(named.name.name, named.name), order=order)
             continue
         proposal = said(Value(node, 1), called, readers.get(node, "constant"))
         names[node] = Named(free.fresh(proposal), 1, "", order)
-    outputs = tuple(Output(named.name.name, named.name) for named in names.values())
-    values = tuple(Value(node, named.sign) for node, named in names.items())
-    program = written(Draft(Program("constants", (), (), outputs), [], values, dict(names)), {}, {*taken, *varying})
+    own = {node: named for node, named in names.items() if node not in elsewhere}
+    outputs = tuple(Output(named.name.name, named.name) for named in own.values())
+    values = tuple(Value(node, named.sign) for node, named in own.items())
+    draft = Draft(Program("constants", (), (), outputs), [], values, own)
+    program = written(draft, elsewhere, {*taken, *varying})
     return names, program.lets()
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from derive.ir.graph import Graph, Node, reached
@@ -27,11 +27,13 @@ def lowered(
     modulo_turns: bool = False,
     inverts: bool = True,
     branches: Mapping[str, Sequence[Sign]] | None = None,
+    known: Iterable[Let] = (),
 ) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
     """The programs, and what they read of constants alone. A program that others call comes before them.
 
     modulo_turns: whether an angle may be a turn more or less, unless its value is taken; inverts: whether a division
-    takes longer than several multiplications; branches: by name of a program, the signs whose branches are unrolled.
+    takes longer than several multiplications; branches: by name of a program, the signs whose branches are unrolled;
+    known: constants that are computed from others.
     """
     reader = Reader()
     graph, constant = reader.graph, Constant(constants)
@@ -44,7 +46,8 @@ def lowered(
     drafts = [_shorter(draft, graph, constant) for draft in drafts]
     if inverts:
         drafts = [changed(draft, Dividing(graph, _nodes(draft), constant)) for draft in drafts]
-    names, lets = hoisted(drafts, constant, constants)
+    given = dict(reader.constant(let) for let in known)
+    names, lets = hoisted(drafts, constant, constants, given)
     taken = {*constants, *(let.name.name for let in lets)}
     done: dict[str, Program] = {}
     for draft in drafts:

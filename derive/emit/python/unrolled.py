@@ -135,7 +135,7 @@ def unrolled(kin: Kinematics) -> Unrolled:
     last = finish(kin, one)
     functions = (
         _directions(kin, methods[0], known),
-        _direction(kin, methods[1], known, parts),
+        _direction(kin, methods[1], known),
         *((last,) if last else ()),
     )
     read = {c for f in functions for c in f.constants} | {s.name for p in parts for s in symbols_of(p.value)}
@@ -161,8 +161,14 @@ def trusted_branch(kin: Kinematics) -> Function:
 def _shorter(kin: Kinematics, methods: Sequence[Method]) -> tuple[list[Method], tuple[Let, ...]]:
     """The methods with fewer operations, and what they read that is computed from constants."""
     named = [replace(m.program, name=m.name) for m in methods]
+    constants = _constants(kin)
     programs, parts = lowered(
-        named, _constants(kin), modulo_turns=True, inverts=False, branches={"branches": signs(kin)}
+        named,
+        constants,
+        modulo_turns=True,
+        inverts=False,
+        branches={"branches": signs(kin)},
+        known=[let for let in kin.setup.lets() if let.name.name in constants],
     )
     return [replace(m, program=squares_where_read(p)) for m, p in zip(methods, programs, strict=True)], parts
 
@@ -216,12 +222,12 @@ def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Functi
     return written.function([*item_lines(items, refusals, _DIRECTIONS), f"return {_slots(kin, values)}"])
 
 
-def _direction(kin: Kinematics, method: Method, known: Sequence[Let], parts: Sequence[Let]) -> Function:
-    """One branch; its return once more without the offsets, read by it or in its parts, where all of them are zero."""
+def _direction(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
+    """One branch; its return once more without the offsets, read by it or in constants, where all of them are zero."""
     written = _Written.of(method, known)
     lines = item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)
     zero = {joint.offset: sp.Integer(0) for joint in kin.mechanism.joints}
-    zero |= {let.name: value for let in parts for value in [let.value.xreplace(zero)] if value.is_number}
+    zero |= {let.name: value for let in known for value in [let.value.xreplace(zero)] if value.is_number}
     values, without = list(written.values.values()), [value.xreplace(zero) for value in written.values.values()]
     if without != values:
         lines += [f"if {NO_OFFSETS}:", f"    return {_texts(without)}"]

@@ -78,9 +78,8 @@ class Constants:
         outer_arm_squared = outer_arm * outer_arm
         twice_inner_arm = 2.0 * inner_arm
         part_of_slope_1_by_x = 2.0 * tcp_displacement - 2.0 * displacement
-        self.inner_arm, self.outer_arm, self.displacement = inner_arm, outer_arm, displacement
-        self.tcp_displacement, self.offset_a1, self.offset_a2 = tcp_displacement, offset_a1, offset_a2
-        self.min_type2_margin, self.machine_scale, self.assembly_sign = min_type2_margin, machine_scale, assembly_sign
+        self.inner_arm, self.outer_arm, self.offset_a1, self.offset_a2 = inner_arm, outer_arm, offset_a1, offset_a2
+        self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
         self.part_of_normal_divisor, self.twice_outer_arm = part_of_normal_divisor, twice_outer_arm
         self.outer_arm_squared_times_rounding = outer_arm_squared_times_rounding
         self.machine_scale_times_plane = machine_scale_times_plane

@@ -126,9 +126,8 @@ class Constants:
         part_of_slope_2_by_a1 = 2.0 * link_length_1 * link_length_3_by_link_length_2_plus_one
         twice_link_length_5 = 2.0 * link_length_5
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
-        self.link_length_4, self.link_length_5, self.swap_xy = link_length_4, link_length_5, swap_xy
-        self.offset_a1, self.offset_a2, self.min_type2_margin = offset_a1, offset_a2, min_type2_margin
-        self.machine_scale, self.assembly_sign = machine_scale, assembly_sign
+        self.link_length_5, self.swap_xy, self.offset_a1, self.offset_a2 = link_length_5, swap_xy, offset_a1, offset_a2
+        self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
         self.part_of_normal_divisor = part_of_normal_divisor
         self.link_length_2_squared_times_rounding = link_length_2_squared_times_rounding
         self.link_length_2_plus_radius_2 = link_length_2_plus_radius_2

@@ -83,10 +83,9 @@ class Constants:
         arm_length_1_times_arm_length_2 = arm_length_1 * arm_length_2
         self.arm_length_1, self.arm_length_2, self.rail_y_1 = arm_length_1, arm_length_2, rail_y_1
         self.rail_y_2, self.tcp_offset_1, self.tcp_offset_2 = rail_y_2, tcp_offset_1, tcp_offset_2
-        self.offset_a1, self.offset_a2, self.min_type2_margin = offset_a1, offset_a2, min_type2_margin
-        self.machine_scale, self.tie, self.centre_1_to_2_y = machine_scale, tie, centre_1_to_2_y
-        self.assembly_sign, self.centre_1_to_2_y_squared = assembly_sign, centre_1_to_2_y_squared
-        self.part_of_normal_divisor = part_of_normal_divisor
+        self.offset_a1, self.offset_a2, self.min_type2_margin, self.tie = offset_a1, offset_a2, min_type2_margin, tie
+        self.centre_1_to_2_y, self.assembly_sign = centre_1_to_2_y, assembly_sign
+        self.centre_1_to_2_y_squared, self.part_of_normal_divisor = centre_1_to_2_y_squared, part_of_normal_divisor
         self.arm_length_1_squared_times_rounding = arm_length_1_squared_times_rounding
         self.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2
         self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2

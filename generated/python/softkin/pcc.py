@@ -63,8 +63,7 @@ class Constants:
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         self.link_length_1, self.link_length_2, self.offset_a1 = link_length_1, link_length_2, offset_a1
-        self.offset_a2, self.machine_scale = offset_a2, machine_scale
-        self.machine_scale_times_plane = machine_scale_times_plane
+        self.offset_a2, self.machine_scale_times_plane = offset_a2, machine_scale_times_plane
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2

@@ -67,7 +67,7 @@ class Constants:
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
         self.arm_length_1, self.arm_length_2, self.arm_length_3 = arm_length_1, arm_length_2, arm_length_3
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_z = offset_a1, offset_a2, offset_a3, offset_z
-        self.machine_scale, self.machine_scale_times_free_angle = machine_scale, machine_scale_times_free_angle
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2
         self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
 

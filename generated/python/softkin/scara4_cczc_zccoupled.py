@@ -80,9 +80,8 @@ class Constants:
         part_of_z = (gear_coupling - pitch_zc / 360.0) / DEGREE
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        self.link_length_1, self.link_length_2, self.pitch_zc = link_length_1, link_length_2, pitch_zc
-        self.gear_coupling, self.flange_down, self.offset_a1 = gear_coupling, flange_down, offset_a1
-        self.offset_a2, self.offset_a3, self.offset_a4 = offset_a2, offset_a3, offset_a4
+        self.link_length_1, self.link_length_2, self.flange_down = link_length_1, link_length_2, flange_down
+        self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.machine_scale, self.part_of_constant = machine_scale, part_of_constant
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.part_of_constant_2 = part_of_constant_2

@@ -68,8 +68,8 @@ class Constants:
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        self.link_length_1, self.link_length_2, self.pitch_zc = link_length_1, link_length_2, pitch_zc
-        self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
+        self.link_length_1, self.link_length_2, self.offset_a1 = link_length_1, link_length_2, offset_a1
+        self.offset_a2, self.offset_a3, self.offset_a4 = offset_a2, offset_a3, offset_a4
         self.machine_scale, self.machine_scale_times_free_angle = machine_scale, machine_scale_times_free_angle
         self.part_of_z, self.link_length_1_times_shortest_link = part_of_z, link_length_1_times_shortest_link
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2

@@ -189,9 +189,7 @@ class Constants:
         part_of_slope_3_by_x_2 = tcp_displacement / part_of_span_3_x_2 - 1.0
         part_of_slope_3_by_x = -part_of_slope_3_by_x_2 * rail_x_3
         part_of_slope_3_by_y = -part_of_slope_3_by_x_2 * rail_y_3
-        self.arm_length, self.tcp_displacement, self.rail_x_1 = arm_length, tcp_displacement, rail_x_1
-        self.rail_y_1, self.rail_x_2, self.rail_y_2, self.rail_x_3 = rail_y_1, rail_x_2, rail_y_2, rail_x_3
-        self.rail_y_3, self.offset_a1, self.offset_a2, self.offset_a3 = rail_y_3, offset_a1, offset_a2, offset_a3
+        self.arm_length, self.offset_a1, self.offset_a2, self.offset_a3 = arm_length, offset_a1, offset_a2, offset_a3
         self.min_type2_margin, self.tie, self.pivot_1_y, self.pivot_2_y = min_type2_margin, tie, pivot_1_y, pivot_2_y
         self.centre_1_to_2_y, self.pivot_3_y, self.centre_1_to_3_y = centre_1_to_2_y, pivot_3_y, centre_1_to_3_y
         self.pivot_1_x, self.pivot_2_x, self.centre_1_to_2_x = pivot_1_x, pivot_2_x, centre_1_to_2_x

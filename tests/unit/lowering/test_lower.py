@@ -41,6 +41,16 @@ def test_a_hoisted_value_keeps_the_name_that_it_had() -> None:
     assert [(let.name, let.value) for let in hoisted] == [(F, C + D)] and lets_of(shorter) == {"g": F * X}
 
 
+def test_a_constant_that_is_bound_elsewhere_is_read_by_its_name() -> None:
+    """Or by its negative; what is computed from it and other constants is hoisted all the same."""
+    known = [Let(real("gap"), D - C), Let(real("square"), C * C)]
+    one = program(Let(F, X * (C - D)), Let(G, Y + C * C * D), outputs=(F, G))
+    (shorter,), hoisted = lowered([one], (*CONSTANTS, "gap", "square"), known=known)
+    assert lets_of(shorter)["f"] == -X * real("gap")
+    assert {let.name for let in hoisted}.isdisjoint({let.name for let in known})
+    assert {s.name for s in shorter.inputs} <= {"x", "y", "gap", *(let.name.name for let in hoisted)}
+
+
 def test_two_programs_share_what_is_hoisted() -> None:
     first, second = program(Let(F, C * D * X), outputs=(F,)), program(Let(G, C * D * Y), outputs=(G,))
     _, hoisted = lowered([first, Program("other", second.inputs, second.body, second.outputs)], CONSTANTS)

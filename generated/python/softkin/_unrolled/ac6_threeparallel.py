@@ -18,22 +18,19 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    a2, a3, d1, d4, d5, d6, highest_a1, highest_a2 = k.a2, k.a3, k.d1, k.d4, k.d5, k.d6, k.highest_a1, k.highest_a2
-    highest_a3, highest_a4, highest_a5, highest_a6 = k.highest_a3, k.highest_a4, k.highest_a5, k.highest_a6
-    lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
-    lowest_a5, lowest_a6, machine_scale, mid_a1 = k.lowest_a5, k.lowest_a6, k.machine_scale, k.mid_a1
-    mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
-    offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
-    offset_a5, offset_a6, rounding_q1, single_a1 = k.offset_a5, k.offset_a6, k.rounding_q1, k.single_a1
+    a2, a2_minus_a3, a2_plus_a3 = k.a2, k.a2_minus_a3, k.a2_plus_a3
+    a2_squared_plus_a3_squared, a3, d1, d4, d5, d6 = k.a2_squared_plus_a3_squared, k.a3, k.d1, k.d4, k.d5, k.d6
+    highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
+    highest_a5, highest_a6, lowest_a1, lowest_a2 = k.highest_a5, k.highest_a6, k.lowest_a1, k.lowest_a2
+    lowest_a3, lowest_a4, lowest_a5, lowest_a6 = k.lowest_a3, k.lowest_a4, k.lowest_a5, k.lowest_a6
+    machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+    mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
+    offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+    offset_a6, part_of_cos_q6, rounding_q1, single_a1 = k.offset_a6, k.part_of_cos_q6, k.rounding_q1, k.single_a1
     single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
     single_a6, size_q1_for_q3 = k.single_a6, k.size_q1_for_q3
-    machine_scale_squared_times_plane_2 = 1e-6 * machine_scale * machine_scale
-    machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    size_q1_for_q3_times_rounding_2 = 1e-12 * size_q1_for_q3
-    part_of_cos_q6_left_down = 1.000000001 * size_q1_for_q3
-    a2_squared_plus_a3_squared_2 = a2 * a2 + a3 * a3
-    a2_plus_a3_2 = a2 + a3
-    a2_minus_a3_2 = a2 - a3
+    size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
     def branches(
@@ -48,7 +45,7 @@ def unrolled(k: Constants) -> Unrolled:
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d4) * (d4 + distance_q1)
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
             return ()
         # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
@@ -59,7 +56,7 @@ def unrolled(k: Constants) -> Unrolled:
                 return 8 * (refused[Status.UNREACHABLE],)
             ahead_q1_before_q1_for_q3 = 0.0
         # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
-        if distance_q1 > machine_scale_times_free_angle_2:
+        if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             d4_times_wrist_y = d4 * wrist_y
             part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
@@ -109,7 +106,7 @@ def unrolled(k: Constants) -> Unrolled:
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
-            - a2_squared_plus_a3_squared_2
+            - a2_squared_plus_a3_squared
         )
         # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
@@ -130,7 +127,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
             part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
@@ -139,7 +136,7 @@ def unrolled(k: Constants) -> Unrolled:
                 across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     level_q6_of_q3 = (
                         value_q6_of_q3
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3_down
@@ -200,8 +197,8 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
-        one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
+        one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
@@ -210,7 +207,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left) * RADIAN
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / abs(divisor_of_cos_q3)
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
             angle_q2_left_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
@@ -242,7 +239,7 @@ def unrolled(k: Constants) -> Unrolled:
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
-            - a2_squared_plus_a3_squared_2
+            - a2_squared_plus_a3_squared
         )
         # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
@@ -263,7 +260,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
             part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
@@ -272,7 +269,7 @@ def unrolled(k: Constants) -> Unrolled:
                 across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     level_q6_of_q3 = (
                         value_q6_of_q3
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3_up
@@ -332,8 +329,8 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
-        one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
+        one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
@@ -341,7 +338,7 @@ def unrolled(k: Constants) -> Unrolled:
         refusal_left_up = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / abs(divisor_of_cos_q3)
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
             angle_q2_left_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
@@ -394,7 +391,7 @@ def unrolled(k: Constants) -> Unrolled:
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
-            - a2_squared_plus_a3_squared_2
+            - a2_squared_plus_a3_squared
         )
         # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
@@ -415,7 +412,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
             wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
@@ -424,7 +421,7 @@ def unrolled(k: Constants) -> Unrolled:
                 across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     level_q6_of_q3 = (
                         value_q6_of_q3
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3_down
@@ -485,8 +482,8 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
-        one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
+        one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
@@ -495,7 +492,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right) * RADIAN
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / abs(divisor_of_cos_q3)
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
             angle_q2_right_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
@@ -527,7 +524,7 @@ def unrolled(k: Constants) -> Unrolled:
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
-            - a2_squared_plus_a3_squared_2
+            - a2_squared_plus_a3_squared
         )
         # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
@@ -548,7 +545,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
             wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
@@ -557,7 +554,7 @@ def unrolled(k: Constants) -> Unrolled:
                 across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     level_q6_of_q3 = (
                         value_q6_of_q3
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3_up
@@ -617,8 +614,8 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
-        one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
+        one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
@@ -626,7 +623,7 @@ def unrolled(k: Constants) -> Unrolled:
         refusal_right_up = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / abs(divisor_of_cos_q3)
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
             angle_q2_right_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
@@ -740,7 +737,7 @@ def unrolled(k: Constants) -> Unrolled:
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d4) * (d4 + distance_q1)
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
             return ()
         # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
@@ -751,7 +748,7 @@ def unrolled(k: Constants) -> Unrolled:
                 return None
             ahead_q1_before_q1_for_q3 = 0.0
         # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
-        if distance_q1 > machine_scale_times_free_angle_2:
+        if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d4 * wrist_y) / divisor_q1
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d4 * wrist_x) / divisor_q1
@@ -787,7 +784,7 @@ def unrolled(k: Constants) -> Unrolled:
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
-            - a2_squared_plus_a3_squared_2
+            - a2_squared_plus_a3_squared
         )
         # moved so that q3 has a solution
         # coordinate of the point that the remaining links must reach
@@ -800,7 +797,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
@@ -814,7 +811,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     level_q6_of_q3 = (
                         value_q6_of_q3
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3
@@ -874,8 +871,8 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_a3_2 + reach) * (a2_plus_a3_2 - reach)
-        one_plus_cos_q3 = (reach - a2_minus_a3_2) * (a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
+        one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
@@ -885,7 +882,7 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / abs(divisor_of_cos_q3)
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_q2 = arctan2(wrist_y_from_q1, wrist_x_from_q1) - arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
         else:
             angle_q2 = (ref_a2 - offset_a2) * DEGREE

@@ -18,20 +18,19 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    a1, a2, a3, d1, d3, d4, d6, effective_q3 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.d6, k.effective_q3
-    highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
-    highest_a5, highest_a6, lowest_a1, lowest_a2 = k.highest_a5, k.highest_a6, k.lowest_a1, k.lowest_a2
-    lowest_a3, lowest_a4, lowest_a5, lowest_a6 = k.lowest_a3, k.lowest_a4, k.lowest_a5, k.lowest_a6
-    machine_scale, mid_a1, mid_a2, mid_a3, mid_a4 = k.machine_scale, k.mid_a1, k.mid_a2, k.mid_a3, k.mid_a4
-    mid_a5, mid_a6, offset_a1, offset_a2, offset_a3 = k.mid_a5, k.mid_a6, k.offset_a1, k.offset_a2, k.offset_a3
-    offset_a4, offset_a5, offset_a6, rounding_q1 = k.offset_a4, k.offset_a5, k.offset_a6, k.rounding_q1
-    single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
-    single_a5, single_a6 = k.single_a5, k.single_a6
-    machine_scale_squared_times_plane_2 = 1e-6 * machine_scale * machine_scale
-    machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    part_of_angle_q3_front_down = arctan2(d4 / effective_q3 + 0.0, a3 / effective_q3 + 0.0)
-    a2_plus_effective_q3_2 = a2 + effective_q3
-    a2_minus_effective_q3_2 = a2 - effective_q3
+    a1, a2, a2_minus_effective_q3 = k.a1, k.a2, k.a2_minus_effective_q3
+    a2_plus_effective_q3, a3_by_effective_q3, d1, d3 = k.a2_plus_effective_q3, k.a3_by_effective_q3, k.d1, k.d3
+    d4_by_effective_q3, d6, effective_q3, highest_a1 = k.d4_by_effective_q3, k.d6, k.effective_q3, k.highest_a1
+    highest_a2, highest_a3, highest_a4, highest_a5 = k.highest_a2, k.highest_a3, k.highest_a4, k.highest_a5
+    highest_a6, lowest_a1, lowest_a2, lowest_a3 = k.highest_a6, k.lowest_a1, k.lowest_a2, k.lowest_a3
+    lowest_a4, lowest_a5, lowest_a6 = k.lowest_a4, k.lowest_a5, k.lowest_a6
+    machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+    mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
+    offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+    offset_a6, rounding_q1, single_a1, single_a2 = k.offset_a6, k.rounding_q1, k.single_a1, k.single_a2
+    single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
+    angle_of_a3_by_effective_q3 = arctan2(d4_by_effective_q3 + 0.0, a3_by_effective_q3 + 0.0)
     offset_a6_plus_180 = 180.0 + offset_a6
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
@@ -47,7 +46,7 @@ def unrolled(k: Constants) -> Unrolled:
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
             return ()
         # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
@@ -63,16 +62,16 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
+        one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
         # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
-        if distance_q1 > machine_scale_times_free_angle_2:
+        if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             d3_times_wrist_y = d3 * wrist_y
             part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
@@ -91,7 +90,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front) * RADIAN
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3 * sin_swing_q3, a2 + effective_q3 * cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -102,7 +101,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_up = reference_a2
         axis_a2_front_down = offset_a2 + angle_q2_down * RADIAN
         angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_swing_q3 + part_of_angle_q3_front_down
+        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
         axis_a3_front_down = offset_a3 + angle_q3 * RADIAN
         r13_from_q1 = r13 * cos_q1_before_q1_for_q3_front + r23 * sin_q1_before_q1_for_q3_front
         angle_q23 = angle_q2_down + angle_q3
@@ -164,7 +163,7 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
             )
         axis_a2_front_up = offset_a2 + angle_q2_up * RADIAN
-        angle_q3 = part_of_angle_q3_front_down - angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3 * RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
@@ -226,9 +225,9 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
+        one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
@@ -237,7 +236,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back) * RADIAN
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3 * sin_swing_q3, a2 + effective_q3 * cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -248,7 +247,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_up = reference_a2
         axis_a2_back_down = offset_a2 + angle_q2_down * RADIAN
         angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_swing_q3 + part_of_angle_q3_front_down
+        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
         axis_a3_back_down = offset_a3 + angle_q3 * RADIAN
         r13_from_q1 = r13 * cos_q1_before_q1_for_q3_back + r23 * sin_q1_before_q1_for_q3_back
         angle_q23 = angle_q2_down + angle_q3
@@ -310,7 +309,7 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
             )
         axis_a2_back_up = offset_a2 + angle_q2_up * RADIAN
-        angle_q3 = part_of_angle_q3_front_down - angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3 * RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
@@ -461,7 +460,7 @@ def unrolled(k: Constants) -> Unrolled:
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
             return ()
         # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
@@ -477,9 +476,9 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
+        one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
@@ -488,7 +487,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
         # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
-        if distance_q1 > machine_scale_times_free_angle_2:
+        if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d3 * wrist_y) / divisor_q1
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d3 * wrist_x) / divisor_q1
@@ -498,13 +497,13 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q1_before_q1_for_q3 = sin(reference_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_q2 = arctan2(-effective_q3 * sin_swing_q3, a2 + effective_q3 * cos_swing_q3) - arctan2(
                 wrist_x_from_q1, wrist_y_from_q1
             )
         else:
             angle_q2 = (ref_a2 - offset_a2) * DEGREE
-        angle_q3 = part_of_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_a3_by_effective_q3 + arctan2(sin_swing_q3, cos_swing_q3)
         r13_from_q1 = r13 * cos_q1_before_q1_for_q3 + r23 * sin_q1_before_q1_for_q3
         angle_q23 = angle_q2 + angle_q3
         sin_q23 = sin(angle_q23)

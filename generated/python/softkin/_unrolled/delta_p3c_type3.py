@@ -18,32 +18,34 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    assembly_sign, base_radius_1, base_radius_2 = k.assembly_sign, k.base_radius_1, k.base_radius_2
-    base_radius_3, cos_azimuth_1, cos_azimuth_2 = k.base_radius_3, k.cos_azimuth_1, k.cos_azimuth_2
-    cos_azimuth_3, highest_a1, highest_a2, highest_a3 = k.cos_azimuth_3, k.highest_a1, k.highest_a2, k.highest_a3
-    inner_arm_1, inner_arm_2, inner_arm_3, lowest_a1 = k.inner_arm_1, k.inner_arm_2, k.inner_arm_3, k.lowest_a1
+    base_radius_1, base_radius_2, base_radius_3 = k.base_radius_1, k.base_radius_2, k.base_radius_3
+    cos_azimuth_1, cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1, k.cos_azimuth_1_times_inner_arm_1
+    cos_azimuth_1_times_tcp_radius_1, cos_azimuth_2 = k.cos_azimuth_1_times_tcp_radius_1, k.cos_azimuth_2
+    cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
+    cos_azimuth_2_times_tcp_radius_2, cos_azimuth_3 = k.cos_azimuth_2_times_tcp_radius_2, k.cos_azimuth_3
+    cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
+    cos_azimuth_3_times_tcp_radius_3, highest_a1 = k.cos_azimuth_3_times_tcp_radius_3, k.highest_a1
+    highest_a2, highest_a3, inner_arm_1 = k.highest_a2, k.highest_a3, k.inner_arm_1
+    inner_arm_1_times_shortest_link = k.inner_arm_1_times_shortest_link
+    inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
+    inner_arm_2_times_shortest_link = k.inner_arm_2_times_shortest_link
+    inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
+    inner_arm_3_times_shortest_link = k.inner_arm_3_times_shortest_link
+    inner_arm_3_times_sin_azimuth_3, lowest_a1 = k.inner_arm_3_times_sin_azimuth_3, k.lowest_a1
     lowest_a2, lowest_a3, mid_a1, mid_a2, mid_a3 = k.lowest_a2, k.lowest_a3, k.mid_a1, k.mid_a2, k.mid_a3
     min_type2_margin, offset_a1, offset_a2, offset_a3 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.offset_a3
     outer_arm_1, outer_arm_2, outer_arm_3 = k.outer_arm_1, k.outer_arm_2, k.outer_arm_3
-    sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
-    single_a1, single_a2, single_a3, tcp_radius_1 = k.single_a1, k.single_a2, k.single_a3, k.tcp_radius_1
-    tcp_radius_2, tcp_radius_3 = k.tcp_radius_2, k.tcp_radius_3
-    inner_arm_1_times_shortest_link_2 = 1e-9 * inner_arm_1
-    inner_arm_2_times_shortest_link_2 = 1e-9 * inner_arm_2
-    inner_arm_3_times_shortest_link_2 = 1e-9 * inner_arm_3
-    part_of_span_1_x = tcp_radius_1 * cos_azimuth_1 - base_radius_1 * cos_azimuth_1
-    part_of_span_1_y = tcp_radius_1 * sin_azimuth_1 - base_radius_1 * sin_azimuth_1
-    part_of_span_2_x = tcp_radius_2 * cos_azimuth_2 - base_radius_2 * cos_azimuth_2
-    part_of_span_2_y = tcp_radius_2 * sin_azimuth_2 - base_radius_2 * sin_azimuth_2
-    part_of_span_3_x = tcp_radius_3 * cos_azimuth_3 - base_radius_3 * cos_azimuth_3
-    part_of_span_3_y = tcp_radius_3 * sin_azimuth_3 - base_radius_3 * sin_azimuth_3
-    cos_azimuth_1_times_inner_arm_1_2 = inner_arm_1 * cos_azimuth_1
-    inner_arm_1_times_sin_azimuth_1_2 = inner_arm_1 * sin_azimuth_1
-    cos_azimuth_2_times_inner_arm_2_2 = inner_arm_2 * cos_azimuth_2
-    inner_arm_2_times_sin_azimuth_2_2 = inner_arm_2 * sin_azimuth_2
-    cos_azimuth_3_times_inner_arm_3_2 = inner_arm_3 * cos_azimuth_3
-    inner_arm_3_times_sin_azimuth_3_2 = inner_arm_3 * sin_azimuth_3
-    part_of_type2_rods_coplanar_outward_outward_outward = assembly_sign / (outer_arm_1 * outer_arm_2 * outer_arm_3)
+    part_of_type2_rods_coplanar, sin_azimuth_1 = k.part_of_type2_rods_coplanar, k.sin_azimuth_1
+    sin_azimuth_1_times_tcp_radius_1, sin_azimuth_2 = k.sin_azimuth_1_times_tcp_radius_1, k.sin_azimuth_2
+    sin_azimuth_2_times_tcp_radius_2, sin_azimuth_3 = k.sin_azimuth_2_times_tcp_radius_2, k.sin_azimuth_3
+    sin_azimuth_3_times_tcp_radius_3, single_a1 = k.sin_azimuth_3_times_tcp_radius_3, k.single_a1
+    single_a2, single_a3 = k.single_a2, k.single_a3
+    part_of_span_1_x = cos_azimuth_1_times_tcp_radius_1 - base_radius_1 * cos_azimuth_1
+    part_of_span_1_y = sin_azimuth_1_times_tcp_radius_1 - base_radius_1 * sin_azimuth_1
+    part_of_span_2_x = cos_azimuth_2_times_tcp_radius_2 - base_radius_2 * cos_azimuth_2
+    part_of_span_2_y = sin_azimuth_2_times_tcp_radius_2 - base_radius_2 * sin_azimuth_2
+    part_of_span_3_x = cos_azimuth_3_times_tcp_radius_3 - base_radius_3 * cos_azimuth_3
+    part_of_span_3_y = sin_azimuth_3_times_tcp_radius_3 - base_radius_3 * sin_azimuth_3
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -56,12 +58,12 @@ def unrolled(k: Constants) -> Unrolled:
         along_a1 = span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1
         effective_a1 = sqrt(along_a1 * along_a1 + z * z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
-        if not (effective_a1 > inner_arm_1_times_shortest_link_2):
+        if not (effective_a1 > inner_arm_1_times_shortest_link):
             return 8 * (refused[Status.UNREACHABLE],)
         part_of_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
         # square of the third side of the triangle
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
         effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
@@ -80,12 +82,12 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2 = span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2
         effective_a2 = sqrt(along_a2 * along_a2 + z * z)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
-        if not (effective_a2 > inner_arm_2_times_shortest_link_2):
+        if not (effective_a2 > inner_arm_2_times_shortest_link):
             return 8 * (refused[Status.UNREACHABLE],)
         part_of_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
         # square of the third side of the triangle
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
         effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
@@ -104,12 +106,12 @@ def unrolled(k: Constants) -> Unrolled:
         along_a3 = span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3
         effective_a3 = sqrt(along_a3 * along_a3 + z * z)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
-        if not (effective_a3 > inner_arm_3_times_shortest_link_2):
+        if not (effective_a3 > inner_arm_3_times_shortest_link):
             return 8 * (refused[Status.UNREACHABLE],)
         part_of_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
         # square of the third side of the triangle
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
-        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
         effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
@@ -129,8 +131,8 @@ def unrolled(k: Constants) -> Unrolled:
         along_a1_times_cos_swing_a1 = along_a1 * cos_swing_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (along_a1_times_cos_swing_a1 - sin_swing_a1_inward_times_z) / divisor_a1
-        rod_1_x = span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1_2
-        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1_2 * cos_a1
+        rod_1_x = span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1
+        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1 * cos_a1
         cos_swing_a1_times_z = z * cos_swing_a1
         along_a1_times_sin_swing_a1 = along_a1 * sin_swing_a1
         sin_a1 = (-along_a1_times_sin_swing_a1 - cos_swing_a1_times_z) / divisor_a1
@@ -141,7 +143,7 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2_times_cos_swing_a2 = along_a2 * cos_swing_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2_times_cos_swing_a2 - sin_swing_a2_inward_times_z) / divisor_a2
-        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2_2 * cos_a2
+        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2 * cos_a2
         cos_swing_a2_times_z = z * cos_swing_a2
         along_a2_times_sin_swing_a2 = along_a2 * sin_swing_a2
         sin_a2 = (-along_a2_times_sin_swing_a2 - cos_swing_a2_times_z) / divisor_a2
@@ -152,20 +154,20 @@ def unrolled(k: Constants) -> Unrolled:
         along_a3_times_cos_swing_a3 = along_a3 * cos_swing_a3
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (along_a3_times_cos_swing_a3 - sin_swing_a3_inward_times_z) / divisor_a3
-        rod_3_y_outward = span_3_y - inner_arm_3_times_sin_azimuth_3_2 * cos_a3
+        rod_3_y_outward = span_3_y - inner_arm_3_times_sin_azimuth_3 * cos_a3
         cos_swing_a3_times_z = z * cos_swing_a3
         along_a3_times_sin_swing_a3 = along_a3 * sin_swing_a3
         sin_a3 = (-along_a3_times_sin_swing_a3 - cos_swing_a3_times_z) / divisor_a3
         rod_3_z_outward = z - (-inner_arm_3 * sin_a3)
-        part_of_type2_rods_coplanar_outward_outward_outward_2 = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
-        rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2_2
-        rod_3_x_outward = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3_2
-        part_of_type2_rods_coplanar_outward_outward_outward_3 = rod_2_z * rod_3_x_outward - rod_2_x * rod_3_z_outward
-        part_of_type2_rods_coplanar_outward_outward_outward_4 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
-        type2_rods_coplanar = part_of_type2_rods_coplanar_outward_outward_outward * (
-            part_of_type2_rods_coplanar_outward_outward_outward_2 * rod_1_x
-            + part_of_type2_rods_coplanar_outward_outward_outward_3 * rod_1_y
-            + part_of_type2_rods_coplanar_outward_outward_outward_4 * rod_1_z
+        part_of_type2_rods_coplanar_outward_outward = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
+        rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2
+        rod_3_x_outward = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3
+        part_of_type2_rods_coplanar_outward_outward_outward_2 = rod_2_z * rod_3_x_outward - rod_2_x * rod_3_z_outward
+        part_of_type2_rods_coplanar_outward_outward_outward_3 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+            part_of_type2_rods_coplanar_outward_outward * rod_1_x
+            + part_of_type2_rods_coplanar_outward_outward_outward_2 * rod_1_y
+            + part_of_type2_rods_coplanar_outward_outward_outward_3 * rod_1_z
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -174,81 +176,81 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (along_a3_times_cos_swing_a3 + sin_swing_a3_inward_times_z) / divisor_a3
-        rod_3_y_inward = span_3_y - inner_arm_3_times_sin_azimuth_3_2 * cos_a3
+        rod_3_y_inward = span_3_y - inner_arm_3_times_sin_azimuth_3 * cos_a3
         sin_a3 = (along_a3_times_sin_swing_a3 - cos_swing_a3_times_z) / divisor_a3
         rod_3_z_inward = z - (-inner_arm_3 * sin_a3)
         part_of_type2_rods_coplanar_outward_inward = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
-        rod_3_x_inward = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3_2
+        rod_3_x_inward = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3
         part_of_type2_rods_coplanar_outward_outward_inward_2 = rod_2_z * rod_3_x_inward - rod_2_x * rod_3_z_inward
         part_of_type2_rods_coplanar_outward_outward_inward_3 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
-        type2_rods_coplanar = (
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
             part_of_type2_rods_coplanar_outward_inward * rod_1_x
             + part_of_type2_rods_coplanar_outward_outward_inward_2 * rod_1_y
             + part_of_type2_rods_coplanar_outward_outward_inward_3 * rod_1_z
-        ) * part_of_type2_rods_coplanar_outward_outward_outward
+        )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2_times_cos_swing_a2 + sin_swing_a2_inward_times_z) / divisor_a2
-        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2_2 * cos_a2
+        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2 * cos_a2
         sin_a2 = (along_a2_times_sin_swing_a2 - cos_swing_a2_times_z) / divisor_a2
         rod_2_z = z - (-inner_arm_2 * sin_a2)
         part_of_type2_rods_coplanar_inward_outward = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
-        rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2_2
+        rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2
         part_of_type2_rods_coplanar_outward_inward_outward_2 = rod_2_z * rod_3_x_outward - rod_2_x * rod_3_z_outward
         part_of_type2_rods_coplanar_outward_inward_outward_3 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
-        type2_rods_coplanar = (
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
             part_of_type2_rods_coplanar_inward_outward * rod_1_x
             + part_of_type2_rods_coplanar_outward_inward_outward_2 * rod_1_y
             + part_of_type2_rods_coplanar_outward_inward_outward_3 * rod_1_z
-        ) * part_of_type2_rods_coplanar_outward_outward_outward
+        )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
         part_of_type2_rods_coplanar_inward_inward = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
         part_of_type2_rods_coplanar_outward_inward_inward_2 = rod_2_z * rod_3_x_inward - rod_2_x * rod_3_z_inward
         part_of_type2_rods_coplanar_outward_inward_inward_3 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
-        type2_rods_coplanar = (
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
             part_of_type2_rods_coplanar_inward_inward * rod_1_x
             + part_of_type2_rods_coplanar_outward_inward_inward_2 * rod_1_y
             + part_of_type2_rods_coplanar_outward_inward_inward_3 * rod_1_z
-        ) * part_of_type2_rods_coplanar_outward_outward_outward
+        )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (along_a1_times_cos_swing_a1 + sin_swing_a1_inward_times_z) / divisor_a1
-        rod_1_x = span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1_2
-        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1_2 * cos_a1
+        rod_1_x = span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1
+        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1 * cos_a1
         sin_a1 = (along_a1_times_sin_swing_a1 - cos_swing_a1_times_z) / divisor_a1
         rod_1_z = z - (-inner_arm_1 * sin_a1)
-        type2_rods_coplanar = part_of_type2_rods_coplanar_outward_outward_outward * (
-            part_of_type2_rods_coplanar_outward_outward_outward_2 * rod_1_x
-            + part_of_type2_rods_coplanar_outward_outward_outward_3 * rod_1_y
-            + part_of_type2_rods_coplanar_outward_outward_outward_4 * rod_1_z
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+            part_of_type2_rods_coplanar_outward_outward * rod_1_x
+            + part_of_type2_rods_coplanar_outward_outward_outward_2 * rod_1_y
+            + part_of_type2_rods_coplanar_outward_outward_outward_3 * rod_1_z
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
-        type2_rods_coplanar = (
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
             part_of_type2_rods_coplanar_outward_inward * rod_1_x
             + part_of_type2_rods_coplanar_outward_outward_inward_2 * rod_1_y
             + part_of_type2_rods_coplanar_outward_outward_inward_3 * rod_1_z
-        ) * part_of_type2_rods_coplanar_outward_outward_outward
+        )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        type2_rods_coplanar = (
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
             part_of_type2_rods_coplanar_inward_outward * rod_1_x
             + part_of_type2_rods_coplanar_outward_inward_outward_2 * rod_1_y
             + part_of_type2_rods_coplanar_outward_inward_outward_3 * rod_1_z
-        ) * part_of_type2_rods_coplanar_outward_outward_outward
+        )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        type2_rods_coplanar = (
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
             part_of_type2_rods_coplanar_inward_inward * rod_1_x
             + part_of_type2_rods_coplanar_outward_inward_inward_2 * rod_1_y
             + part_of_type2_rods_coplanar_outward_inward_inward_3 * rod_1_z
-        ) * part_of_type2_rods_coplanar_outward_outward_outward
+        )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
@@ -287,12 +289,12 @@ def unrolled(k: Constants) -> Unrolled:
         along_a1 = span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1
         effective_a1 = sqrt(along_a1 * along_a1 + z * z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
-        if not (effective_a1 > inner_arm_1_times_shortest_link_2):
+        if not (effective_a1 > inner_arm_1_times_shortest_link):
             return None
         part_of_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
         # square of the third side of the triangle
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
         effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
@@ -311,12 +313,12 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2 = span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2
         effective_a2 = sqrt(along_a2 * along_a2 + z * z)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
-        if not (effective_a2 > inner_arm_2_times_shortest_link_2):
+        if not (effective_a2 > inner_arm_2_times_shortest_link):
             return None
         part_of_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
         # square of the third side of the triangle
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
         effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
@@ -335,12 +337,12 @@ def unrolled(k: Constants) -> Unrolled:
         along_a3 = span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3
         effective_a3 = sqrt(along_a3 * along_a3 + z * z)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
-        if not (effective_a3 > inner_arm_3_times_shortest_link_2):
+        if not (effective_a3 > inner_arm_3_times_shortest_link):
             return None
         part_of_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
         # square of the third side of the triangle
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
-        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
         effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
@@ -363,25 +365,25 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 + z * sin_swing_a2) / divisor_a2
-        rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2_2
-        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2_2 * cos_a2
+        rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2
+        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2 * cos_a2
         sin_a2 = (along_a2 * sin_swing_a2 - z * cos_swing_a2) / divisor_a2
         rod_2_z = z - (-inner_arm_2 * sin_a2)
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_knee_3 / divisor_of_cos_a3
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (along_a3 * cos_swing_a3 + z * sin_swing_a3) / divisor_a3
-        rod_3_x = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3_2
-        rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3_2 * cos_a3
+        rod_3_x = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3
+        rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3 * cos_a3
         sin_a3 = (along_a3 * sin_swing_a3 - z * cos_swing_a3) / divisor_a3
         rod_3_z = z - (-inner_arm_3 * sin_a3)
         type2_rods_coplanar = (
             -(
                 (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * (z - (-inner_arm_1 * sin_a1))
-                + (span_1_y - inner_arm_1_times_sin_azimuth_1_2 * cos_a1) * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
-                + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * (span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1_2)
+                + (span_1_y - inner_arm_1_times_sin_azimuth_1 * cos_a1) * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
+                + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * (span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1)
             )
-            * part_of_type2_rods_coplanar_outward_outward_outward
+            * part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):

@@ -18,28 +18,23 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    assembly_sign, highest_a1, highest_a2 = k.assembly_sign, k.highest_a1, k.highest_a2
-    link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
-    link_length_4, link_length_5, lowest_a1, lowest_a2 = k.link_length_4, k.link_length_5, k.lowest_a1, k.lowest_a2
-    machine_scale, mid_a1, mid_a2, min_type2_margin = k.machine_scale, k.mid_a1, k.mid_a2, k.min_type2_margin
-    offset_a1, offset_a2, single_a1, single_a2 = k.offset_a1, k.offset_a2, k.single_a1, k.single_a2
+    highest_a1, highest_a2, link_length_1 = k.highest_a1, k.highest_a2, k.link_length_1
+    link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+    link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
+    link_length_1_times_shortest_link, link_length_2 = k.link_length_1_times_shortest_link, k.link_length_2
+    link_length_2_by_link_length_3, link_length_3 = k.link_length_2_by_link_length_3, k.link_length_3
+    link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
+    link_length_4_plus_link_length_5, link_length_5 = k.link_length_4_plus_link_length_5, k.link_length_5
+    link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
+    link_length_5_times_shortest_link, lowest_a1 = k.link_length_5_times_shortest_link, k.lowest_a1
+    lowest_a2, machine_scale_times_plane, mid_a1 = k.lowest_a2, k.machine_scale_times_plane, k.mid_a1
+    mid_a2, min_type2_margin, offset_a1, offset_a2 = k.mid_a2, k.min_type2_margin, k.offset_a1, k.offset_a2
+    part_of_pivot_rear_x, part_of_scaled_pivot_rear_y_2 = k.part_of_pivot_rear_x, k.part_of_scaled_pivot_rear_y_2
+    part_of_type2_arms_aligned, single_a1, single_a2 = k.part_of_type2_arms_aligned, k.single_a1, k.single_a2
     swap_xy = k.swap_xy
-    machine_scale_times_plane_2 = 1e-6 * machine_scale
-    link_length_1_times_shortest_link_2 = 1e-9 * link_length_1
-    link_length_5_times_shortest_link_2 = 1e-9 * link_length_5
-    link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
-    link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
-    link_length_3_by_link_length_2_2 = link_length_3 / link_length_2
-    link_length_5_minus_link_length_4_2 = link_length_5 - link_length_4
-    link_length_4_plus_link_length_5_2 = link_length_4 + link_length_5
     part_of_pivot_rear_x_left_left = link_length_1 * link_length_3 / link_length_2
-    link_length_2_by_link_length_3_2 = link_length_2 / link_length_3
-    part_of_type2_arms_aligned_left_left = (
-        assembly_sign * link_length_3 / (link_length_4 * link_length_2 * link_length_2)
-    )
     part_of_along_a2_left = link_length_1 * (link_length_2 + link_length_3) / link_length_2
-    part_of_scaled_pivot_rear_y_3 = (link_length_1 + part_of_pivot_rear_x_left_left) * link_length_2 / link_length_3
-    part_of_scaled_pivot_rear_y_4 = link_length_2 * link_length_5 / link_length_3
+    part_of_scaled_pivot_rear_y_3 = link_length_2 * part_of_pivot_rear_x / link_length_3
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -48,7 +43,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane_2):
+        if not (abs(z) <= machine_scale_times_plane):
             return 4 * (refused[Status.UNREACHABLE],)
         # rod upper: known part of its vector
         if swap_xy:
@@ -60,16 +55,16 @@ def unrolled(k: Constants) -> Unrolled:
         # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x * span_upper_x + span_upper_y * span_upper_y)
         # a1: its effective length is too short
-        if not (effective_a1 > link_length_1_times_shortest_link_2):
+        if not (effective_a1 > link_length_1_times_shortest_link):
             return 4 * (refused[Status.UNREACHABLE],)
-        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
         # law of cosines for a1 (rod upper): 1 - cosine, times a scale
-        one_less_cos_a1 = (divisor_a1 + link_length_1_minus_link_length_2_2) * (
-            divisor_a1 + link_length_1_plus_link_length_2_2
+        one_less_cos_a1 = (divisor_a1 + link_length_1_minus_link_length_2) * (
+            divisor_a1 + link_length_1_plus_link_length_2
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (link_length_1_plus_link_length_2_2 - divisor_a1) * (
-            divisor_a1 - link_length_1_minus_link_length_2_2
+        one_plus_cos_a1 = (link_length_1_plus_link_length_2 - divisor_a1) * (
+            divisor_a1 - link_length_1_minus_link_length_2
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
@@ -83,24 +78,24 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) / divisor_of_cos_a1
         sin_swing_a1_right_times_span_upper_y = span_upper_y * sin_swing_a1
         sin_a1 = (cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y) / divisor_a1
-        span_rear_x = -link_length_3_by_link_length_2_2 * span_upper_x  # rod rear: known part of its vector
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         along_a2 = span_rear_x - part_of_along_a2_left * sin_a1
         cos_swing_a1_times_span_upper_y = span_upper_y * cos_swing_a1
         sin_swing_a1_right_times_span_upper_x = span_upper_x * sin_swing_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (cos_swing_a1_times_span_upper_y + sin_swing_a1_right_times_span_upper_x) / divisor_a1
-        span_rear_y = -link_length_3_by_link_length_2_2 * span_upper_y
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
         across_a2 = part_of_along_a2_left * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
-        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         # law of cosines for a2 (rod rear): 1 - cosine, times a scale
-        one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5_2) * (
-            divisor_a2 + link_length_5_minus_link_length_4_2
+        one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
+            divisor_a2 + link_length_5_minus_link_length_4
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_4_plus_link_length_5_2 - divisor_a2) * (
-            divisor_a2 - link_length_5_minus_link_length_4_2
+        one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
+            divisor_a2 - link_length_5_minus_link_length_4
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
@@ -119,7 +114,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_a2_left_right = (along_a2_left_times_cos_swing_a2 - part_of_cos_a2) / divisor_a2
         sin_a2_left_right = (across_a2_left_times_cos_swing_a2 + part_of_sin_a2) / divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        if effective_a2 > link_length_5_times_shortest_link_2 and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
+        if effective_a2 > link_length_5_times_shortest_link and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
             pivot_upper_y = -link_length_1 * cos_a1
             if swap_xy:
@@ -135,9 +130,9 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_rear_x_left = -part_of_pivot_rear_x_left_left_2 - link_length_5 * cos_a2_left_left
             part_of_pivot_rear_y = pivot_upper_y - part_of_pivot_rear_x_left_left * cos_a1
             pivot_rear_y_left = link_length_5 * sin_a2_left_left - part_of_pivot_rear_y
-            centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left) * link_length_2_by_link_length_3_2
-            centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left) * link_length_2_by_link_length_3_2
-            type2_arms_aligned_left = part_of_type2_arms_aligned_left_left * (
+            centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left) * link_length_2_by_link_length_3
+            centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left) * link_length_2_by_link_length_3
+            type2_arms_aligned_left = part_of_type2_arms_aligned * (
                 (y - centre_2_y_left) * rod_1_x - (x - centre_2_x_left) * rod_1_y
             )
             refusal_left_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
@@ -146,11 +141,11 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_rear_y_right = link_length_5 * sin_a2_left_right - part_of_pivot_rear_y
             centre_2_x_right = (
                 -pivot_rear_y_right if swap_xy else -pivot_rear_x_right
-            ) * link_length_2_by_link_length_3_2
+            ) * link_length_2_by_link_length_3
             centre_2_y_right = (
                 -pivot_rear_x_right if swap_xy else -pivot_rear_y_right
-            ) * link_length_2_by_link_length_3_2
-            type2_arms_aligned_right = part_of_type2_arms_aligned_left_left * (
+            ) * link_length_2_by_link_length_3
+            type2_arms_aligned_right = part_of_type2_arms_aligned * (
                 (y - centre_2_y_right) * rod_1_x - (x - centre_2_x_right) * rod_1_y
             )
             refusal_left_right = 0 if type2_arms_aligned_right >= min_type2_margin else 3
@@ -165,14 +160,14 @@ def unrolled(k: Constants) -> Unrolled:
         across_a2 = part_of_along_a2_left * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
-        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         # law of cosines for a2 (rod rear): 1 - cosine, times a scale
-        one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5_2) * (
-            divisor_a2 + link_length_5_minus_link_length_4_2
+        one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
+            divisor_a2 + link_length_5_minus_link_length_4
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_4_plus_link_length_5_2 - divisor_a2) * (
-            divisor_a2 - link_length_5_minus_link_length_4_2
+        one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
+            divisor_a2 - link_length_5_minus_link_length_4
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
@@ -191,7 +186,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_a2_right_right = (along_a2_right_times_cos_swing_a2 - part_of_cos_a2) / divisor_a2
         sin_a2_right_right = (across_a2_right_times_cos_swing_a2 + part_of_sin_a2) / divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        if effective_a2 > link_length_5_times_shortest_link_2 and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
+        if effective_a2 > link_length_5_times_shortest_link and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
             pivot_upper_y = -link_length_1 * cos_a1
             if swap_xy:
@@ -207,9 +202,9 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_rear_x_left = -part_of_pivot_rear_x - link_length_5 * cos_a2_right_left
             part_of_pivot_rear_y = pivot_upper_y - part_of_pivot_rear_x_left_left * cos_a1
             pivot_rear_y_left = link_length_5 * sin_a2_right_left - part_of_pivot_rear_y
-            centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left) * link_length_2_by_link_length_3_2
-            centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left) * link_length_2_by_link_length_3_2
-            type2_arms_aligned_left = part_of_type2_arms_aligned_left_left * (
+            centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left) * link_length_2_by_link_length_3
+            centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left) * link_length_2_by_link_length_3
+            type2_arms_aligned_left = part_of_type2_arms_aligned * (
                 (y - centre_2_y_left) * rod_1_x - (x - centre_2_x_left) * rod_1_y
             )
             refusal_right_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
@@ -218,11 +213,11 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_rear_y_right = link_length_5 * sin_a2_right_right - part_of_pivot_rear_y
             centre_2_x_right = (
                 -pivot_rear_y_right if swap_xy else -pivot_rear_x_right
-            ) * link_length_2_by_link_length_3_2
+            ) * link_length_2_by_link_length_3
             centre_2_y_right = (
                 -pivot_rear_x_right if swap_xy else -pivot_rear_y_right
-            ) * link_length_2_by_link_length_3_2
-            type2_arms_aligned_right = part_of_type2_arms_aligned_left_left * (
+            ) * link_length_2_by_link_length_3
+            type2_arms_aligned_right = part_of_type2_arms_aligned * (
                 (y - centre_2_y_right) * rod_1_x - (x - centre_2_x_right) * rod_1_y
             )
             refusal_right_right = 0 if type2_arms_aligned_right >= min_type2_margin else 3
@@ -250,7 +245,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         sigma_t, sigma_w = signs
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane_2):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         # rod upper: known part of its vector
         if swap_xy:
@@ -262,16 +257,16 @@ def unrolled(k: Constants) -> Unrolled:
         # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x * span_upper_x + span_upper_y * span_upper_y)
         # a1: its effective length is too short
-        if not (effective_a1 > link_length_1_times_shortest_link_2):
+        if not (effective_a1 > link_length_1_times_shortest_link):
             return None
-        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
         # law of cosines for a1 (rod upper): 1 - cosine, times a scale
-        one_less_cos_a1 = (divisor_a1 + link_length_1_minus_link_length_2_2) * (
-            divisor_a1 + link_length_1_plus_link_length_2_2
+        one_less_cos_a1 = (divisor_a1 + link_length_1_minus_link_length_2) * (
+            divisor_a1 + link_length_1_plus_link_length_2
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (link_length_1_plus_link_length_2_2 - divisor_a1) * (
-            divisor_a1 - link_length_1_minus_link_length_2_2
+        one_plus_cos_a1 = (link_length_1_plus_link_length_2 - divisor_a1) * (
+            divisor_a1 - link_length_1_minus_link_length_2
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
@@ -283,24 +278,24 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
         sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
-        span_rear_x = -link_length_3_by_link_length_2_2 * span_upper_x  # rod rear: known part of its vector
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         along_a2 = span_rear_x - part_of_along_a2_left * sin_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
-        across_a2 = part_of_along_a2_left * cos_a1 - (-link_length_3_by_link_length_2_2 * span_upper_y)
+        across_a2 = part_of_along_a2_left * cos_a1 - (-link_length_3_by_link_length_2 * span_upper_y)
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
-        if not (effective_a2 > link_length_5_times_shortest_link_2):
+        if not (effective_a2 > link_length_5_times_shortest_link):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         # law of cosines for a2 (rod rear): 1 - cosine, times a scale
-        one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5_2) * (
-            divisor_a2 + link_length_5_minus_link_length_4_2
+        one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
+            divisor_a2 + link_length_5_minus_link_length_4
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_4_plus_link_length_5_2 - divisor_a2) * (
-            divisor_a2 - link_length_5_minus_link_length_4_2
+        one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
+            divisor_a2 - link_length_5_minus_link_length_4
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
@@ -315,21 +310,21 @@ def unrolled(k: Constants) -> Unrolled:
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y_3 * sin_a1 - part_of_scaled_pivot_rear_y_4 * cos_a2
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y_3 * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
         if swap_xy:
             centre_1_x = -link_length_1 * cos_a1
             centre_1_y = pivot_upper_x
-            centre_2_x = -(part_of_scaled_pivot_rear_y_3 * cos_a1 + part_of_scaled_pivot_rear_y_4 * sin_a2)
+            centre_2_x = -(part_of_scaled_pivot_rear_y_3 * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2)
             centre_2_y = -scaled_pivot_rear_x
         else:
             centre_1_x = pivot_upper_x
             centre_1_y = -link_length_1 * cos_a1
             centre_2_x = -scaled_pivot_rear_x
-            centre_2_y = -(part_of_scaled_pivot_rear_y_3 * cos_a1 + part_of_scaled_pivot_rear_y_4 * sin_a2)
+            centre_2_y = -(part_of_scaled_pivot_rear_y_3 * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2)
         type2_arms_aligned = (
             (x - centre_1_x) * (y - centre_2_y) - (y - centre_1_y) * (x - centre_2_x)
-        ) * part_of_type2_arms_aligned_left_left
+        ) * part_of_type2_arms_aligned
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None

@@ -18,17 +18,13 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    assembly_sign, displacement, highest_a1 = k.assembly_sign, k.displacement, k.highest_a1
-    highest_a2, inner_arm, lowest_a1, lowest_a2 = k.highest_a2, k.inner_arm, k.lowest_a1, k.lowest_a2
-    machine_scale, mid_a1, mid_a2, min_type2_margin = k.machine_scale, k.mid_a1, k.mid_a2, k.min_type2_margin
-    offset_a1, offset_a2, outer_arm, single_a1 = k.offset_a1, k.offset_a2, k.outer_arm, k.single_a1
-    single_a2, tcp_link_distance = k.single_a2, k.tcp_link_distance
-    machine_scale_times_plane_2 = 1e-6 * machine_scale
-    inner_arm_times_shortest_link_2 = 1e-9 * inner_arm
-    part_of_span_1_x = displacement - 0.5 * tcp_link_distance
-    inner_arm_plus_outer_arm_2 = inner_arm + outer_arm
-    inner_arm_minus_outer_arm_2 = inner_arm - outer_arm
-    assembly_sign_by_outer_arm_squared_2 = assembly_sign / (outer_arm * outer_arm)
+    assembly_sign_by_outer_arm_squared, highest_a1 = k.assembly_sign_by_outer_arm_squared, k.highest_a1
+    highest_a2, inner_arm, inner_arm_minus_outer_arm = k.highest_a2, k.inner_arm, k.inner_arm_minus_outer_arm
+    inner_arm_plus_outer_arm = k.inner_arm_plus_outer_arm
+    inner_arm_times_shortest_link, lowest_a1, lowest_a2 = k.inner_arm_times_shortest_link, k.lowest_a1, k.lowest_a2
+    machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+    min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
+    part_of_pivot_1_x, single_a1, single_a2 = k.part_of_pivot_1_x, k.single_a1, k.single_a2
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -37,18 +33,18 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane_2):
+        if not (abs(z) <= machine_scale_times_plane):
             return 4 * (refused[Status.UNREACHABLE],)
-        span_1_x = part_of_span_1_x + x  # rod 1: known part of its vector
+        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + y * y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
-        if not (effective_a1 > inner_arm_times_shortest_link_2):
+        if not (effective_a1 > inner_arm_times_shortest_link):
             return 4 * (refused[Status.UNREACHABLE],)
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link else 1.0
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
-        one_less_cos_a1 = (inner_arm_plus_outer_arm_2 - divisor_a1) * (divisor_a1 - inner_arm_minus_outer_arm_2)
+        one_less_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1) * (divisor_a1 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm_2) * (divisor_a1 + inner_arm_plus_outer_arm_2)
+        one_plus_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm) * (divisor_a1 + inner_arm_plus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
@@ -56,16 +52,16 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 4 * (refused[Status.UNREACHABLE],)
-        span_2_x = x - part_of_span_1_x  # rod 2: known part of its vector
+        span_2_x = part_of_pivot_1_x + x  # rod 2: known part of its vector
         effective_a2 = sqrt(span_2_x * span_2_x + y * y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
-        if not (effective_a2 > inner_arm_times_shortest_link_2):
+        if not (effective_a2 > inner_arm_times_shortest_link):
             return 4 * (refused[Status.UNREACHABLE],)
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link else 1.0
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
-        one_less_cos_a2 = (inner_arm_plus_outer_arm_2 - divisor_a2) * (divisor_a2 - inner_arm_minus_outer_arm_2)
+        one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2) * (divisor_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm_2) * (divisor_a2 + inner_arm_plus_outer_arm_2)
+        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm) * (divisor_a2 + inner_arm_plus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -95,7 +91,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a2_outward_times_span_2_x = span_2_x * sin_swing_a2
         sin_a2 = (cos_swing_a2_times_y + sin_swing_a2_outward_times_span_2_x) / divisor_a2
         rod_2_y_outward = y - inner_arm * sin_a2
-        type2_arms_aligned = assembly_sign_by_outer_arm_squared_2 * (
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared * (
             rod_1_x * rod_2_y_outward - rod_1_y * rod_2_x_outward
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -107,9 +103,7 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_x_inward = span_2_x - inner_arm * cos_a2
         sin_a2 = (cos_swing_a2_times_y - sin_swing_a2_outward_times_span_2_x) / divisor_a2
         rod_2_y_inward = y - inner_arm * sin_a2
-        type2_arms_aligned = assembly_sign_by_outer_arm_squared_2 * (
-            rod_1_x * rod_2_y_inward - rod_1_y * rod_2_x_inward
-        )
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y_inward - rod_1_y * rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
@@ -118,15 +112,13 @@ def unrolled(k: Constants) -> Unrolled:
         rod_1_x = span_1_x - inner_arm * cos_a1
         sin_a1 = (cos_swing_a1_times_y + sin_swing_a1_inward_times_span_1_x) / divisor_a1
         rod_1_y = y - inner_arm * sin_a1
-        type2_arms_aligned = assembly_sign_by_outer_arm_squared_2 * (
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared * (
             rod_1_x * rod_2_y_outward - rod_1_y * rod_2_x_outward
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
-        type2_arms_aligned = assembly_sign_by_outer_arm_squared_2 * (
-            rod_1_x * rod_2_y_inward - rod_1_y * rod_2_x_inward
-        )
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y_inward - rod_1_y * rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         return (
@@ -141,18 +133,18 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2 = signs
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane_2):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
-        span_1_x = part_of_span_1_x + x  # rod 1: known part of its vector
+        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + y * y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
-        if not (effective_a1 > inner_arm_times_shortest_link_2):
+        if not (effective_a1 > inner_arm_times_shortest_link):
             return None
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link else 1.0
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
-        one_less_cos_a1 = (inner_arm_plus_outer_arm_2 - divisor_a1) * (divisor_a1 - inner_arm_minus_outer_arm_2)
+        one_less_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1) * (divisor_a1 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm_2) * (divisor_a1 + inner_arm_plus_outer_arm_2)
+        one_plus_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm) * (divisor_a1 + inner_arm_plus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
@@ -160,16 +152,16 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
-        span_2_x = x - part_of_span_1_x  # rod 2: known part of its vector
+        span_2_x = part_of_pivot_1_x + x  # rod 2: known part of its vector
         effective_a2 = sqrt(span_2_x * span_2_x + y * y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
-        if not (effective_a2 > inner_arm_times_shortest_link_2):
+        if not (effective_a2 > inner_arm_times_shortest_link):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link else 1.0
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
-        one_less_cos_a2 = (inner_arm_plus_outer_arm_2 - divisor_a2) * (divisor_a2 - inner_arm_minus_outer_arm_2)
+        one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2) * (divisor_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm_2) * (divisor_a2 + inner_arm_plus_outer_arm_2)
+        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm) * (divisor_a2 + inner_arm_plus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -190,7 +182,7 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = (
             (span_1_x - inner_arm * cos_a1) * (y - inner_arm * sin_a2)
             - (span_2_x - inner_arm * cos_a2) * (y - inner_arm * sin_a1)
-        ) * assembly_sign_by_outer_arm_squared_2
+        ) * assembly_sign_by_outer_arm_squared
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None

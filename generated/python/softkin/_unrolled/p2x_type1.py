@@ -18,15 +18,12 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    arm_length_1, arm_length_2, assembly_sign = k.arm_length_1, k.arm_length_2, k.assembly_sign
+    arm_length_1, arm_length_1_squared_times_rounding = k.arm_length_1, k.arm_length_1_squared_times_rounding
+    arm_length_2, arm_length_2_squared_times_rounding = k.arm_length_2, k.arm_length_2_squared_times_rounding
     highest_a1, highest_a2, lowest_a1, lowest_a2 = k.highest_a1, k.highest_a2, k.lowest_a1, k.lowest_a2
-    machine_scale, min_type2_margin, offset_a1 = k.machine_scale, k.min_type2_margin, k.offset_a1
-    offset_a2, rail_y_1, rail_y_2, tcp_offset_1 = k.offset_a2, k.rail_y_1, k.rail_y_2, k.tcp_offset_1
-    tcp_offset_2 = k.tcp_offset_2
-    machine_scale_times_plane_2 = 1e-6 * machine_scale
-    arm_length_1_squared_times_rounding_2 = 1e-12 * arm_length_1 * arm_length_1
-    arm_length_2_squared_times_rounding_2 = 1e-12 * arm_length_2 * arm_length_2
-    part_of_type2_arms_aligned_left_right = assembly_sign / (arm_length_1 * arm_length_2)
+    machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
+    offset_a1, offset_a2, part_of_type2_arms_aligned = k.offset_a1, k.offset_a2, k.part_of_type2_arms_aligned
+    rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -35,7 +32,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane_2):
+        if not (abs(z) <= machine_scale_times_plane):
             return 4 * (refused[Status.UNREACHABLE],)
         span_1_y = y - rail_y_1
         radicand_a1 = (arm_length_1 + span_1_y) * (arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
@@ -43,7 +40,7 @@ def unrolled(k: Constants) -> Unrolled:
             root_of_radicand_a1 = sqrt(radicand_a1)
         else:
             # rod 1 cannot reach
-            if not (radicand_a1 >= -arm_length_1_squared_times_rounding_2):
+            if not (radicand_a1 >= -arm_length_1_squared_times_rounding):
                 return 4 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a1 = 0.0
         span_2_y = y - rail_y_2
@@ -52,7 +49,7 @@ def unrolled(k: Constants) -> Unrolled:
             root_of_radicand_a2 = sqrt(radicand_a2)
         else:
             # rod 2 cannot reach
-            if not (radicand_a2 >= -arm_length_2_squared_times_rounding_2):
+            if not (radicand_a2 >= -arm_length_2_squared_times_rounding):
                 return 4 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a2 = 0.0
         span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
@@ -61,32 +58,24 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
         a1 = span_1_x - root_of_radicand_a1
         rod_1_x_left_times_span_2_y = (span_1_x - a1) * span_2_y
-        type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
-            rod_1_x_left_times_span_2_y - span_1_y_times_rod_2_x_right
-        )
+        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x_left_times_span_2_y - span_1_y_times_rod_2_x_right)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_left = a1 + offset_a1
         axis_a2_right = a2 + offset_a2
         a2 = span_2_x - root_of_radicand_a2
         span_1_y_times_rod_2_x_left = (span_2_x - a2) * span_1_y
-        type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
-            rod_1_x_left_times_span_2_y - span_1_y_times_rod_2_x_left
-        )
+        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x_left_times_span_2_y - span_1_y_times_rod_2_x_left)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_left = a2 + offset_a2
         a1 = root_of_radicand_a1 + span_1_x
         rod_1_x_right_times_span_2_y = (span_1_x - a1) * span_2_y
-        type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
-            rod_1_x_right_times_span_2_y - span_1_y_times_rod_2_x_right
-        )
+        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x_right_times_span_2_y - span_1_y_times_rod_2_x_right)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_right = a1 + offset_a1
-        type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
-            rod_1_x_right_times_span_2_y - span_1_y_times_rod_2_x_left
-        )
+        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x_right_times_span_2_y - span_1_y_times_rod_2_x_left)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_left = 0 if type2_arms_aligned >= min_type2_margin else 3
         return (
@@ -101,25 +90,23 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2 = signs
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane_2):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         span_1_y = y - rail_y_1
         radicand_a1 = (arm_length_1 + span_1_y) * (arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
-        if not (radicand_a1 >= -arm_length_1_squared_times_rounding_2):
+        if not (radicand_a1 >= -arm_length_1_squared_times_rounding):
             return None
         span_2_y = y - rail_y_2
         radicand_a2 = (arm_length_2 + span_2_y) * (arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
-        if not (radicand_a2 >= -arm_length_2_squared_times_rounding_2):
+        if not (radicand_a2 >= -arm_length_2_squared_times_rounding):
             return None
         span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
         a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1
         span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
         a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
-        type2_arms_aligned = (
-            (span_1_x - a1) * span_2_y - (span_2_x - a2) * span_1_y
-        ) * part_of_type2_arms_aligned_left_right
+        type2_arms_aligned = ((span_1_x - a1) * span_2_y - (span_2_x - a2) * span_1_y) * part_of_type2_arms_aligned
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None

@@ -17,12 +17,10 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    link_length_1, link_length_2, machine_scale = k.link_length_1, k.link_length_2, k.machine_scale
-    offset_a1, offset_a2 = k.offset_a1, k.offset_a2
-    machine_scale_times_plane_2 = 1e-6 * machine_scale
-    machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
-    link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
+    link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+    link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+    machine_scale_times_free_angle = k.machine_scale_times_free_angle
+    machine_scale_times_plane, offset_a1, offset_a2 = k.machine_scale_times_plane, k.offset_a1, k.offset_a2
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -32,16 +30,16 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_a1, _ = 2 * (0.0,) if reference is None else reference
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane_2):
+        if not (abs(z) <= machine_scale_times_plane):
             return 2 * (refused[Status.UNREACHABLE],)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2_2 + reach) * (
-            link_length_1_plus_link_length_2_2 - reach
+        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach) * (
+            link_length_1_plus_link_length_2 - reach
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2_2) * (
-            link_length_1_minus_link_length_2_2 + reach
+        one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
+            link_length_1_minus_link_length_2 + reach
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
@@ -55,7 +53,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_from_a1 = (
             2.0 * (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0) / divisor_of_cos_a2_from_a1
         )
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(
                 link_length_2 * sin_a2_from_a1, link_length_1 + link_length_2 * cos_a2_from_a1
             )
@@ -81,16 +79,16 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_elbow,) = signs
         ref_a1, _ = 2 * (0.0,) if reference is None else reference
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane_2):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2_2 + reach) * (
-            link_length_1_plus_link_length_2_2 - reach
+        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach) * (
+            link_length_1_plus_link_length_2 - reach
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2_2) * (
-            link_length_1_minus_link_length_2_2 + reach
+        one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
+            link_length_1_minus_link_length_2 + reach
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
@@ -107,7 +105,7 @@ def unrolled(k: Constants) -> Unrolled:
             * sigma_elbow
             / divisor_of_cos_a2_from_a1
         )
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(
                 link_length_2 * sin_a2_from_a1, link_length_1 + link_length_2 * cos_a2_from_a1
             )

@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    a1, a2, a3, d1, d3, d4, effective_q3_2 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.effective_q3_2
+    a1, a2, a2_minus_effective_q3_2 = k.a1, k.a2, k.a2_minus_effective_q3_2
+    a2_plus_effective_q3_2, a3_by_effective_q3_2, d1 = k.a2_plus_effective_q3_2, k.a3_by_effective_q3_2, k.d1
+    d3, d4_by_effective_q3_2, effective_q3_2 = k.d3, k.d4_by_effective_q3_2, k.effective_q3_2
     highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
-    lowest_a2, lowest_a3, machine_scale, mid_a1 = k.lowest_a2, k.lowest_a3, k.machine_scale, k.mid_a1
-    mid_a2, mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a2, k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
+    lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
+    machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+    mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
     rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-    machine_scale_squared_times_plane_2 = 1e-6 * machine_scale * machine_scale
-    machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    part_of_angle_q3_front_down = arctan2(d4 / effective_q3_2 + 0.0, a3 / effective_q3_2 + 0.0)
-    a2_plus_effective_q3_2_2 = a2 + effective_q3_2
-    a2_minus_effective_q3_2_2 = a2 - effective_q3_2
+    angle_of_a3_by_effective_q3_2 = arctan2(d4_by_effective_q3_2 + 0.0, a3_by_effective_q3_2 + 0.0)
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -40,7 +40,7 @@ def unrolled(k: Constants) -> Unrolled:
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
             return ()
         # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
@@ -56,16 +56,16 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
         # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
-        if distance_q1 > machine_scale_times_free_angle_2:
+        if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             d3_times_y = d3 * y
             ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3 * x
@@ -84,7 +84,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front) * RADIAN
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_front_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -99,9 +99,9 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
@@ -110,7 +110,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back) * RADIAN
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_back_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -124,28 +124,28 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_front,
                 offset_a2 + angle_q2_front_down * RADIAN,
-                offset_a3 + (angle_of_swing_q3_front_down + part_of_angle_q3_front_down) * RADIAN,
+                offset_a3 + (angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_front_down) * RADIAN,
             )
             if refusal_front == 0
             else refused[refusal_front],
             (
                 axis_a1_back,
                 offset_a2 + angle_q2_back_down * RADIAN,
-                offset_a3 + (angle_of_swing_q3_back_down + part_of_angle_q3_front_down) * RADIAN,
+                offset_a3 + (angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_back_down) * RADIAN,
             )
             if refusal_back == 0
             else refused[refusal_back],
             (
                 axis_a1_front,
                 offset_a2 + angle_q2_front_up * RADIAN,
-                offset_a3 + (part_of_angle_q3_front_down - angle_of_swing_q3_front_down) * RADIAN,
+                offset_a3 + (angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_front_down) * RADIAN,
             )
             if refusal_front == 0
             else refused[refusal_front],
             (
                 axis_a1_back,
                 offset_a2 + angle_q2_back_up * RADIAN,
-                offset_a3 + (part_of_angle_q3_front_down - angle_of_swing_q3_back_down) * RADIAN,
+                offset_a3 + (angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_back_down) * RADIAN,
             )
             if refusal_back == 0
             else refused[refusal_back],
@@ -160,7 +160,7 @@ def unrolled(k: Constants) -> Unrolled:
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
             return ()
         # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
@@ -176,9 +176,9 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
@@ -187,7 +187,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
         # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
-        if distance_q1 > machine_scale_times_free_angle_2:
+        if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - d3 * y) / divisor_q1
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + d3 * x) / divisor_q1
@@ -197,7 +197,7 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q1_before_q1_for_q3 = sin(reference_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_q2 = arctan2(-effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3) - arctan2(
                 wrist_x_from_q1, wrist_y_from_q1
             )
@@ -207,12 +207,12 @@ def unrolled(k: Constants) -> Unrolled:
             return (
                 arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
                 angle_q2 * RADIAN,
-                (part_of_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
+                (angle_of_a3_by_effective_q3_2 + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
             )
         return (
             offset_a1 + arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
             offset_a2 + angle_q2 * RADIAN,
-            offset_a3 + (part_of_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
+            offset_a3 + (angle_of_a3_by_effective_q3_2 + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
         )
 
     def finish(found: tuple[Reals | int, ...], reference: Reals) -> tuple[Reals | int, ...]:

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
     highest_a1, highest_a2, highest_a3, link_length_1 = k.highest_a1, k.highest_a2, k.highest_a3, k.link_length_1
-    link_length_2, lowest_a1, lowest_a2, lowest_a3 = k.link_length_2, k.lowest_a1, k.lowest_a2, k.lowest_a3
-    machine_scale, mid_a1, mid_a2, offset_a1 = k.machine_scale, k.mid_a1, k.mid_a2, k.offset_a1
-    offset_a2, offset_a3, single_a1, single_a2 = k.offset_a2, k.offset_a3, k.single_a1, k.single_a2
-    machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
-    link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
+    link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+    link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+    lowest_a1, lowest_a2, lowest_a3 = k.lowest_a1, k.lowest_a2, k.lowest_a3
+    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+    offset_a1, offset_a2, offset_a3, single_a1 = k.offset_a1, k.offset_a2, k.offset_a3, k.single_a1
+    single_a2 = k.single_a2
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -35,9 +35,9 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, _, _ = 3 * (0.0,) if reference is None else reference
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -47,7 +47,7 @@ def unrolled(k: Constants) -> Unrolled:
             return 2 * (refused[Status.UNREACHABLE],)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
             angle_of_x = arctan2(y, x)
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
@@ -69,9 +69,9 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, _, _ = 3 * (0.0,) if reference is None else reference
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -81,7 +81,7 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
         else:
             angle_a1 = (ref_a1 - offset_a1) * DEGREE

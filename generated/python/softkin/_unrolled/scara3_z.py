@@ -18,15 +18,13 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    arm_length_1, arm_length_2, arm_length_3 = k.arm_length_1, k.arm_length_2, k.arm_length_3
-    highest_a1, highest_a2, highest_a3, highest_z = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_z
-    lowest_a1, lowest_a2, lowest_a3, lowest_z = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_z
-    machine_scale, mid_a1, mid_a2, mid_a3, offset_a1 = k.machine_scale, k.mid_a1, k.mid_a2, k.mid_a3, k.offset_a1
-    offset_a2, offset_a3, offset_z, single_a1 = k.offset_a2, k.offset_a3, k.offset_z, k.single_a1
-    single_a2, single_a3 = k.single_a2, k.single_a3
-    machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    arm_length_1_plus_arm_length_2_2 = arm_length_1 + arm_length_2
-    arm_length_1_minus_arm_length_2_2 = arm_length_1 - arm_length_2
+    arm_length_1, arm_length_1_minus_arm_length_2 = k.arm_length_1, k.arm_length_1_minus_arm_length_2
+    arm_length_1_plus_arm_length_2, arm_length_2 = k.arm_length_1_plus_arm_length_2, k.arm_length_2
+    arm_length_3, highest_a1, highest_a2, highest_a3 = k.arm_length_3, k.highest_a1, k.highest_a2, k.highest_a3
+    highest_z, lowest_a1, lowest_a2, lowest_a3 = k.highest_z, k.lowest_a1, k.lowest_a2, k.lowest_a3
+    lowest_z, machine_scale_times_free_angle, mid_a1 = k.lowest_z, k.machine_scale_times_free_angle, k.mid_a1
+    mid_a2, mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a2, k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
+    offset_z, single_a1, single_a2, single_a3 = k.offset_z, k.single_a1, k.single_a2, k.single_a3
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_z))
 
     def branches(
@@ -49,9 +47,9 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - arm_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (arm_length_1_plus_arm_length_2_2 + reach) * (arm_length_1_plus_arm_length_2_2 - reach)
+        one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach) * (arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2_2) * (arm_length_1_minus_arm_length_2_2 + reach)
+        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -61,7 +59,7 @@ def unrolled(k: Constants) -> Unrolled:
             return 2 * (refused[Status.UNREACHABLE],)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(arm_length_2 * sin_a2, arm_length_1 + arm_length_2 * cos_a2)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
@@ -101,9 +99,9 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - arm_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (arm_length_1_plus_arm_length_2_2 + reach) * (arm_length_1_plus_arm_length_2_2 - reach)
+        one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach) * (arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2_2) * (arm_length_1_minus_arm_length_2_2 + reach)
+        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -113,7 +111,7 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(arm_length_2 * sin_a2, arm_length_1 + arm_length_2 * cos_a2)
         else:
             angle_a1 = (ref_a1 - offset_a1) * DEGREE

@@ -19,14 +19,12 @@ if TYPE_CHECKING:
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
     highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
-    link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
-    lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
-    machine_scale, mid_a2, mid_a3, mid_a4, offset_a1 = k.machine_scale, k.mid_a2, k.mid_a3, k.mid_a4, k.offset_a1
-    offset_a2, offset_a3, offset_a4, single_a2 = k.offset_a2, k.offset_a3, k.offset_a4, k.single_a2
-    single_a3, single_a4 = k.single_a3, k.single_a4
-    machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
-    link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
+    link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+    link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+    link_length_3, lowest_a1, lowest_a2, lowest_a3 = k.link_length_3, k.lowest_a1, k.lowest_a2, k.lowest_a3
+    lowest_a4, machine_scale_times_free_angle, mid_a2 = k.lowest_a4, k.machine_scale_times_free_angle, k.mid_a2
+    mid_a3, mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
+    offset_a4, single_a2, single_a3, single_a4 = k.offset_a4, k.single_a2, k.single_a3, k.single_a4
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4))
 
     def branches(
@@ -49,9 +47,9 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
         # law of cosines for a3 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a3 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
+        one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
+        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a3 = one_less_cos_a3 + one_plus_cos_a3
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
@@ -62,7 +60,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1 = offset_a1 + z
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) / divisor_of_cos_a3
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a2 = arctan2(link_length_2 * sin_a3, link_length_1 + link_length_2 * cos_a3)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
             angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
@@ -101,9 +99,9 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
         # law of cosines for a3 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a3 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
+        one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
+        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a3 = one_less_cos_a3 + one_plus_cos_a3
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
@@ -113,7 +111,7 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a3
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_a2 = arctan2(wrist_y, wrist_x) - arctan2(
                 link_length_2 * sin_a3, link_length_1 + link_length_2 * cos_a3
             )

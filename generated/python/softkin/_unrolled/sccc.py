@@ -18,14 +18,12 @@ if TYPE_CHECKING:
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
     coupling_12, coupling_13, coupling_23 = k.coupling_12, k.coupling_13, k.coupling_23
-    link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
-    machine_scale, mid_a1, mid_a2, offset_a1 = k.machine_scale, k.mid_a1, k.mid_a2, k.offset_a1
-    offset_a2, offset_a3, single_a1, single_a2 = k.offset_a2, k.offset_a3, k.single_a1, k.single_a2
-    machine_scale_times_plane_2 = 1e-6 * machine_scale
-    machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
-    link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
-    part_of_open_a2_right = coupling_12 / DEGREE
+    link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+    link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+    link_length_3, machine_scale_times_free_angle = k.link_length_3, k.machine_scale_times_free_angle
+    machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+    offset_a1, offset_a2, offset_a3, part_of_open_a2 = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_open_a2
+    single_a1, single_a2 = k.single_a1, k.single_a2
 
     def branches(
         frame: PlainFrame, reference: Reals | None = None, refused: Sequence[Any] = NOTHING
@@ -41,7 +39,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 2 * (refused[Status.UNREACHABLE],)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane_2):
+        if not (abs(z) <= machine_scale_times_plane):
             return 2 * (refused[Status.UNREACHABLE],)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along / heading_divisor
@@ -50,9 +48,9 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -62,7 +60,7 @@ def unrolled(k: Constants) -> Unrolled:
             return 2 * (refused[Status.UNREACHABLE],)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
@@ -76,24 +74,24 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         motor_a1_right = DEGREE * (axis_a1_right - offset_a1)
-        part_of_axis_a2_right = motor_a1_right * part_of_open_a2_right
+        part_of_open_a2_times_motor_a1_right = motor_a1_right * part_of_open_a2
         axis_a1_left = offset_a1 + angle_a1_left / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         motor_a1_left = DEGREE * (axis_a1_left - offset_a1)
-        part_of_axis_a2_left = motor_a1_left * part_of_open_a2_right
+        part_of_open_a2_times_motor_a1_left = motor_a1_left * part_of_open_a2
         # A2: without a commanded turn, the value nearest to this
         if single_a2:
             open_a2_right = mid_a2
             open_a2_left = mid_a2
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            part_of_open_a2_right_2 = offset_a2 + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
-            open_a2_right = part_of_open_a2_right_2 - part_of_axis_a2_right
-            open_a2_left = part_of_open_a2_right_2 - part_of_axis_a2_left
+            part_of_open_a2_right = offset_a2 + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
+            open_a2_right = part_of_open_a2_right - part_of_open_a2_times_motor_a1_right
+            open_a2_left = part_of_open_a2_right - part_of_open_a2_times_motor_a1_left
         angle_a2 = arctan2(sin_a2, cos_a2)
-        part_of_axis_a2_right_2 = angle_a2 * RADIAN
-        axis_a2_right = offset_a2 + part_of_axis_a2_right_2 - part_of_axis_a2_right  # A2: whole turns added
+        part_of_axis_a2 = angle_a2 * RADIAN
+        axis_a2_right = offset_a2 + part_of_axis_a2 - part_of_open_a2_times_motor_a1_right  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right - open_a2_right < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2_right)
         angle_heading = arctan2(sin_heading, cos_heading)
@@ -109,7 +107,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * RADIAN
         )
-        axis_a2_left = offset_a2 - part_of_axis_a2_left - part_of_axis_a2_right_2  # A2: whole turns added
+        axis_a2_left = offset_a2 - part_of_axis_a2 - part_of_open_a2_times_motor_a1_left  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left - open_a2_left < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
         # a3 from the sum a123 of angles about parallel axes
@@ -139,7 +137,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return None
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane_2):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along / heading_divisor
@@ -148,9 +146,9 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach) * (link_length_1_plus_link_length_2_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2) * (link_length_1_minus_link_length_2_2 + reach)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -160,7 +158,7 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
-        if reach > machine_scale_times_free_angle_2:
+        if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(
                 link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2
             )
@@ -173,7 +171,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a1 = nearest_period(axis_a1, open_a1)
         angle_a2 = arctan2(sin_a2, cos_a2)
         motor_a1 = DEGREE * (axis_a1 - offset_a1)
-        part_of_axis_a2 = offset_a2 - motor_a1 * part_of_open_a2_right
+        part_of_axis_a2 = offset_a2 - motor_a1 * part_of_open_a2
         # A2: without a commanded turn, the value nearest to this
         if single_a2:
             open_a2 = mid_a2

@@ -18,30 +18,26 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    arm_length, assembly_sign, cos_rail_angle = k.arm_length, k.assembly_sign, k.cos_rail_angle
-    highest_a1, highest_a2, highest_a3, inner_radius = k.highest_a1, k.highest_a2, k.highest_a3, k.inner_radius
-    lowest_a1, lowest_a2, lowest_a3, min_type2_margin = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.min_type2_margin
-    offset_a1, offset_a2, offset_a3, outer_radius = k.offset_a1, k.offset_a2, k.offset_a3, k.outer_radius
+    arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+    arm_length_squared_times_rounding, cos_rail_angle = k.arm_length_squared_times_rounding, k.cos_rail_angle
+    cos_rail_angle_squared = k.cos_rail_angle_squared
+    cos_rail_angle_times_sin_rail_angle = k.cos_rail_angle_times_sin_rail_angle
+    half_by_arm_length, half_sin_rail_angle, highest_a1 = k.half_by_arm_length, k.half_sin_rail_angle, k.highest_a1
+    highest_a2, highest_a3, inner_radius = k.highest_a2, k.highest_a3, k.inner_radius
+    inner_radius_minus_outer_radius, lowest_a1 = k.inner_radius_minus_outer_radius, k.lowest_a1
+    lowest_a2, lowest_a3, min_type2_margin, offset_a1 = k.lowest_a2, k.lowest_a3, k.min_type2_margin, k.offset_a1
+    offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+    one_minus_sin_rail_angle_squared, outer_radius = k.one_minus_sin_rail_angle_squared, k.outer_radius
+    part_of_pivot_2_x, part_of_radicand_a1 = k.part_of_pivot_2_x, k.part_of_radicand_a1
+    part_of_radicand_a2_3, part_of_type2_rods_coplanar = k.part_of_radicand_a2_3, k.part_of_type2_rods_coplanar
     sin_max_angle_ball_joint, sin_rail_angle = k.sin_max_angle_ball_joint, k.sin_rail_angle
-    arm_length_squared_2 = arm_length * arm_length
-    arm_length_squared_times_rounding_2 = 1e-12 * arm_length * arm_length
-    outer_radius_minus_inner_radius = outer_radius - inner_radius
-    part_of_radicand_a1_2 = 2.0 * cos_rail_angle * sin_rail_angle
-    cos_rail_angle_squared_2 = cos_rail_angle * cos_rail_angle
-    part_of_span_2_x = 0.5 * inner_radius - 0.5 * outer_radius
+    sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
     root_of_3 = root(3.0)
     part_of_span_2_y = 0.5 * outer_radius * root_of_3 - 0.5 * inner_radius * root_of_3
     part_of_radicand_a2_4 = root_of_3 * cos_rail_angle * sin_rail_angle
     part_of_radicand_a2_5 = 0.5 * root_of_3 * sin_rail_angle * sin_rail_angle
-    cos_rail_angle_times_sin_rail_angle_2 = cos_rail_angle * sin_rail_angle
-    sin_rail_angle_squared_times_1_by_4_2 = 0.25 * sin_rail_angle * sin_rail_angle
     part_of_middle_a2 = 0.5 * root_of_3 * sin_rail_angle
-    half_sin_rail_angle_2 = 0.5 * sin_rail_angle
-    part_of_type2_rods_coplanar_below_below_below = assembly_sign / (arm_length * arm_length * arm_length)
     root_of_3_times_half_by_arm_length_2 = 0.5 * root_of_3 / arm_length
-    half_by_arm_length_2 = 0.5 / arm_length
-    one_minus_sin_rail_angle_squared_2 = 1.0 - sin_rail_angle * sin_rail_angle
-    part_of_radicand_a2_6 = 1.0 - 0.75 * sin_rail_angle * sin_rail_angle
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -49,99 +45,97 @@ def unrolled(k: Constants) -> Unrolled:
     ) -> tuple[Any, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = outer_radius_minus_inner_radius + x  # rod 1: known part of its vector
-        z_minus_cos_rail_angle_squared_2_times_z = z - z * cos_rail_angle_squared_2
+        span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
+        z_minus_cos_rail_angle_squared_times_z = z - z * cos_rail_angle_squared
         # quadratic equation for a1: rod 1
         radicand_a1 = (
-            arm_length_squared_2
-            + (part_of_radicand_a1_2 * span_1_x - z_minus_cos_rail_angle_squared_2_times_z) * z
+            arm_length_squared
+            + (part_of_radicand_a1 * span_1_x - z_minus_cos_rail_angle_squared_times_z) * z
             - y * y
-            - one_minus_sin_rail_angle_squared_2 * span_1_x * span_1_x
+            - one_minus_sin_rail_angle_squared * span_1_x * span_1_x
         )
         if radicand_a1 > 0.0:
             root_of_radicand_a1 = sqrt(radicand_a1)
         else:
             # rod 1 cannot reach
-            if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a1 >= -arm_length_squared_times_rounding):
                 return 8 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a1 = 0.0
-        span_2_x = part_of_span_2_x + x  # rod 2: known part of its vector
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = part_of_span_2_y + y
-        part_of_radicand_a2_7 = (
-            z_minus_cos_rail_angle_squared_2_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle_2
-        )
-        part_of_radicand_a2_8 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4_2
+        part_of_radicand_a2_6 = z_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
+        part_of_radicand_a2_7 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
         # quadratic equation for a2: rod 2
         radicand_a2 = (
-            arm_length_squared_2
-            + (-part_of_radicand_a2_8 - part_of_radicand_a2_5 * span_2_y) * span_2_x
-            + (part_of_radicand_a2_4 * span_2_y - part_of_radicand_a2_7) * z
-            - part_of_radicand_a2_6 * span_2_y * span_2_y
+            arm_length_squared
+            + (-part_of_radicand_a2_7 - part_of_radicand_a2_5 * span_2_y) * span_2_x
+            + (part_of_radicand_a2_4 * span_2_y - part_of_radicand_a2_6) * z
+            - part_of_radicand_a2_3 * span_2_y * span_2_y
         )
         if radicand_a2 > 0.0:
             root_of_radicand_a2 = sqrt(radicand_a2)
         else:
             # rod 2 cannot reach
-            if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a2 >= -arm_length_squared_times_rounding):
                 return 8 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a2 = 0.0
         span_3_y = y - part_of_span_2_y
         # quadratic equation for a3: rod 3
         radicand_a3 = (
-            arm_length_squared_2
-            + (part_of_radicand_a2_5 * span_3_y - part_of_radicand_a2_8) * span_2_x
-            + (-part_of_radicand_a2_7 - part_of_radicand_a2_4 * span_3_y) * z
-            - part_of_radicand_a2_6 * span_3_y * span_3_y
+            arm_length_squared
+            + (part_of_radicand_a2_5 * span_3_y - part_of_radicand_a2_7) * span_2_x
+            + (-part_of_radicand_a2_6 - part_of_radicand_a2_4 * span_3_y) * z
+            - part_of_radicand_a2_3 * span_3_y * span_3_y
         )
         if radicand_a3 > 0.0:
             root_of_radicand_a3 = sqrt(radicand_a3)
         else:
             # rod 3 cannot reach
-            if not (radicand_a3 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a3 >= -arm_length_squared_times_rounding):
                 return 8 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a3 = 0.0
         # ball joint of rod 1
         if not (abs(y) / arm_length <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
         part = root_of_3_times_half_by_arm_length_2 * x
-        half_by_arm_length_2_times_y = half_by_arm_length_2 * y
+        half_by_arm_length_times_y = half_by_arm_length * y
         # ball joint of rod 2
-        if not (abs(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_y + part) <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
         # ball joint of rod 3
-        if not (abs(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_y - part) <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
         cos_rail_angle_times_z = z * cos_rail_angle
         middle_a1 = cos_rail_angle_times_z + span_1_x * sin_rail_angle
         a1 = root_of_radicand_a1 - middle_a1
         rod_1_x = span_1_x + a1 * sin_rail_angle
         rod_1_z = z - (-a1 * cos_rail_angle)
-        part_of_middle_a2_2 = cos_rail_angle_times_z - half_sin_rail_angle_2 * span_2_x
+        part_of_middle_a2_2 = cos_rail_angle_times_z - half_sin_rail_angle * span_2_x
         middle_a2 = -part_of_middle_a2_2 - part_of_middle_a2 * span_2_y
         a2 = middle_a2 + root_of_radicand_a2
-        rod_2_x = span_2_x - a2 * half_sin_rail_angle_2
+        rod_2_x = span_2_x - a2 * half_sin_rail_angle
         rod_2_z = z - (-a2 * cos_rail_angle)
         middle_a3 = part_of_middle_a2 * span_3_y - part_of_middle_a2_2
         a3 = middle_a3 + root_of_radicand_a3
-        rod_3_x_below = span_2_x - a3 * half_sin_rail_angle_2
+        rod_3_x_below = span_2_x - a3 * half_sin_rail_angle
         rod_3_z_below = z - (-a3 * cos_rail_angle)
-        part_of_type2_rods_coplanar_below_below_below_2 = (rod_2_x * rod_3_z_below - rod_2_z * rod_3_x_below) * y
+        part_of_type2_rods_coplanar_below_below = (rod_2_x * rod_3_z_below - rod_2_z * rod_3_x_below) * y
         rod_2_y = span_2_y + a2 * part_of_middle_a2
         rod_3_y_below = span_3_y - a3 * part_of_middle_a2
-        part_of_type2_rods_coplanar_below_below_below_3 = rod_2_y * rod_3_z_below - rod_2_z * rod_3_y_below
-        part_of_type2_rods_coplanar_below_below_below_4 = rod_2_x * rod_3_y_below - rod_2_y * rod_3_x_below
+        part_of_type2_rods_coplanar_below_below_below_2 = rod_2_y * rod_3_z_below - rod_2_z * rod_3_y_below
+        part_of_type2_rods_coplanar_below_below_below_3 = rod_2_x * rod_3_y_below - rod_2_y * rod_3_x_below
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_below_below_below_3 * rod_1_x
-            + part_of_type2_rods_coplanar_below_below_below_4 * rod_1_z
-            - part_of_type2_rods_coplanar_below_below_below_2
-        ) * part_of_type2_rods_coplanar_below_below_below
+            part_of_type2_rods_coplanar_below_below_below_2 * rod_1_x
+            + part_of_type2_rods_coplanar_below_below_below_3 * rod_1_z
+            - part_of_type2_rods_coplanar_below_below
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_below = a1 + offset_a1
         axis_a2_below = a2 + offset_a2
         axis_a3_below = a3 + offset_a3
         a3 = middle_a3 - root_of_radicand_a3
-        rod_3_x_above = span_2_x - a3 * half_sin_rail_angle_2
+        rod_3_x_above = span_2_x - a3 * half_sin_rail_angle
         rod_3_z_above = z - (-a3 * cos_rail_angle)
         part_of_type2_rods_coplanar_below_above = (rod_2_x * rod_3_z_above - rod_2_z * rod_3_x_above) * y
         rod_3_y_above = span_3_y - a3 * part_of_middle_a2
@@ -151,12 +145,12 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_type2_rods_coplanar_below_below_above_2 * rod_1_x
             + part_of_type2_rods_coplanar_below_below_above_3 * rod_1_z
             - part_of_type2_rods_coplanar_below_above
-        ) * part_of_type2_rods_coplanar_below_below_below
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_above = a3 + offset_a3
         a2 = middle_a2 - root_of_radicand_a2
-        rod_2_x = span_2_x - a2 * half_sin_rail_angle_2
+        rod_2_x = span_2_x - a2 * half_sin_rail_angle
         rod_2_z = z - (-a2 * cos_rail_angle)
         part_of_type2_rods_coplanar_above_below = (rod_2_x * rod_3_z_below - rod_2_z * rod_3_x_below) * y
         rod_2_y = span_2_y + a2 * part_of_middle_a2
@@ -166,7 +160,7 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_type2_rods_coplanar_below_above_below_2 * rod_1_x
             + part_of_type2_rods_coplanar_below_above_below_3 * rod_1_z
             - part_of_type2_rods_coplanar_above_below
-        ) * part_of_type2_rods_coplanar_below_below_below
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_above = a2 + offset_a2
@@ -177,17 +171,17 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_type2_rods_coplanar_below_above_above_2 * rod_1_x
             + part_of_type2_rods_coplanar_below_above_above_3 * rod_1_z
             - part_of_type2_rods_coplanar_above_above
-        ) * part_of_type2_rods_coplanar_below_below_below
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         a1 = -middle_a1 - root_of_radicand_a1
         rod_1_x = span_1_x + a1 * sin_rail_angle
         rod_1_z = z - (-a1 * cos_rail_angle)
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_below_below_below_3 * rod_1_x
-            + part_of_type2_rods_coplanar_below_below_below_4 * rod_1_z
-            - part_of_type2_rods_coplanar_below_below_below_2
-        ) * part_of_type2_rods_coplanar_below_below_below
+            part_of_type2_rods_coplanar_below_below_below_2 * rod_1_x
+            + part_of_type2_rods_coplanar_below_below_below_3 * rod_1_z
+            - part_of_type2_rods_coplanar_below_below
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_above = a1 + offset_a1
@@ -195,21 +189,21 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_type2_rods_coplanar_below_below_above_2 * rod_1_x
             + part_of_type2_rods_coplanar_below_below_above_3 * rod_1_z
             - part_of_type2_rods_coplanar_below_above
-        ) * part_of_type2_rods_coplanar_below_below_below
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             part_of_type2_rods_coplanar_below_above_below_2 * rod_1_x
             + part_of_type2_rods_coplanar_below_above_below_3 * rod_1_z
             - part_of_type2_rods_coplanar_above_below
-        ) * part_of_type2_rods_coplanar_below_below_below
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             part_of_type2_rods_coplanar_below_above_above_2 * rod_1_x
             + part_of_type2_rods_coplanar_below_above_above_3 * rod_1_z
             - part_of_type2_rods_coplanar_above_above
-        ) * part_of_type2_rods_coplanar_below_below_below
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
@@ -243,56 +237,54 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
-        span_1_x = outer_radius_minus_inner_radius + x  # rod 1: known part of its vector
-        z_minus_cos_rail_angle_squared_2_times_z = z - z * cos_rail_angle_squared_2
+        span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
+        z_minus_cos_rail_angle_squared_times_z = z - z * cos_rail_angle_squared
         # quadratic equation for a1: rod 1
         radicand_a1 = (
-            arm_length_squared_2
-            + (part_of_radicand_a1_2 * span_1_x - z_minus_cos_rail_angle_squared_2_times_z) * z
+            arm_length_squared
+            + (part_of_radicand_a1 * span_1_x - z_minus_cos_rail_angle_squared_times_z) * z
             - y * y
-            - one_minus_sin_rail_angle_squared_2 * span_1_x * span_1_x
+            - one_minus_sin_rail_angle_squared * span_1_x * span_1_x
         )
         # rod 1 cannot reach
-        if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
+        if not (radicand_a1 >= -arm_length_squared_times_rounding):
             return None
-        span_2_x = part_of_span_2_x + x  # rod 2: known part of its vector
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = part_of_span_2_y + y
-        part_of_radicand_a2_7 = (
-            z_minus_cos_rail_angle_squared_2_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle_2
-        )
-        part_of_radicand_a2_8 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4_2
+        part_of_radicand_a2_6 = z_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
+        part_of_radicand_a2_7 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
         # quadratic equation for a2: rod 2
         radicand_a2 = (
-            arm_length_squared_2
-            + (-part_of_radicand_a2_8 - part_of_radicand_a2_5 * span_2_y) * span_2_x
-            + (part_of_radicand_a2_4 * span_2_y - part_of_radicand_a2_7) * z
-            - part_of_radicand_a2_6 * span_2_y * span_2_y
+            arm_length_squared
+            + (-part_of_radicand_a2_7 - part_of_radicand_a2_5 * span_2_y) * span_2_x
+            + (part_of_radicand_a2_4 * span_2_y - part_of_radicand_a2_6) * z
+            - part_of_radicand_a2_3 * span_2_y * span_2_y
         )
         # rod 2 cannot reach
-        if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
+        if not (radicand_a2 >= -arm_length_squared_times_rounding):
             return None
         span_3_y = y - part_of_span_2_y
         # quadratic equation for a3: rod 3
         radicand_a3 = (
-            arm_length_squared_2
-            + (part_of_radicand_a2_5 * span_3_y - part_of_radicand_a2_8) * span_2_x
-            + (-part_of_radicand_a2_7 - part_of_radicand_a2_4 * span_3_y) * z
-            - part_of_radicand_a2_6 * span_3_y * span_3_y
+            arm_length_squared
+            + (part_of_radicand_a2_5 * span_3_y - part_of_radicand_a2_7) * span_2_x
+            + (-part_of_radicand_a2_6 - part_of_radicand_a2_4 * span_3_y) * z
+            - part_of_radicand_a2_3 * span_3_y * span_3_y
         )
         # rod 3 cannot reach
-        if not (radicand_a3 >= -arm_length_squared_times_rounding_2):
+        if not (radicand_a3 >= -arm_length_squared_times_rounding):
             return None
         cos_rail_angle_times_z = z * cos_rail_angle
         a1 = (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1 - (
             cos_rail_angle_times_z + span_1_x * sin_rail_angle
         )
-        part_of_middle_a2_2 = cos_rail_angle_times_z - half_sin_rail_angle_2 * span_2_x
+        part_of_middle_a2_2 = cos_rail_angle_times_z - half_sin_rail_angle * span_2_x
         a2 = (
             -part_of_middle_a2_2
             - part_of_middle_a2 * span_2_y
             + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         )
-        rod_2_x = span_2_x - a2 * half_sin_rail_angle_2
+        rod_2_x = span_2_x - a2 * half_sin_rail_angle
         rod_2_y = span_2_y + a2 * part_of_middle_a2
         rod_2_z = z - (-a2 * cos_rail_angle)
         a3 = (
@@ -300,10 +292,10 @@ def unrolled(k: Constants) -> Unrolled:
             - part_of_middle_a2_2
             + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0) * sigma_carriage_3
         )
-        rod_3_x = span_2_x - a3 * half_sin_rail_angle_2
+        rod_3_x = span_2_x - a3 * half_sin_rail_angle
         rod_3_y = span_3_y - a3 * part_of_middle_a2
         rod_3_z = z - (-a3 * cos_rail_angle)
-        type2_rods_coplanar = -part_of_type2_rods_coplanar_below_below_below * (
+        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
             (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * (z - (-a1 * cos_rail_angle))
             + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * (span_1_x + a1 * sin_rail_angle)
@@ -315,12 +307,12 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y) / arm_length <= sin_max_angle_ball_joint):
             return None
         part = root_of_3_times_half_by_arm_length_2 * x
-        half_by_arm_length_2_times_y = half_by_arm_length_2 * y
+        half_by_arm_length_times_y = half_by_arm_length * y
         # ball joint of rod 2
-        if not (abs(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_y + part) <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 3
-        if not (abs(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_y - part) <= sin_max_angle_ball_joint):
             return None
         if no_offsets:
             return (a1, a2, a3)

@@ -18,25 +18,13 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    arm_length, assembly_sign, highest_a1, highest_a2 = k.arm_length, k.assembly_sign, k.highest_a1, k.highest_a2
-    highest_a3, lowest_a1, lowest_a2, lowest_a3 = k.highest_a3, k.lowest_a1, k.lowest_a2, k.lowest_a3
-    min_type2_margin, offset_a1, offset_a2, offset_a3 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.offset_a3
-    pivot_1_x, pivot_1_y, pivot_2_x, pivot_2_y = k.pivot_1_x, k.pivot_1_y, k.pivot_2_x, k.pivot_2_y
-    pivot_3_x, pivot_3_y, rail_x_1, rail_x_2 = k.pivot_3_x, k.pivot_3_y, k.rail_x_1, k.rail_x_2
-    rail_x_3, rail_y_1, rail_y_2, rail_y_3 = k.rail_x_3, k.rail_y_1, k.rail_y_2, k.rail_y_3
-    tcp_displacement = k.tcp_displacement
-    arm_length_squared_2 = arm_length * arm_length
-    arm_length_squared_times_rounding_2 = 1e-12 * arm_length * arm_length
-    part_of_span_1_x_2_2 = sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1)
-    part_of_span_1_x_2 = rail_x_1 - rail_x_1 * tcp_displacement / part_of_span_1_x_2_2
-    part_of_span_1_y_2 = rail_y_1 - rail_y_1 * tcp_displacement / part_of_span_1_x_2_2
-    part_of_span_2_x_2_2 = sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2)
-    part_of_span_2_x_2 = rail_x_2 - rail_x_2 * tcp_displacement / part_of_span_2_x_2_2
-    part_of_span_2_y_2 = rail_y_2 - rail_y_2 * tcp_displacement / part_of_span_2_x_2_2
-    part_of_span_3_x_2_2 = sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3)
-    part_of_span_3_x_2 = rail_x_3 - rail_x_3 * tcp_displacement / part_of_span_3_x_2_2
-    part_of_span_3_y_2 = rail_y_3 - rail_y_3 * tcp_displacement / part_of_span_3_x_2_2
-    part_of_type2_rods_coplanar_above_above_above = assembly_sign / (arm_length * arm_length * arm_length)
+    arm_length_squared = k.arm_length_squared
+    arm_length_squared_times_rounding, highest_a1 = k.arm_length_squared_times_rounding, k.highest_a1
+    highest_a2, highest_a3, lowest_a1, lowest_a2 = k.highest_a2, k.highest_a3, k.lowest_a1, k.lowest_a2
+    lowest_a3, min_type2_margin, offset_a1, offset_a2 = k.lowest_a3, k.min_type2_margin, k.offset_a1, k.offset_a2
+    offset_a3, part_of_type2_rods_coplanar, pivot_1_x = k.offset_a3, k.part_of_type2_rods_coplanar, k.pivot_1_x
+    pivot_1_y, pivot_2_x, pivot_2_y, pivot_3_x = k.pivot_1_y, k.pivot_2_x, k.pivot_2_y, k.pivot_3_x
+    pivot_3_y = k.pivot_3_y
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -44,37 +32,37 @@ def unrolled(k: Constants) -> Unrolled:
     ) -> tuple[Any, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = x - part_of_span_1_x_2  # rod 1: known part of its vector
-        span_1_y = y - part_of_span_1_y_2
+        span_1_x = x - pivot_1_x  # rod 1: known part of its vector
+        span_1_y = y - pivot_1_y
         # quadratic equation for a1: rod 1
-        radicand_a1 = arm_length_squared_2 - span_1_x * span_1_x - span_1_y * span_1_y
+        radicand_a1 = arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
         if radicand_a1 > 0.0:
             root_of_radicand_a1 = sqrt(radicand_a1)
         else:
             # rod 1 cannot reach
-            if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a1 >= -arm_length_squared_times_rounding):
                 return 8 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a1 = 0.0
-        span_2_x = x - part_of_span_2_x_2  # rod 2: known part of its vector
-        span_2_y = y - part_of_span_2_y_2
+        span_2_x = x - pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - pivot_2_y
         # quadratic equation for a2: rod 2
-        radicand_a2 = arm_length_squared_2 - span_2_x * span_2_x - span_2_y * span_2_y
+        radicand_a2 = arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
         if radicand_a2 > 0.0:
             root_of_radicand_a2 = sqrt(radicand_a2)
         else:
             # rod 2 cannot reach
-            if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a2 >= -arm_length_squared_times_rounding):
                 return 8 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a2 = 0.0
-        span_3_x = x - part_of_span_3_x_2  # rod 3: known part of its vector
-        span_3_y = y - part_of_span_3_y_2
+        span_3_x = x - pivot_3_x  # rod 3: known part of its vector
+        span_3_y = y - pivot_3_y
         # quadratic equation for a3: rod 3
-        radicand_a3 = arm_length_squared_2 - span_3_x * span_3_x - span_3_y * span_3_y
+        radicand_a3 = arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         if radicand_a3 > 0.0:
             root_of_radicand_a3 = sqrt(radicand_a3)
         else:
             # rod 3 cannot reach
-            if not (radicand_a3 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a3 >= -arm_length_squared_times_rounding):
                 return 8 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a3 = 0.0
         a1 = root_of_radicand_a1 + z
@@ -82,8 +70,8 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_y = y - pivot_2_y
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        part_of_type2_rods_coplanar_above_above_above_2 = rod_2_x * rod_3_y - rod_2_y * rod_3_x
-        part_of_type2_rods_coplanar_above_above_above_3 = (z - a1) * part_of_type2_rods_coplanar_above_above_above_2
+        part_of_type2_rods_coplanar_above_above_above = rod_2_x * rod_3_y - rod_2_y * rod_3_x
+        part_of_type2_rods_coplanar_above_above_above_2 = (z - a1) * part_of_type2_rods_coplanar_above_above_above
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         a3 = root_of_radicand_a3 + z
@@ -94,12 +82,12 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_z_above_times_rod_3_y = rod_2_z * rod_3_y
         rod_2_z_above_times_rod_3_x = rod_2_z * rod_3_x
         rod_2_x_times_rod_3_z_above = rod_2_x * rod_3_z
-        part_of_type2_rods_coplanar_above_above_above_4 = (
+        part_of_type2_rods_coplanar_above_above_above_3 = (
             rod_1_x * (rod_2_y_times_rod_3_z_above - rod_2_z_above_times_rod_3_y)
             + (rod_2_z_above_times_rod_3_x - rod_2_x_times_rod_3_z_above) * rod_1_y
         )
-        type2_rods_coplanar = part_of_type2_rods_coplanar_above_above_above * (
-            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_above_above_above_4
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+            part_of_type2_rods_coplanar_above_above_above_2 + part_of_type2_rods_coplanar_above_above_above_3
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -110,11 +98,11 @@ def unrolled(k: Constants) -> Unrolled:
         rod_3_z = z - a3
         rod_2_y_times_rod_3_z_below = rod_2_y * rod_3_z
         rod_2_x_times_rod_3_z_below = rod_2_x * rod_3_z
-        part_of_type2_rods_coplanar_above_below = (
+        part_of_type2_rods_coplanar_above_above_below = (
             rod_2_z_above_times_rod_3_y - rod_2_y_times_rod_3_z_below
         ) * rod_1_x + rod_1_y * (rod_2_x_times_rod_3_z_below - rod_2_z_above_times_rod_3_x)
-        type2_rods_coplanar = part_of_type2_rods_coplanar_above_above_above * (
-            part_of_type2_rods_coplanar_above_above_above_3 - part_of_type2_rods_coplanar_above_below
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+            part_of_type2_rods_coplanar_above_above_above_2 - part_of_type2_rods_coplanar_above_above_below
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -123,46 +111,46 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_z = z - a2
         rod_2_z_below_times_rod_3_y = rod_2_z * rod_3_y
         rod_2_z_below_times_rod_3_x = rod_2_z * rod_3_x
-        part_of_type2_rods_coplanar_below_above = (
+        part_of_type2_rods_coplanar_above_below_above = (
             rod_1_x * (rod_2_y_times_rod_3_z_above - rod_2_z_below_times_rod_3_y)
             + (rod_2_z_below_times_rod_3_x - rod_2_x_times_rod_3_z_above) * rod_1_y
         )
-        type2_rods_coplanar = part_of_type2_rods_coplanar_above_above_above * (
-            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_below_above
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+            part_of_type2_rods_coplanar_above_above_above_2 + part_of_type2_rods_coplanar_above_below_above
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_below = a2 + offset_a2
-        part_of_type2_rods_coplanar_below_below = (
+        part_of_type2_rods_coplanar_above_below_below = (
             rod_1_x * (rod_2_y_times_rod_3_z_below - rod_2_z_below_times_rod_3_y)
             + (rod_2_z_below_times_rod_3_x - rod_2_x_times_rod_3_z_below) * rod_1_y
         )
-        type2_rods_coplanar = part_of_type2_rods_coplanar_above_above_above * (
-            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_below_below
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+            part_of_type2_rods_coplanar_above_above_above_2 + part_of_type2_rods_coplanar_above_below_below
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         a1 = z - root_of_radicand_a1
-        part_of_type2_rods_coplanar_above_above = (z - a1) * part_of_type2_rods_coplanar_above_above_above_2
-        type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_above + part_of_type2_rods_coplanar_above_above_above_4
-        ) * part_of_type2_rods_coplanar_above_above_above
+        part_of_type2_rods_coplanar_below_above_above = (z - a1) * part_of_type2_rods_coplanar_above_above_above
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_below_above_above
+        )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_below = a1 + offset_a1
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_above - part_of_type2_rods_coplanar_above_below
-        ) * part_of_type2_rods_coplanar_above_above_above
+            part_of_type2_rods_coplanar_below_above_above - part_of_type2_rods_coplanar_above_above_below
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_above + part_of_type2_rods_coplanar_below_above
-        ) * part_of_type2_rods_coplanar_above_above_above
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+            part_of_type2_rods_coplanar_above_below_above + part_of_type2_rods_coplanar_below_above_above
+        )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_above + part_of_type2_rods_coplanar_below_below
-        ) * part_of_type2_rods_coplanar_above_above_above
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+            part_of_type2_rods_coplanar_above_below_below + part_of_type2_rods_coplanar_below_above_above
+        )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
@@ -196,37 +184,37 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
-        span_1_x = x - part_of_span_1_x_2  # rod 1: known part of its vector
-        span_1_y = y - part_of_span_1_y_2
+        span_1_x = x - pivot_1_x  # rod 1: known part of its vector
+        span_1_y = y - pivot_1_y
         # quadratic equation for a1: rod 1
-        radicand_a1 = arm_length_squared_2 - span_1_x * span_1_x - span_1_y * span_1_y
+        radicand_a1 = arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
         if radicand_a1 > 0.0:
             a1 = z + sqrt(radicand_a1) * sigma_carriage_1
         else:
             # rod 1 cannot reach
-            if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a1 >= -arm_length_squared_times_rounding):
                 return None
             a1 = z
-        span_2_x = x - part_of_span_2_x_2  # rod 2: known part of its vector
-        span_2_y = y - part_of_span_2_y_2
+        span_2_x = x - pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - pivot_2_y
         # quadratic equation for a2: rod 2
-        radicand_a2 = arm_length_squared_2 - span_2_x * span_2_x - span_2_y * span_2_y
+        radicand_a2 = arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
         if radicand_a2 > 0.0:
             a2 = z + sqrt(radicand_a2) * sigma_carriage_2
         else:
             # rod 2 cannot reach
-            if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a2 >= -arm_length_squared_times_rounding):
                 return None
             a2 = z
-        span_3_x = x - part_of_span_3_x_2  # rod 3: known part of its vector
-        span_3_y = y - part_of_span_3_y_2
+        span_3_x = x - pivot_3_x  # rod 3: known part of its vector
+        span_3_y = y - pivot_3_y
         # quadratic equation for a3: rod 3
-        radicand_a3 = arm_length_squared_2 - span_3_x * span_3_x - span_3_y * span_3_y
+        radicand_a3 = arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         if radicand_a3 > 0.0:
             a3 = z + sqrt(radicand_a3) * sigma_carriage_3
         else:
             # rod 3 cannot reach
-            if not (radicand_a3 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a3 >= -arm_length_squared_times_rounding):
                 return None
             a3 = z
         rod_2_x = x - pivot_2_x
@@ -239,7 +227,7 @@ def unrolled(k: Constants) -> Unrolled:
             (z - a1) * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * (y - pivot_1_y)
             + (x - pivot_1_x) * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
-        ) * part_of_type2_rods_coplanar_above_above_above
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
