@@ -39,7 +39,9 @@ def lowered(
     graph, constant = reader.graph, Constant(constants)
     drafts = [reader.draft(p) for p in programs]
     signs = branches or {}
-    drafts = [unrolled(d, graph, signs[d.program.name]) if d.program.name in signs else d for d in drafts]
+    for place, draft in enumerate(drafts):
+        if draft.program.name in signs:  # first what a branch shares with itself, then what branches share
+            drafts[place] = unrolled(_shorter(draft, graph, constant), graph, signs[draft.program.name])
     if modulo_turns:
         drafts = [changed(draft, Mirrored(graph, _nodes(draft))) for draft in drafts]
         drafts = [changed(draft, Symmetry(graph, [v.node for v in values_of(draft)], draft.names)) for draft in drafts]

@@ -13,7 +13,7 @@ language that computes one side of a choice alone.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -46,17 +46,20 @@ class Symmetry(Rewriting):
     side of a choice.
     """
 
-    def __init__(self, graph: Graph, starts: Collection[Node], named: Iterable[Node]) -> None:
-        """starts: what the statements and the outputs of a draft read; named: the nodes that have a name."""
+    def __init__(self, graph: Graph, starts: Sequence[Node], named: Iterable[Node]) -> None:
+        """starts: what the statements and the outputs of a draft read, in order; named: the nodes that have a name."""
         super().__init__(graph)
         counted = set(reached(node for node in reached(starts) if node.head is Wrap))
         always = _always_needed(starts)
         turned = {node.parts[0].node for node in always if node.head is NearestPeriod}
-        candidates = sorted((n for n in always & {*named, *turned} if not is_condition(n)), key=lambda n: n.place)
+        first = _first_readers(starts)
+        wanted = (node for node in always & {*named, *turned} if not is_condition(node))
+        candidates = sorted(wanted, key=lambda node: (first[node], node.place))
         conditions = {node.parts[0].node for node in always if node.head is Select}
-        self._twins: dict[Node, _Twin] = {}
-        for condition in (None, *sorted(conditions, key=lambda n: n.place)):
-            self._look(candidates, Assumed(graph, condition, counted))
+        found = [_twins(candidates, Assumed(graph, c, counted)) for c in sorted(conditions, key=lambda n: n.place)]
+        found.sort(key=len)  # of several conditions, the one that gives most values
+        everywhere = _twins(candidates, Assumed(graph, None, counted))
+        self._twins = {node: twin for twins in (*found, everywhere) for node, twin in twins.items()}
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
         """The choice between what another node gives and the node."""
@@ -70,21 +73,6 @@ class Symmetry(Rewriting):
         if twin.condition is None:
             return other
         return self.graph.apply(Select, (self(Value(twin.condition, 1)), other, own))
-
-    def _look(self, candidates: Sequence[Node], assumed: Assumed) -> None:
-        first: dict[Node, tuple[Node, int, sp.Expr]] = {}
-        condition = assumed.condition
-        for node in candidates:
-            value = assumed(Value(node, 1))
-            shift = assumed.shift(Value(node, 1))
-            if value.node.is_leaf:
-                continue
-            other, sign, away = first.setdefault(value.node, (node, value.sign, shift))
-            is_decided = node.head is Select and node.parts[0].node is condition
-            if other is node or node in self._twins or is_decided or (condition is not None and value.node is node):
-                continue
-            sign *= value.sign
-            self._twins[node] = _Twin(condition, Value(other, sign), _modulo_turns(shift - sign * away))
 
 
 @dataclass(frozen=True)
@@ -120,6 +108,11 @@ class Assumed(Rewriting):
         shifts = [self.shift(part) for part in node.parts]
         if node.head is Select and node.parts[0].node is self.condition:
             return parts[1], shifts[1]
+        if node.head is Select and not any(shifts):
+            sign = next((side.sign for side in parts[1:] if side.node.head != 0), 1)
+            sides = (side if side.node.head == 0 else Value(side.node, sign * side.sign) for side in parts[1:])
+            value = self.graph.apply(Select, (parts[0], *sides))
+            return Value(value.node, sign * value.sign), sp.Integer(0)
         if node.head is Atan2 and node not in self._counted:
             sine, cosine = parts
             value = self.graph.apply(Atan2, (Value(sine.node, 1), Value(cosine.node, 1)))
@@ -138,6 +131,36 @@ class Assumed(Rewriting):
             p if s == 0 else self.graph.sum([p, _number(self.graph, s)]) for p, s in zip(parts, shifts, strict=True)
         ]
         return super().rewritten(node, tuple(whole)), sp.Integer(0)
+
+
+def _twins(candidates: Iterable[Node], assumed: Assumed) -> dict[Node, _Twin]:
+    """The nodes that one before them gives under an assumption."""
+    found: dict[Node, _Twin] = {}
+    first: dict[Node, tuple[Node, int, sp.Expr]] = {}
+    condition = assumed.condition
+    for node in candidates:
+        value, shift = assumed(Value(node, 1)), assumed.shift(Value(node, 1))
+        if value.node.is_leaf:
+            continue
+        other, sign, away = first.setdefault(value.node, (node, value.sign, shift))
+        is_decided = node.head is Select and node.parts[0].node is condition
+        if other is not node and not is_decided and (condition is None or value.node is not node):
+            sign *= value.sign
+            found[node] = _Twin(condition, Value(other, sign), _modulo_turns(shift - sign * away))
+    return found
+
+
+def _first_readers(starts: Iterable[Node]) -> dict[Node, int]:
+    """Of everything that is read: the place of the first start that needs it.
+
+    What a node reads has no later one. So a node may be given by another with an earlier one, or by one of the same
+    start that was made before it.
+    """
+    found: dict[Node, int] = {}
+    for place, start in enumerate(starts):
+        for node in list(reached([start], found.__contains__)):
+            found.setdefault(node, place)
+    return found
 
 
 def _always_needed(starts: Iterable[Node]) -> set[Node]:

@@ -101,6 +101,30 @@ def test_values_that_differ_on_the_first_side_stay() -> None:
     assert values(with_symmetry(program)) == values(program)
 
 
+def test_a_choice_is_the_negative_of_another_whatever_the_signs_of_its_sides() -> None:
+    """Also one with a zero on a side."""
+    far = sp.Gt(T, 0)
+    lets = [Let(C_DOWN, Select(REGULAR, X, T)), Let(C_UP, Select(REGULAR, -X, T))]
+    for second in (Y, sp.Integer(0)):
+        ends = [Let(M_DOWN, Select(far, A * C_DOWN, -second)), Let(M_UP, Select(far, A * C_UP, second))]
+        program = assemble("signs", [*lets, *ends], [Output(str(s), s) for s in (C_DOWN, C_UP, M_DOWN, M_UP)])
+        found = values(with_symmetry(program))["m_up"]
+        assert found.args[:2] == (REGULAR, -M_DOWN)
+        same(program, with_symmetry(program))
+
+
+def test_the_condition_that_gives_most_values_decides() -> None:
+    """R above 2 would give M alone; R above 1 gives A, too."""
+    lets = [Let(C_DOWN, Select(REGULAR, X, T)), Let(C_UP, Select(REGULAR, -X, T))]
+    lets += [Let(M_DOWN, Select(sp.Gt(R, 2), X, A * C_DOWN)), Let(M_UP, Select(sp.Gt(R, 2), -X, A * C_UP))]
+    ends = [Let(S_DOWN, M_DOWN * Y), Let(S_UP, M_UP * Y), Let(AXIS_DOWN, C_DOWN * Y), Let(AXIS_UP, C_UP * Y)]
+    outputs = [Output(str(s), s) for s in (S_DOWN, S_UP, AXIS_DOWN, AXIS_UP)]
+    program = assemble("most", [*lets, *ends], outputs)
+    found = values(with_symmetry(program))
+    assert all(found[name].args[0] == REGULAR for name in ("s_up", "axis_up"))
+    same(program, with_symmetry(program))
+
+
 def test_what_one_side_of_a_choice_alone_reads_is_not_computed_for_another_value() -> None:
     """M of the first wrist is needed where R is large alone: the second one does not wait for it."""
     far = sp.Gt(R, 2)

@@ -118,20 +118,20 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            r33_times_d5 = d5 * r33
-            r33_times_d5_times_radius_q6 = r33_times_d5 * radius_q6
-            wrist_y_from_q1_across = d5 * r31
-            wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
+            radius_q6_left_times_r33_times_d5 = d5 * radius_q6_left_times_r33
+            cos_q5_left_times_d5 = d5 * cos_q5
+            wrist_x_from_q1_along = -r31 * cos_q5_left_times_d5
             wrist_y_from_q1_along = d5 * r32
             part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
-            wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
+            wrist_x_from_q1_across = r32 * cos_q5_left_times_d5
+            wrist_y_from_q1_across = d5 * r31
             part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
             # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = r33_times_d5_times_radius_q6 - ahead_q1_before_q1_for_q3
+                wrist_x_from_q1_fixed = radius_q6_left_times_r33_times_d5 - ahead_q1_before_q1_for_q3
                 along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
                 across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
@@ -251,20 +251,20 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_up
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            r33_times_d5 = d5 * r33
-            r33_times_d5_times_radius_q6 = r33_times_d5 * radius_q6
-            wrist_y_from_q1_across = d5 * r31
-            wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
+            radius_q6_left_times_r33_times_d5 = d5 * radius_q6_left_times_r33
+            cos_q5_left_times_d5 = d5 * cos_q5
+            wrist_x_from_q1_along = -r31 * cos_q5_left_times_d5
             wrist_y_from_q1_along = d5 * r32
             part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
-            wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
+            wrist_x_from_q1_across = r32 * cos_q5_left_times_d5
+            wrist_y_from_q1_across = d5 * r31
             part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
             # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - r33_times_d5_times_radius_q6
+                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - radius_q6_left_times_r33_times_d5
                 along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
                 across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
@@ -403,20 +403,20 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            r33_times_d5 = d5 * r33
-            wrist_y_from_q1_across = d5 * r31
             wrist_y_from_q1_along = d5 * r32
             part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            wrist_y_from_q1_across = d5 * r31
             part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
-            r33_times_d5_times_radius_q6 = r33_times_d5 * radius_q6
-            wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
-            wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
+            radius_q6_right_times_r33_times_d5 = d5 * radius_q6_right_times_r33
+            cos_q5_right_times_d5 = d5 * cos_q5
+            wrist_x_from_q1_along = -r31 * cos_q5_right_times_d5
+            wrist_x_from_q1_across = r32 * cos_q5_right_times_d5
             # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + r33_times_d5_times_radius_q6
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + radius_q6_right_times_r33_times_d5
                 along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
                 across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
@@ -536,20 +536,20 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_up
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            r33_times_d5 = d5 * r33
-            wrist_y_from_q1_across = d5 * r31
             wrist_y_from_q1_along = d5 * r32
             part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            wrist_y_from_q1_across = d5 * r31
             part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
-            r33_times_d5_times_radius_q6 = r33_times_d5 * radius_q6
-            wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
-            wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
+            radius_q6_right_times_r33_times_d5 = d5 * radius_q6_right_times_r33
+            cos_q5_right_times_d5 = d5 * cos_q5
+            wrist_x_from_q1_along = -r31 * cos_q5_right_times_d5
+            wrist_x_from_q1_across = r32 * cos_q5_right_times_d5
             # moved so that q3 has a solution
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - r33_times_d5_times_radius_q6
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - radius_q6_right_times_r33_times_d5
                 along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
                 across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)

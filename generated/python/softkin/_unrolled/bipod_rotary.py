@@ -87,8 +87,8 @@ def unrolled(k: Constants) -> Unrolled:
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (cos_swing_a2_times_span_2_x - sin_swing_a2_inward_times_y) / divisor_a2
         rod_2_x_outward = span_2_x - inner_arm * cos_a2
-        sin_swing_a2_inward_times_span_2_x = span_2_x * sin_swing_a2
         cos_swing_a2_times_y = y * cos_swing_a2
+        sin_swing_a2_inward_times_span_2_x = span_2_x * sin_swing_a2
         sin_a2 = (-cos_swing_a2_times_y - sin_swing_a2_inward_times_span_2_x) / divisor_a2
         rod_2_y_outward = y - (-inner_arm * sin_a2)
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (

@@ -125,10 +125,10 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return 8 * (refused[Status.UNREACHABLE],)
+        along_a1_times_cos_swing_a1 = along_a1 * cos_swing_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) / divisor_of_cos_a1
         sin_swing_a1_inward_times_z = z * sin_swing_a1
-        along_a1_times_cos_swing_a1 = along_a1 * cos_swing_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (along_a1_times_cos_swing_a1 - sin_swing_a1_inward_times_z) / divisor_a1
         rod_1_x = span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1
@@ -137,10 +137,10 @@ def unrolled(k: Constants) -> Unrolled:
         along_a1_times_sin_swing_a1 = along_a1 * sin_swing_a1
         sin_a1 = (-along_a1_times_sin_swing_a1 - cos_swing_a1_times_z) / divisor_a1
         rod_1_z = z - (-inner_arm_1 * sin_a1)
+        along_a2_times_cos_swing_a2 = along_a2 * cos_swing_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
         sin_swing_a2_inward_times_z = z * sin_swing_a2
-        along_a2_times_cos_swing_a2 = along_a2 * cos_swing_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2_times_cos_swing_a2 - sin_swing_a2_inward_times_z) / divisor_a2
         rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2 * cos_a2
@@ -148,10 +148,10 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2_times_sin_swing_a2 = along_a2 * sin_swing_a2
         sin_a2 = (-along_a2_times_sin_swing_a2 - cos_swing_a2_times_z) / divisor_a2
         rod_2_z = z - (-inner_arm_2 * sin_a2)
+        along_a3_times_cos_swing_a3 = along_a3 * cos_swing_a3
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) / divisor_of_cos_a3
         sin_swing_a3_inward_times_z = z * sin_swing_a3
-        along_a3_times_cos_swing_a3 = along_a3 * cos_swing_a3
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (along_a3_times_cos_swing_a3 - sin_swing_a3_inward_times_z) / divisor_a3
         rod_3_y_outward = span_3_y - inner_arm_3_times_sin_azimuth_3 * cos_a3

@@ -22,9 +22,8 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
     link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
     link_length_1_times_shortest_link, link_length_2 = k.link_length_1_times_shortest_link, k.link_length_2
-    link_length_2_by_link_length_3, link_length_3 = k.link_length_2_by_link_length_3, k.link_length_3
-    link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-    link_length_4_plus_link_length_5, link_length_5 = k.link_length_4_plus_link_length_5, k.link_length_5
+    link_length_3, link_length_3_by_link_length_2 = k.link_length_3, k.link_length_3_by_link_length_2
+    link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
     link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
     link_length_5_times_shortest_link, lowest_a1 = k.link_length_5_times_shortest_link, k.lowest_a1
     lowest_a2, machine_scale_times_plane, mid_a1 = k.lowest_a2, k.machine_scale_times_plane, k.mid_a1
@@ -32,9 +31,8 @@ def unrolled(k: Constants) -> Unrolled:
     part_of_pivot_rear_x, part_of_scaled_pivot_rear_y_2 = k.part_of_pivot_rear_x, k.part_of_scaled_pivot_rear_y_2
     part_of_type2_arms_aligned, single_a1, single_a2 = k.part_of_type2_arms_aligned, k.single_a1, k.single_a2
     swap_xy = k.swap_xy
-    part_of_pivot_rear_x_left_left = link_length_1 * link_length_3 / link_length_2
     part_of_along_a2_left = link_length_1 * (link_length_2 + link_length_3) / link_length_2
-    part_of_scaled_pivot_rear_y_3 = link_length_2 * part_of_pivot_rear_x / link_length_3
+    part_of_scaled_pivot_rear_y_left_left = link_length_2 * part_of_pivot_rear_x / link_length_3
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -116,35 +114,40 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if effective_a2 > link_length_5_times_shortest_link and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
-            pivot_upper_y = -link_length_1 * cos_a1
+            part_of_scaled_pivot_rear_x = part_of_scaled_pivot_rear_y_left_left * sin_a1
+            # rod rear: centre about which it swings
+            scaled_pivot_rear_x_left = part_of_scaled_pivot_rear_x - part_of_scaled_pivot_rear_y_2 * cos_a2_left_left
+            part_of_scaled_pivot_rear_y_left_left_2 = part_of_scaled_pivot_rear_y_left_left * cos_a1
+            # rod rear: centre about which it swings
+            scaled_pivot_rear_x_right = part_of_scaled_pivot_rear_x - part_of_scaled_pivot_rear_y_2 * cos_a2_left_right
             if swap_xy:
-                centre_1_x = pivot_upper_y
+                centre_1_x = -link_length_1 * cos_a1
                 centre_1_y = pivot_upper_x
+                centre_2_x_left = -(
+                    part_of_scaled_pivot_rear_y_left_left_2 + part_of_scaled_pivot_rear_y_2 * sin_a2_left_left
+                )
+                centre_2_y_left = -scaled_pivot_rear_x_left
+                centre_2_x_right = -(
+                    part_of_scaled_pivot_rear_y_left_left_2 + part_of_scaled_pivot_rear_y_2 * sin_a2_left_right
+                )
+                centre_2_y_right = -scaled_pivot_rear_x_right
             else:
                 centre_1_x = pivot_upper_x
-                centre_1_y = pivot_upper_y
+                centre_1_y = -link_length_1 * cos_a1
+                centre_2_x_left = -scaled_pivot_rear_x_left
+                centre_2_y_left = -(
+                    part_of_scaled_pivot_rear_y_left_left_2 + part_of_scaled_pivot_rear_y_2 * sin_a2_left_left
+                )
+                centre_2_x_right = -scaled_pivot_rear_x_right
+                centre_2_y_right = -(
+                    part_of_scaled_pivot_rear_y_left_left_2 + part_of_scaled_pivot_rear_y_2 * sin_a2_left_right
+                )
             rod_1_x = x - centre_1_x
             rod_1_y = y - centre_1_y
-            part_of_pivot_rear_x_left_left_2 = pivot_upper_x - part_of_pivot_rear_x_left_left * sin_a1
-            # rod rear: centre about which it swings
-            pivot_rear_x_left = -part_of_pivot_rear_x_left_left_2 - link_length_5 * cos_a2_left_left
-            part_of_pivot_rear_y = pivot_upper_y - part_of_pivot_rear_x_left_left * cos_a1
-            pivot_rear_y_left = link_length_5 * sin_a2_left_left - part_of_pivot_rear_y
-            centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left) * link_length_2_by_link_length_3
-            centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left) * link_length_2_by_link_length_3
             type2_arms_aligned_left = part_of_type2_arms_aligned * (
                 (y - centre_2_y_left) * rod_1_x - (x - centre_2_x_left) * rod_1_y
             )
             refusal_left_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
-            # rod rear: centre about which it swings
-            pivot_rear_x_right = -part_of_pivot_rear_x_left_left_2 - link_length_5 * cos_a2_left_right
-            pivot_rear_y_right = link_length_5 * sin_a2_left_right - part_of_pivot_rear_y
-            centre_2_x_right = (
-                -pivot_rear_y_right if swap_xy else -pivot_rear_x_right
-            ) * link_length_2_by_link_length_3
-            centre_2_y_right = (
-                -pivot_rear_x_right if swap_xy else -pivot_rear_y_right
-            ) * link_length_2_by_link_length_3
             type2_arms_aligned_right = part_of_type2_arms_aligned * (
                 (y - centre_2_y_right) * rod_1_x - (x - centre_2_x_right) * rod_1_y
             )
@@ -188,35 +191,32 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if effective_a2 > link_length_5_times_shortest_link and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
-            pivot_upper_y = -link_length_1 * cos_a1
+            part_of_scaled_pivot_rear_x = part_of_scaled_pivot_rear_y_left_left * sin_a1
+            # rod rear: centre about which it swings
+            scaled_pivot_rear_x_left = part_of_scaled_pivot_rear_x - part_of_scaled_pivot_rear_y_2 * cos_a2_right_left
+            part_of_scaled_pivot_rear_y = part_of_scaled_pivot_rear_y_left_left * cos_a1
+            # rod rear: centre about which it swings
+            scaled_pivot_rear_x_right = part_of_scaled_pivot_rear_x - part_of_scaled_pivot_rear_y_2 * cos_a2_right_right
             if swap_xy:
-                centre_1_x = pivot_upper_y
+                centre_1_x = -link_length_1 * cos_a1
                 centre_1_y = pivot_upper_x
+                centre_2_x_left = -(part_of_scaled_pivot_rear_y + part_of_scaled_pivot_rear_y_2 * sin_a2_right_left)
+                centre_2_y_left = -scaled_pivot_rear_x_left
+                centre_2_x_right = -(part_of_scaled_pivot_rear_y + part_of_scaled_pivot_rear_y_2 * sin_a2_right_right)
+                centre_2_y_right = -scaled_pivot_rear_x_right
             else:
                 centre_1_x = pivot_upper_x
-                centre_1_y = pivot_upper_y
+                centre_1_y = -link_length_1 * cos_a1
+                centre_2_x_left = -scaled_pivot_rear_x_left
+                centre_2_y_left = -(part_of_scaled_pivot_rear_y + part_of_scaled_pivot_rear_y_2 * sin_a2_right_left)
+                centre_2_x_right = -scaled_pivot_rear_x_right
+                centre_2_y_right = -(part_of_scaled_pivot_rear_y + part_of_scaled_pivot_rear_y_2 * sin_a2_right_right)
             rod_1_x = x - centre_1_x
             rod_1_y = y - centre_1_y
-            part_of_pivot_rear_x = pivot_upper_x - part_of_pivot_rear_x_left_left * sin_a1
-            # rod rear: centre about which it swings
-            pivot_rear_x_left = -part_of_pivot_rear_x - link_length_5 * cos_a2_right_left
-            part_of_pivot_rear_y = pivot_upper_y - part_of_pivot_rear_x_left_left * cos_a1
-            pivot_rear_y_left = link_length_5 * sin_a2_right_left - part_of_pivot_rear_y
-            centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left) * link_length_2_by_link_length_3
-            centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left) * link_length_2_by_link_length_3
             type2_arms_aligned_left = part_of_type2_arms_aligned * (
                 (y - centre_2_y_left) * rod_1_x - (x - centre_2_x_left) * rod_1_y
             )
             refusal_right_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
-            # rod rear: centre about which it swings
-            pivot_rear_x_right = -part_of_pivot_rear_x - link_length_5 * cos_a2_right_right
-            pivot_rear_y_right = link_length_5 * sin_a2_right_right - part_of_pivot_rear_y
-            centre_2_x_right = (
-                -pivot_rear_y_right if swap_xy else -pivot_rear_x_right
-            ) * link_length_2_by_link_length_3
-            centre_2_y_right = (
-                -pivot_rear_x_right if swap_xy else -pivot_rear_y_right
-            ) * link_length_2_by_link_length_3
             type2_arms_aligned_right = part_of_type2_arms_aligned * (
                 (y - centre_2_y_right) * rod_1_x - (x - centre_2_x_right) * rod_1_y
             )
@@ -310,18 +310,18 @@ def unrolled(k: Constants) -> Unrolled:
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y_3 * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y_left_left * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
         if swap_xy:
             centre_1_x = -link_length_1 * cos_a1
             centre_1_y = pivot_upper_x
-            centre_2_x = -(part_of_scaled_pivot_rear_y_3 * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2)
+            centre_2_x = -(part_of_scaled_pivot_rear_y_left_left * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2)
             centre_2_y = -scaled_pivot_rear_x
         else:
             centre_1_x = pivot_upper_x
             centre_1_y = -link_length_1 * cos_a1
             centre_2_x = -scaled_pivot_rear_x
-            centre_2_y = -(part_of_scaled_pivot_rear_y_3 * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2)
+            centre_2_y = -(part_of_scaled_pivot_rear_y_left_left * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2)
         type2_arms_aligned = (
             (x - centre_1_x) * (y - centre_2_y) - (y - centre_1_y) * (x - centre_2_x)
         ) * part_of_type2_arms_aligned

@@ -38,6 +38,8 @@ def unrolled(k: Constants) -> Unrolled:
     part_of_radicand_a2_5 = 0.5 * root_of_3 * sin_rail_angle * sin_rail_angle
     part_of_middle_a2 = 0.5 * root_of_3 * sin_rail_angle
     root_of_3_times_half_by_arm_length_2 = 0.5 * root_of_3 / arm_length
+    one_minus_cos_rail_angle_squared = 1.0 - cos_rail_angle_squared
+    part_of_radicand_a2_6 = 1.0 - sin_rail_angle_squared_times_1_by_4
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -46,11 +48,11 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
-        z_minus_cos_rail_angle_squared_times_z = z - z * cos_rail_angle_squared
+        one_minus_cos_rail_angle_squared_times_z = one_minus_cos_rail_angle_squared * z
         # quadratic equation for a1: rod 1
         radicand_a1 = (
             arm_length_squared
-            + (part_of_radicand_a1 * span_1_x - z_minus_cos_rail_angle_squared_times_z) * z
+            + (part_of_radicand_a1 * span_1_x - one_minus_cos_rail_angle_squared_times_z) * z
             - y * y
             - one_minus_sin_rail_angle_squared * span_1_x * span_1_x
         )
@@ -63,13 +65,15 @@ def unrolled(k: Constants) -> Unrolled:
             root_of_radicand_a1 = 0.0
         span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = part_of_span_2_y + y
-        part_of_radicand_a2_6 = z_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
-        part_of_radicand_a2_7 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
+        part_of_radicand_a2_7 = (
+            one_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
+        )
+        part_of_radicand_a2_6_times_span_2_x = part_of_radicand_a2_6 * span_2_x
         # quadratic equation for a2: rod 2
         radicand_a2 = (
             arm_length_squared
-            + (-part_of_radicand_a2_7 - part_of_radicand_a2_5 * span_2_y) * span_2_x
-            + (part_of_radicand_a2_4 * span_2_y - part_of_radicand_a2_6) * z
+            + (-part_of_radicand_a2_6_times_span_2_x - part_of_radicand_a2_5 * span_2_y) * span_2_x
+            + (part_of_radicand_a2_4 * span_2_y - part_of_radicand_a2_7) * z
             - part_of_radicand_a2_3 * span_2_y * span_2_y
         )
         if radicand_a2 > 0.0:
@@ -83,8 +87,8 @@ def unrolled(k: Constants) -> Unrolled:
         # quadratic equation for a3: rod 3
         radicand_a3 = (
             arm_length_squared
-            + (part_of_radicand_a2_5 * span_3_y - part_of_radicand_a2_7) * span_2_x
-            + (-part_of_radicand_a2_6 - part_of_radicand_a2_4 * span_3_y) * z
+            + (part_of_radicand_a2_5 * span_3_y - part_of_radicand_a2_6_times_span_2_x) * span_2_x
+            + (-part_of_radicand_a2_7 - part_of_radicand_a2_4 * span_3_y) * z
             - part_of_radicand_a2_3 * span_3_y * span_3_y
         )
         if radicand_a3 > 0.0:
@@ -251,13 +255,13 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = part_of_span_2_y + y
-        part_of_radicand_a2_6 = z_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
-        part_of_radicand_a2_7 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
+        part_of_radicand_a2_7 = z_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
+        part_of_radicand_a2_8 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
         # quadratic equation for a2: rod 2
         radicand_a2 = (
             arm_length_squared
-            + (-part_of_radicand_a2_7 - part_of_radicand_a2_5 * span_2_y) * span_2_x
-            + (part_of_radicand_a2_4 * span_2_y - part_of_radicand_a2_6) * z
+            + (-part_of_radicand_a2_8 - part_of_radicand_a2_5 * span_2_y) * span_2_x
+            + (part_of_radicand_a2_4 * span_2_y - part_of_radicand_a2_7) * z
             - part_of_radicand_a2_3 * span_2_y * span_2_y
         )
         # rod 2 cannot reach
@@ -267,8 +271,8 @@ def unrolled(k: Constants) -> Unrolled:
         # quadratic equation for a3: rod 3
         radicand_a3 = (
             arm_length_squared
-            + (part_of_radicand_a2_5 * span_3_y - part_of_radicand_a2_7) * span_2_x
-            + (-part_of_radicand_a2_6 - part_of_radicand_a2_4 * span_3_y) * z
+            + (part_of_radicand_a2_5 * span_3_y - part_of_radicand_a2_8) * span_2_x
+            + (-part_of_radicand_a2_7 - part_of_radicand_a2_4 * span_3_y) * z
             - part_of_radicand_a2_3 * span_3_y * span_3_y
         )
         # rod 3 cannot reach

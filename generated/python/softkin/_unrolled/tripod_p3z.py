@@ -74,20 +74,19 @@ def unrolled(k: Constants) -> Unrolled:
         part_of_type2_rods_coplanar_above_above_above_2 = (z - a1) * part_of_type2_rods_coplanar_above_above_above
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
-        a3 = root_of_radicand_a3 + z
-        rod_3_z = z - a3
-        rod_2_y_times_rod_3_z_above = rod_2_y * rod_3_z
         a2 = root_of_radicand_a2 + z
         rod_2_z = z - a2
         rod_2_z_above_times_rod_3_y = rod_2_z * rod_3_y
-        rod_2_z_above_times_rod_3_x = rod_2_z * rod_3_x
+        a3 = root_of_radicand_a3 + z
+        rod_3_z = z - a3
+        rod_2_y_times_rod_3_z_above = rod_2_y * rod_3_z
         rod_2_x_times_rod_3_z_above = rod_2_x * rod_3_z
+        rod_2_z_above_times_rod_3_x = rod_2_z * rod_3_x
         part_of_type2_rods_coplanar_above_above_above_3 = (
-            rod_1_x * (rod_2_y_times_rod_3_z_above - rod_2_z_above_times_rod_3_y)
-            + (rod_2_z_above_times_rod_3_x - rod_2_x_times_rod_3_z_above) * rod_1_y
-        )
+            rod_2_z_above_times_rod_3_y - rod_2_y_times_rod_3_z_above
+        ) * rod_1_x + rod_1_y * (rod_2_x_times_rod_3_z_above - rod_2_z_above_times_rod_3_x)
         type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_above_above_above_2 + part_of_type2_rods_coplanar_above_above_above_3
+            part_of_type2_rods_coplanar_above_above_above_2 - part_of_type2_rods_coplanar_above_above_above_3
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -132,9 +131,9 @@ def unrolled(k: Constants) -> Unrolled:
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         a1 = z - root_of_radicand_a1
         part_of_type2_rods_coplanar_below_above_above = (z - a1) * part_of_type2_rods_coplanar_above_above_above
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_below_above_above
-        )
+        type2_rods_coplanar = (
+            part_of_type2_rods_coplanar_below_above_above - part_of_type2_rods_coplanar_above_above_above_3
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_below = a1 + offset_a1

@@ -120,15 +120,15 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
+        cos_swing_a1_times_span_1_x = span_1_x * cos_swing_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) / divisor_of_cos_a1
         sin_swing_a1_outward_times_span_1_z = span_1_z * sin_swing_a1
-        cos_swing_a1_times_span_1_x = span_1_x * cos_swing_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (cos_swing_a1_times_span_1_x - sin_swing_a1_outward_times_span_1_z) / divisor_a1
         rod_1_x = span_1_x + arm_length_1 * cos_a1
-        sin_swing_a1_outward_times_span_1_x = span_1_x * sin_swing_a1
         cos_swing_a1_times_span_1_z = span_1_z * cos_swing_a1
+        sin_swing_a1_outward_times_span_1_x = span_1_x * sin_swing_a1
         sin_a1 = (cos_swing_a1_times_span_1_z + sin_swing_a1_outward_times_span_1_x) / divisor_a1
         rod_1_z = span_1_z + arm_length_1 * sin_a1
         along_a2_times_cos_swing_a2 = along_a2 * cos_swing_a2
