@@ -29,7 +29,6 @@ from derive.ir.symbols import (
 from derive.ir.verify import BrokenProgram
 from derive.optimize.angle_addition import with_added_angles
 from derive.optimize.directions import plain_directions
-from derive.optimize.negation import without_minus
 from derive.optimize.simplify import shorter
 from derive.optimize.without_periods import angles_modulo_turns
 from tests.unit.answers import same, values
@@ -222,17 +221,6 @@ def test_turns_count_wherever_more_than_a_sine_or_the_nearest_turn_is_taken() ->
     assert angles_modulo_turns(of(*bound, outputs=(other,))) == {angle}
 
 
-def test_the_opposite_direction_is_half_a_turn_away() -> None:
-    lets = (Let(C1, -X * U - Y * V), Let(S1, -X * V - Y))
-    program = of(*lets, axis(AXIS1, S1, C1), outputs=(AXIS1,))
-    found = values(without_minus(program))
-    assert found["minus_cos_q1"] == X * U + Y * V and found["minus_sin_q1"] == X * V + Y
-    assert found["axis_a1"] == NearestPeriod(A + 180 + Atan2(real("minus_sin_q1"), real("minus_cos_q1")) / DEGREE, N)
-    same(program, without_minus(program))
-    read = of(*lets, axis(AXIS1, S1, C1), outputs=(AXIS1, S1))
-    assert without_minus(read) == read
-
-
 def test_a_chain_of_negatives_is_bound_throughout() -> None:
     program = of(Let(U, -X - Y), Let(V, -U), Let(T, -V), Let(R, T * T + X), outputs=(R,))
     assert shorter(program).inputs == (X, Y)
@@ -268,9 +256,3 @@ def test_half_an_angle_counts_turns_though_its_sines_cancel() -> None:
     with pytest.raises(BrokenProgram):
         of(Let(angle, Atan2(X, Y)), Let(R, halves[angle]), outputs=(R,))
     assert angles_modulo_turns(of(Let(angle, Atan2(X, Y)), Let(R, halves[Wrap(angle)]), outputs=(R,))) == set()
-
-
-def test_an_axis_without_a_turn_of_its_own_is_not_turned_round() -> None:
-    lets = (Let(C1, -X * U - Y * V), Let(S1, -X * V - Y))
-    program = of(*lets, Let(AXIS1, Wrap(Atan2(S1, C1)) / DEGREE), outputs=(AXIS1,))
-    assert without_minus(program) == program

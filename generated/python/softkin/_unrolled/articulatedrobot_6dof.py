@@ -31,7 +31,6 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a6, rounding_q1, single_a1, single_a2 = k.offset_a6, k.rounding_q1, k.single_a1, k.single_a2
     single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
     angle_of_a3_by_effective_q3 = arctan2(d4_by_effective_q3 + 0.0, a3_by_effective_q3 + 0.0)
-    offset_a6_plus_180 = 180.0 + offset_a6
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
     def branches(
@@ -118,8 +117,8 @@ def unrolled(k: Constants) -> Unrolled:
         if radius_q4 > 0.1:
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
-            minus_scaled_r21_from_q1234_down = r12_from_q1 * cos_q23 + r32 * sin_q23
-            minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23 + r31 * sin_q23)
+            scaled_r21_from_q1234_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
+            scaled_r22_from_q1234_down = r11_from_q1 * cos_q23 + r31 * sin_q23
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
             cos_of_reference_a4 = cos(reference_a4)
@@ -139,29 +138,25 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_x_q4_up = cos_of_reference_a4
                 direction_y_q4_up = sin_of_reference_a4
             r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
-            minus_scaled_r21_from_q1234_down = direction_x_q4_down * r21_from_q1 + direction_y_q4_down * r11_from_q123
+            scaled_r21_from_q1234_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r11_from_q123
             r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
-            minus_scaled_r22_from_q1234_down = direction_x_q4_down * r22_from_q1 + direction_y_q4_down * r12_from_q123
+            scaled_r22_from_q1234_down = -direction_x_q4_down * r22_from_q1 - direction_y_q4_down * r12_from_q123
             if radius_q4 > 1e-11:
-                minus_scaled_r21_from_q1234_up = -minus_scaled_r21_from_q1234_down
-                minus_scaled_r22_from_q1234_up = -minus_scaled_r22_from_q1234_down
+                scaled_r21_from_q1234_up = -scaled_r21_from_q1234_down
+                scaled_r22_from_q1234_up = -scaled_r22_from_q1234_down
             else:
-                minus_scaled_r21_from_q1234_up = direction_x_q4_up * r21_from_q1 + direction_y_q4_up * r11_from_q123
-                minus_scaled_r22_from_q1234_up = direction_x_q4_up * r22_from_q1 + direction_y_q4_up * r12_from_q123
+                scaled_r21_from_q1234_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r11_from_q123
+                scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
         axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         part_of_axis_a5_front_down_down = arctan2(radius_q4, cos_q5) * RADIAN
-        axis_a6_front_down_down = (
-            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down) * RADIAN
-        )
+        axis_a6_front_down_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
         if radius_q4 > 1e-11:
             axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
             axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
         else:
             axis_a4_front_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-            axis_a6_front_down_up = (
-                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
-            )
+            axis_a6_front_down_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
         axis_a2_front_up = offset_a2 + angle_q2_up * RADIAN
         angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3 * RADIAN
@@ -176,8 +171,8 @@ def unrolled(k: Constants) -> Unrolled:
         if radius_q4 > 0.1:
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
-            minus_scaled_r21_from_q1234_down = r12_from_q1 * cos_q23 + r32 * sin_q23
-            minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23 + r31 * sin_q23)
+            scaled_r21_from_q1234_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
+            scaled_r22_from_q1234_down = r11_from_q1 * cos_q23 + r31 * sin_q23
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
             cos_of_reference_a4 = cos(reference_a4)
@@ -197,29 +192,25 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_x_q4_up = cos_of_reference_a4
                 direction_y_q4_up = sin_of_reference_a4
             r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
-            minus_scaled_r21_from_q1234_down = direction_x_q4_down * r21_from_q1 + direction_y_q4_down * r11_from_q123
+            scaled_r21_from_q1234_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r11_from_q123
             r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
-            minus_scaled_r22_from_q1234_down = direction_x_q4_down * r22_from_q1 + direction_y_q4_down * r12_from_q123
+            scaled_r22_from_q1234_down = -direction_x_q4_down * r22_from_q1 - direction_y_q4_down * r12_from_q123
             if radius_q4 > 1e-11:
-                minus_scaled_r21_from_q1234_up = -minus_scaled_r21_from_q1234_down
-                minus_scaled_r22_from_q1234_up = -minus_scaled_r22_from_q1234_down
+                scaled_r21_from_q1234_up = -scaled_r21_from_q1234_down
+                scaled_r22_from_q1234_up = -scaled_r22_from_q1234_down
             else:
-                minus_scaled_r21_from_q1234_up = direction_x_q4_up * r21_from_q1 + direction_y_q4_up * r11_from_q123
-                minus_scaled_r22_from_q1234_up = direction_x_q4_up * r22_from_q1 + direction_y_q4_up * r12_from_q123
+                scaled_r21_from_q1234_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r11_from_q123
+                scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
         axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         part_of_axis_a5_front_up_down = arctan2(radius_q4, cos_q5) * RADIAN
-        axis_a6_front_up_down = (
-            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down) * RADIAN
-        )
+        axis_a6_front_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
         if radius_q4 > 1e-11:
             axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
             axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
         else:
             axis_a4_front_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-            axis_a6_front_up_up = (
-                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
-            )
+            axis_a6_front_up_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
         # distance that the remaining links must span
@@ -264,8 +255,8 @@ def unrolled(k: Constants) -> Unrolled:
         if radius_q4 > 0.1:
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
-            minus_scaled_r21_from_q1234_down = r12_from_q1 * cos_q23 + r32 * sin_q23
-            minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23 + r31 * sin_q23)
+            scaled_r21_from_q1234_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
+            scaled_r22_from_q1234_down = r11_from_q1 * cos_q23 + r31 * sin_q23
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
             cos_of_reference_a4 = cos(reference_a4)
@@ -285,29 +276,25 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_x_q4_up = cos_of_reference_a4
                 direction_y_q4_up = sin_of_reference_a4
             r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
-            minus_scaled_r21_from_q1234_down = direction_x_q4_down * r21_from_q1 + direction_y_q4_down * r11_from_q123
+            scaled_r21_from_q1234_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r11_from_q123
             r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
-            minus_scaled_r22_from_q1234_down = direction_x_q4_down * r22_from_q1 + direction_y_q4_down * r12_from_q123
+            scaled_r22_from_q1234_down = -direction_x_q4_down * r22_from_q1 - direction_y_q4_down * r12_from_q123
             if radius_q4 > 1e-11:
-                minus_scaled_r21_from_q1234_up = -minus_scaled_r21_from_q1234_down
-                minus_scaled_r22_from_q1234_up = -minus_scaled_r22_from_q1234_down
+                scaled_r21_from_q1234_up = -scaled_r21_from_q1234_down
+                scaled_r22_from_q1234_up = -scaled_r22_from_q1234_down
             else:
-                minus_scaled_r21_from_q1234_up = direction_x_q4_up * r21_from_q1 + direction_y_q4_up * r11_from_q123
-                minus_scaled_r22_from_q1234_up = direction_x_q4_up * r22_from_q1 + direction_y_q4_up * r12_from_q123
+                scaled_r21_from_q1234_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r11_from_q123
+                scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
         axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         part_of_axis_a5_back_down_down = arctan2(radius_q4, cos_q5) * RADIAN
-        axis_a6_back_down_down = (
-            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down) * RADIAN
-        )
+        axis_a6_back_down_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
         if radius_q4 > 1e-11:
             axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
             axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
         else:
             axis_a4_back_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-            axis_a6_back_down_up = (
-                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
-            )
+            axis_a6_back_down_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
         axis_a2_back_up = offset_a2 + angle_q2_up * RADIAN
         angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3 * RADIAN
@@ -322,8 +309,8 @@ def unrolled(k: Constants) -> Unrolled:
         if radius_q4 > 0.1:
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
-            minus_scaled_r21_from_q1234_down = r12_from_q1 * cos_q23 + r32 * sin_q23
-            minus_scaled_r22_from_q1234_down = -(r11_from_q1 * cos_q23 + r31 * sin_q23)
+            scaled_r21_from_q1234_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
+            scaled_r22_from_q1234_down = r11_from_q1 * cos_q23 + r31 * sin_q23
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
             cos_of_reference_a4 = cos(reference_a4)
@@ -343,29 +330,25 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_x_q4_up = cos_of_reference_a4
                 direction_y_q4_up = sin_of_reference_a4
             r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
-            minus_scaled_r21_from_q1234_down = direction_x_q4_down * r21_from_q1 + direction_y_q4_down * r11_from_q123
+            scaled_r21_from_q1234_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r11_from_q123
             r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
-            minus_scaled_r22_from_q1234_down = direction_x_q4_down * r22_from_q1 + direction_y_q4_down * r12_from_q123
+            scaled_r22_from_q1234_down = -direction_x_q4_down * r22_from_q1 - direction_y_q4_down * r12_from_q123
             if radius_q4 > 1e-11:
-                minus_scaled_r21_from_q1234_up = -minus_scaled_r21_from_q1234_down
-                minus_scaled_r22_from_q1234_up = -minus_scaled_r22_from_q1234_down
+                scaled_r21_from_q1234_up = -scaled_r21_from_q1234_down
+                scaled_r22_from_q1234_up = -scaled_r22_from_q1234_down
             else:
-                minus_scaled_r21_from_q1234_up = direction_x_q4_up * r21_from_q1 + direction_y_q4_up * r11_from_q123
-                minus_scaled_r22_from_q1234_up = direction_x_q4_up * r22_from_q1 + direction_y_q4_up * r12_from_q123
+                scaled_r21_from_q1234_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r11_from_q123
+                scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
         axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         part_of_axis_a5_back_up_down = arctan2(radius_q4, cos_q5) * RADIAN
-        axis_a6_back_up_down = (
-            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down) * RADIAN
-        )
+        axis_a6_back_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
         if radius_q4 > 1e-11:
             axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
             axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
         else:
             axis_a4_back_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-            axis_a6_back_up_up = (
-                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
-            )
+            axis_a6_back_up_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
         return (
             (
                 axis_a1_front,
@@ -517,10 +500,10 @@ def unrolled(k: Constants) -> Unrolled:
         if radius_q4 > 0.1:
             direction_x_q4 = -sigma_hand * r13_from_q123
             direction_y_q4 = sigma_hand * r23_from_q1
-            minus_scaled_r21_from_q1234 = sigma_hand * (
+            scaled_r21_from_q1234 = -sigma_hand * (
                 (r12 * cos_q1_before_q1_for_q3 + r22 * sin_q1_before_q1_for_q3) * cos_q23 + r32 * sin_q23
             )
-            minus_scaled_r22_from_q1234 = -sigma_hand * (
+            scaled_r22_from_q1234 = sigma_hand * (
                 (r11 * cos_q1_before_q1_for_q3 + r21 * sin_q1_before_q1_for_q3) * cos_q23 + r31 * sin_q23
             )
         else:
@@ -534,13 +517,15 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_x_q4 = cos(reference_a4)
                 direction_y_q4 = sin(reference_a4)
             r11_from_q123 = r31 * cos_q23 - (r11 * cos_q1_before_q1_for_q3 + r21 * sin_q1_before_q1_for_q3) * sin_q23
-            minus_scaled_r21_from_q1234 = (
-                r21 * cos_q1_before_q1_for_q3 - r11 * sin_q1_before_q1_for_q3
-            ) * direction_x_q4 + direction_y_q4 * r11_from_q123
+            scaled_r21_from_q1234 = (
+                -(r21 * cos_q1_before_q1_for_q3 - r11 * sin_q1_before_q1_for_q3) * direction_x_q4
+                - direction_y_q4 * r11_from_q123
+            )
             r12_from_q123 = r32 * cos_q23 - (r12 * cos_q1_before_q1_for_q3 + r22 * sin_q1_before_q1_for_q3) * sin_q23
-            minus_scaled_r22_from_q1234 = (
-                r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3
-            ) * direction_x_q4 + direction_y_q4 * r12_from_q123
+            scaled_r22_from_q1234 = (
+                -(r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3) * direction_x_q4
+                - direction_y_q4 * r12_from_q123
+            )
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         if no_offsets:
             return (
@@ -549,7 +534,7 @@ def unrolled(k: Constants) -> Unrolled:
                 angle_q3 * RADIAN,
                 arctan2(direction_y_q4, direction_x_q4) * RADIAN,
                 arctan2(sigma_hand * radius_q4, cos_q5) * RADIAN,
-                180.0 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234) * RADIAN,
+                arctan2(scaled_r21_from_q1234, scaled_r22_from_q1234) * RADIAN,
             )
         return (
             offset_a1 + arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
@@ -557,7 +542,7 @@ def unrolled(k: Constants) -> Unrolled:
             offset_a3 + angle_q3 * RADIAN,
             offset_a4 + arctan2(direction_y_q4, direction_x_q4) * RADIAN,
             offset_a5 + arctan2(sigma_hand * radius_q4, cos_q5) * RADIAN,
-            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234) * RADIAN,
+            offset_a6 + arctan2(scaled_r21_from_q1234, scaled_r22_from_q1234) * RADIAN,
         )
 
     def finish(found: tuple[Reals | int, ...], reference: Reals) -> tuple[Reals | int, ...]:
