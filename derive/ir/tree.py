@@ -8,12 +8,13 @@ else:
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.ir.program import Statement, binds
+from derive.ir.program import Statement, binds, expressions, reads
+from derive.ir.symbols import names_in
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class If:
 Item = Statement | If
 
 
-def statements_in(items: Sequence[Item]) -> Iterator[Statement]:
+def statements_in(items: Iterable[Item]) -> Iterator[Statement]:
     """The statements of a tree, those on the sides of choices too."""
     for item in items:
         if isinstance(item, If):
@@ -39,6 +40,45 @@ def statements_in(items: Sequence[Item]) -> Iterator[Statement]:
             yield item
 
 
-def bound_in(items: Sequence[Item]) -> tuple[sp.Symbol, ...]:
+def expressions_in(items: Iterable[Item]) -> Iterator[sp.Basic]:
+    """All expressions of a tree, the conditions of choices among them, in order."""
+    for item in items:
+        if isinstance(item, If):
+            yield item.condition
+            yield from expressions_in((*item.holds, *item.fails))
+        else:
+            yield from expressions(item)
+
+
+def bindings_in(items: Iterable[Item]) -> Iterator[sp.Symbol]:
+    """The names that a tree binds, as often as it does, in order."""
+    return (name for s in statements_in(items) for name in binds(s))
+
+
+def bound_in(items: Iterable[Item]) -> tuple[sp.Symbol, ...]:
     """The names that a tree binds, each once, in order."""
-    return tuple(dict.fromkeys(name for s in statements_in(items) for name in binds(s)))
+    return tuple(dict.fromkeys(bindings_in(items)))
+
+
+def read_in(items: Iterable[Item]) -> set[sp.Symbol]:
+    """The names that a tree reads, whoever binds them."""
+    found = set[sp.Symbol]()
+    for item in items:
+        if isinstance(item, If):
+            found |= names_in(item.condition) | read_in((*item.holds, *item.fails))
+        else:
+            found |= reads(item).union(*map(names_in, expressions(item)))
+    return found
+
+
+def given_to(items: Iterable[Item]) -> set[sp.Symbol]:
+    """The names that a tree reads and does not bind itself before."""
+    found, bound = set[sp.Symbol](), set[sp.Symbol]()
+    for item in items:
+        if isinstance(item, If):
+            found |= (names_in(item.condition) | given_to(item.holds) | given_to(item.fails)) - bound
+            bound |= set(item.names)
+        else:
+            found |= reads(item) - bound
+            bound |= set(binds(item))
+    return found

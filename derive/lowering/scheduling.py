@@ -27,13 +27,12 @@ from derive.ir.program import (
     Program,
     Statement,
     binds,
-    expressions,
     reads,
 )
 from derive.ir.symbols import (
     names_in,
 )
-from derive.ir.tree import If, Item
+from derive.ir.tree import If, Item, read_in
 from derive.lowering.decided import decided
 from derive.lowering.stretches import follows, gathered
 
@@ -114,7 +113,7 @@ def without_unused(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[I
     for place, item in enumerate(items):
         if isinstance(item, If):
             needed = later.union(*(_reads_where(other, item.condition) for other in items[place + 1 :]))
-            read = needed.union(*(_reads_somewhere(inner) for inner in item.holds))
+            read = needed.union(read_in(item.holds))
             kept = tuple(i for i in item.holds if not isinstance(i, Let) or i.name in read)
             item = replace(item, holds=kept or item.holds)  # a side has a statement
         found.append(item)
@@ -124,8 +123,8 @@ def without_unused(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[I
 def _reads_where(item: Item, condition: sp.Basic) -> set[sp.Symbol]:
     """What a statement reads where a condition holds."""
     if isinstance(item, If) and (item.condition == condition or follows(item.condition, condition, sp.true)):
-        return set(names_in(item.condition)).union(*map(_reads_somewhere, item.holds))
-    return _reads_somewhere(item)
+        return _reads_always(item)
+    return read_in((item,))
 
 
 def _sunk(items: Sequence[Item], later: set[sp.Symbol]) -> tuple[Item, ...]:
@@ -143,22 +142,14 @@ def _sunk(items: Sequence[Item], later: set[sp.Symbol]) -> tuple[Item, ...]:
 
 def _reads_always(item: Item) -> set[sp.Symbol]:
     """What a statement reads, or a choice to decide and on its first side."""
-    if isinstance(item, If):
-        return set(names_in(item.condition)).union(*map(_reads_somewhere, item.holds))
-    return {s for value in expressions(item) for s in names_in(value)} | set(reads(item))
+    return read_in(item.holds) | names_in(item.condition) if isinstance(item, If) else read_in((item,))
 
 
 def _with(arms: If, let: Let) -> If:
     """The choice with a statement in front of its second side, if that reads it."""
-    if not any(let.name in _reads_somewhere(item) for item in arms.fails):
+    if let.name not in read_in(arms.fails):
         return arms
     return replace(arms, fails=(let, *arms.fails))
-
-
-def _reads_somewhere(item: Item) -> set[sp.Symbol]:
-    if isinstance(item, If):
-        return _reads_always(item).union(*(_reads_somewhere(inner) for inner in (*item.holds, *item.fails)))
-    return _reads_always(item)
 
 
 def _in_arms(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
@@ -170,6 +161,6 @@ def _in_arms(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ..
             stretch.insert(0, statement)
             continue
         found[:0] = [statement, *gathered(stretch, later)]
-        later = later.union(*(names_in(let.value) for let in stretch), _reads_somewhere(statement))
+        later = later.union(*(names_in(let.value) for let in stretch), read_in((statement,)))
         stretch = []
     return (*gathered(stretch, later), *found)

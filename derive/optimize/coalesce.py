@@ -9,7 +9,7 @@ it drops.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 
@@ -17,9 +17,6 @@ import sympy as sp
 
 from derive.ir.passes import renamed
 from derive.ir.program import (
-    binds,
-    expressions,
-    reads,
     rewritten,
 )
 from derive.ir.symbols import (
@@ -28,7 +25,7 @@ from derive.ir.symbols import (
     symbols_of,
     without_words,
 )
-from derive.ir.tree import If, Item
+from derive.ir.tree import If, Item, bindings_in, read_in
 
 
 def coalesced(
@@ -36,7 +33,7 @@ def coalesced(
 ) -> tuple[tuple[Item, ...], Mapping[sp.Symbol, sp.Symbol]]:
     """The statements with shorter names, and what every name that is wanted behind them is called now."""
     lives = _lives(items, wanted)
-    fixed = {s.name for item in items for s in _read(item)} - {name.name for name in lives}
+    fixed = {s.name for s in read_in(items)} - {name.name for name in lives}
     by_stem: dict[str, list[sp.Symbol]] = {}
     for name in lives:
         by_stem.setdefault(without_words(name.name, signs)[0], []).append(name)
@@ -48,9 +45,9 @@ def coalesced(
 
 def _lives(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> dict[sp.Symbol, tuple[int, int]]:
     """Of every name that is bound: the places of the first statement and of the last that it is in."""
-    last = {s: place for place, item in enumerate(items) for s in _read(item)}
+    last = {s: place for place, item in enumerate(items) for s in read_in((item,))}
     last |= {s: len(items) for value in wanted for s in symbols_of(value)}
-    first = {name: place for place, item in reversed(list(enumerate(items))) for name in _bound(item)}
+    first = {name: place for place, item in reversed(list(enumerate(items))) for name in bindings_in((item,))}
     return {
         name: (place, max(place, last.get(name, place))) for name, place in sorted(first.items(), key=lambda e: e[1])
     }
@@ -77,21 +74,6 @@ def _shortest(
 def _with_last_words(name: sp.Symbol, signs: Sequence[Sign], kept: int) -> sp.Symbol:
     stem, found = without_words(name.name, signs)
     return called("_".join([stem, *found[max(0, len(found) - kept) :]]), name)
-
-
-def _bound(item: Item) -> Iterator[sp.Symbol]:
-    """The names that a statement binds, wherever in it."""
-    if isinstance(item, If):
-        for inner in (*item.holds, *item.fails):
-            yield from _bound(inner)
-    else:
-        yield from binds(item)
-
-
-def _read(item: Item) -> set[sp.Symbol]:
-    if isinstance(item, If):
-        return symbols_of(item.condition).union(*map(_read, (*item.holds, *item.fails)))
-    return {s for e in expressions(item) for s in symbols_of(e)} | reads(item)
 
 
 def _renamed(item: Item, names: Mapping[sp.Symbol, sp.Symbol]) -> Item:

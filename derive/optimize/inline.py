@@ -14,7 +14,7 @@ name, and so does a choice.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import sympy as sp
@@ -31,7 +31,7 @@ from derive.ir.program import (
     expressions,
     rewritten,
 )
-from derive.ir.tree import If, Item
+from derive.ir.tree import If, Item, bindings_in, expressions_in
 
 LONGEST = 5
 """A value that reads more names than this keeps its own."""
@@ -61,10 +61,10 @@ def squares_where_read(program: Program) -> Program:
 
 def inlined(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[tuple[Item, ...], Mapping[sp.Basic, sp.Basic]]:
     """The statements without such names, and what stands for them in what is wanted."""
-    on_a_path, everywhere, bound = _read(items), Counter[sp.Basic](), Counter(_bound(items))
+    on_a_path, everywhere, bound = _read(items), Counter[sp.Basic](), Counter(bindings_in(items))
     for value in wanted:
         on_a_path += _written(value)
-    for value in (*wanted, *_values(items)):
+    for value in (*wanted, *expressions_in(items)):
         everywhere += _written(value)
     once = {n for n in bound if bound[n] == 1 and on_a_path[n] == 1 and everywhere[n] <= 2}
     values: dict[sp.Basic, sp.Basic] = {}
@@ -101,25 +101,6 @@ def _read(items: Sequence[Item]) -> Counter[sp.Basic]:
             for value in expressions(item):
                 found += _written(value)
     return found
-
-
-def _values(items: Sequence[Item]) -> Iterator[sp.Basic]:
-    """All expressions."""
-    for item in items:
-        if isinstance(item, If):
-            yield item.condition
-            yield from _values((*item.holds, *item.fails))
-        else:
-            yield from expressions(item)
-
-
-def _bound(items: Sequence[Item]) -> Iterator[sp.Symbol]:
-    """The names that are bound, as often as they are."""
-    for item in items:
-        if isinstance(item, If):
-            yield from _bound((*item.holds, *item.fails))
-        elif isinstance(item, Let):
-            yield item.name
 
 
 def _written(value: sp.Basic) -> Counter[sp.Basic]:

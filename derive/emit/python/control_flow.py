@@ -31,15 +31,13 @@ from derive.ir.primitives import (
 from derive.ir.program import (
     Let,
     Statement,
-    binds,
-    reads,
 )
 from derive.ir.symbols import (
     Flag,
     is_count,
     symbols_of,
 )
-from derive.ir.tree import If, Item
+from derive.ir.tree import If, Item, given_to, read_in
 
 
 def array_arm_lines(
@@ -67,7 +65,7 @@ def array_arm_lines(
     holds = [line for item in first for line in lines(item)]
     fails = [line for item in second for line in lines(item)]
     kinds = {
-        spelled(s.name): _kind(s) for s in sorted(_read(arms.fails) - set(constants), key=lambda s: spelled(s.name))
+        spelled(s.name): _kind(s) for s in sorted(given_to(arms.fails) - set(constants), key=lambda s: spelled(s.name))
     }
     function = _unused(f"elsewhere_{results[0]}", holds)
     return [
@@ -97,23 +95,12 @@ def _side(
         others = [i for i in items if i is not let]
         is_short = let is not None and (let.value.is_Symbol or let.value.is_number)
         is_short |= is_written_out and let is not None and not isinstance(let.value, NearestPeriod)
-        if let is not None and is_short and name not in _read_anywhere(others):
+        if let is not None and is_short and name not in read_in(others):
             items = others
             results.append(printer.value(name, let.value))
         else:
             results.append(spelled(name.name))
     return items, results
-
-
-def _read_anywhere(items: Sequence[Item]) -> set[sp.Symbol]:
-    """What statements read, whoever binds it."""
-    found = set[sp.Symbol]()
-    for item in items:
-        if isinstance(item, If):
-            found |= symbols_of(item.condition) | _read_anywhere(item.holds) | _read_anywhere(item.fails)
-        else:
-            found |= reads(item)
-    return found
 
 
 def _kind(name: sp.Symbol) -> str:
@@ -136,18 +123,6 @@ def fixed(body: Iterable[Statement], constants: Iterable[sp.Symbol]) -> set[sp.S
     for statement in body:
         if isinstance(statement, Let) and symbols_of(statement.value) <= found:
             found.add(statement.name)
-    return found
-
-
-def _read(items: Sequence[Item]) -> set[sp.Symbol]:
-    """What statements read that they do not bind."""
-    found, bound = set[sp.Symbol](), set[sp.Symbol]()
-    for item in items:
-        read = (
-            symbols_of(item.condition) | _read(item.holds) | _read(item.fails) if isinstance(item, If) else reads(item)
-        )
-        found |= read - bound
-        bound |= set(item.names if isinstance(item, If) else binds(item))
     return found
 
 
