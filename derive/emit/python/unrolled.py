@@ -45,7 +45,6 @@ from derive.optimize.angle_addition import with_added_angles
 from derive.optimize.coalesce import coalesced
 from derive.optimize.guards import guarded
 from derive.optimize.inline import inlined, squares_where_read
-from derive.optimize.known_projection import with_known_projections
 from derive.optimize.rotation_identities import with_rotation_identities
 from derive.optimize.without_periods import specialised, without_chosen_turns
 from derive.solver.folds import far_from_folds
@@ -111,7 +110,7 @@ def signs(kin: Kinematics) -> tuple[Sign, ...]:
 def _nearest(kin: Kinematics, program: Program) -> Program:
     """No turn is commanded; on plain numbers a sine costs little."""
     given = specialised(program, {j.turn: sp.Integer(0) for j in kin.period_joints})
-    return with_added_angles(with_known_projections(given), _constants(kin))
+    return with_added_angles(given, _constants(kin))
 
 
 def _trusted(kin: Kinematics) -> Program:
