@@ -18,7 +18,7 @@ from itertools import groupby
 
 import sympy as sp
 
-from derive.ir.graph import Graph, Node, Value
+from derive.ir.graph import Graph, Node, Value, reached
 from derive.ir.names import Names
 from derive.ir.passes import renamed
 from derive.ir.primitives import Select
@@ -129,14 +129,11 @@ class _Unrolling:
         return tuple(sorted(frozenset[int]().union(*(self._support_of(v.node) for v in values))))
 
     def _support_of(self, node: Node) -> frozenset[int]:
-        known = self._supports.get(node)
-        if known is None:
-            if node.is_leaf:
-                known = self._of_names.get(node.head, frozenset())
-            else:
-                known = frozenset[int]().union(*map(self._support_of, node.sources()))
-            self._supports[node] = known
-        return known
+        if node not in self._supports:
+            for inner in sorted(reached([node], self._supports.__contains__), key=lambda n: n.place):
+                own = self._of_names.get(inner.head, frozenset()) if inner.is_leaf else frozenset()
+                self._supports[inner] = own.union(*(self._supports[source] for source in inner.sources()))
+        return self._supports[node]
 
     def _slots_of(self, support: Sequence[int]) -> Iterator[tuple[int, Choice, Choice]]:
         """Each assignment of these signs, with the first slot that has it, and the number of that."""
