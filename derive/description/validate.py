@@ -50,6 +50,7 @@ def _problems(mechanism: Mechanism) -> Iterator[str]:
         yield from _parameter(parameter)
     for joint in mechanism.joints:
         yield from _joint(mechanism, joint)
+    yield from _held(mechanism)
     yield from _periods(mechanism)
     yield from _shape(mechanism)
     yield from _symbols(mechanism)
@@ -121,6 +122,17 @@ def _joint(mechanism: Mechanism, joint: Joint) -> Iterator[str]:
     motors = {other.motor for other in earlier} | _parameters(mechanism)
     yield from _unknown(f"coupling of joint {joint.name!r}", joint.coupling, motors, "the motor of an earlier joint")
     yield from _unknown(f"pitch of joint {joint.name!r}", joint.pitch, _parameters(mechanism), "a parameter")
+
+
+def _held(mechanism: Mechanism) -> Iterator[str]:
+    names = [j.name for j in mechanism.joints]
+    for joint in mechanism.held:
+        if joint.name not in names:
+            yield f"held names {joint.name!r}, which is no joint of this mechanism"
+        if joint.coupling != 0:
+            yield f"joint {joint.name!r} is held and geared to other axes: hold a joint that has a motor of its own"
+    if mechanism.held and mechanism.chain is None:
+        yield "held joints need a chain: of a closed loop every joint follows from the pose"
 
 
 def _periods(mechanism: Mechanism) -> Iterator[str]:
