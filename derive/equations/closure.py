@@ -153,7 +153,7 @@ def pose_closure(mechanism: Mechanism) -> Closure:
     if mechanism.chain is None:
         return _stated_closure(mechanism, {})
     if is_spatial(mechanism.chain) and mechanism.task.turning is not Turning.ABOUT_Z:
-        return _spatial_closure(mechanism, mechanism.chain, mechanism.solved_joints)
+        return _spatial_closure(mechanism, mechanism.chain, mechanism.solved_joints, mechanism.task.turning)
     pose = pose_of(mechanism.chain)
     closure = _position_closure(mechanism, pose.position)
     if mechanism.task.turning is Turning.NONE:
@@ -170,15 +170,19 @@ def pose_closure(mechanism: Mechanism) -> Closure:
 def closure_at(mechanism: Mechanism, known: Joint) -> Closure:
     """The closure of a commanded pose with one joint known."""
     assert mechanism.chain is not None
-    return _spatial_closure(mechanism, mechanism.chain, tuple(j for j in mechanism.joints if j != known))
+    moving = tuple(j for j in mechanism.joints if j != known)
+    return _spatial_closure(mechanism, mechanism.chain, moving, mechanism.task.turning)
 
 
-def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ...]) -> Closure:
-    """The closure of a spatial chain: its position equations are split here, its rotation is split by the solver."""
+def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ...], turning: Turning) -> Closure:
+    """The closure of a spatial chain: its position equations are split here, its rotation is split by the solver.
+
+    turning: the part of the commanded rotation that is known.
+    """
     angles, lengths = (tuple(j.symbol for j in moving if j.is_angle is kind) for kind in (True, False))
     unknowns = Unknowns(angles, lengths, all_angles(mechanism), signs_of(mechanism))
-    follows = mechanism.task.turning is not Turning.NONE
-    columns = (2,) if mechanism.task.turning is Turning.DIRECTION else (0, 1, 2)
+    follows = turning is not Turning.NONE
+    columns = (2,) if turning is Turning.DIRECTION else (0, 1, 2)
     commanded = Commanded(sp.Matrix(3, 3, ROTATION_ENTRIES), columns if follows else ())
     split = split_positions(chain, commanded, unknowns) if mechanism.task.position else Split(())
     pose = pose_of(chain)
@@ -217,7 +221,7 @@ def offset_closure(mechanism: Mechanism, unknown: tuple[Joint, ...]) -> Closure:
     ]
     seen = Chain(factors[: last + 1]) * Txyz(*entries)
     if is_spatial(mechanism.chain):
-        return replace(_spatial_closure(mechanism, seen, unknown), lets=tuple(lets))
+        return replace(_spatial_closure(mechanism, seen, unknown, Turning.NONE), lets=tuple(lets))
     pose = pose_of(seen)
     closure = _position_closure(mechanism, pose.position)
     return Closure(closure.equations, closure.arguments, tuple(lets), closure.plane)

@@ -13,7 +13,6 @@ from derive.description.mechanism import (
     Turning,
 )
 from derive.equations.axes import finite
-from derive.equations.chain_splits import is_spatial
 from derive.equations.choices import with_choices
 from derive.equations.closure import flange_rotation, heading_of
 from derive.equations.conditions import with_conditions
@@ -22,6 +21,7 @@ from derive.equations.pose_at_axes import (
     Forward,
 )
 from derive.equations.windows import windows
+from derive.geometry.frames import Motion
 from derive.geometry.pose import pose_of
 from derive.ir.passes import assemble, hoist
 from derive.ir.program import (
@@ -337,8 +337,10 @@ def _freedom(mechanism: Mechanism) -> Freedom:
     if mechanism.chain is None:
         return Freedom.ZERO
     joints = {j.symbol for j in mechanism.joints}
-    turns = [t for t in pose_of(mechanism.chain).turns if t.amount.free_symbols & joints]
-    return Freedom.ZERO if not turns else Freedom.THREE if is_spatial(mechanism.chain) else Freedom.ONE
+    turns = [t for t in pose_of(mechanism.chain).turns if t.motion is Motion.TURN]  # opposite ones have merged
+    if not any(t.amount.free_symbols & joints for t in turns):
+        return Freedom.ZERO
+    return Freedom.THREE if len({t.axis for t in turns}) > 1 else Freedom.ONE
 
 
 def _image_program(mechanism: Mechanism) -> Program:

@@ -197,6 +197,18 @@ HELD = {
 }
 
 OTHERS = {
+    "palletizer with both motors at the base": _machine(
+        "Palletizer",
+        (A1, A2, A3, A4),
+        Tz(HEIGHT) * Rz(A1) * Tx(PIVOT_X) * Ry(A2) * Tz(L2) * Ry(A3 - A2) * Tx(L3) * Ry(-A3) * Tx(L4) * Rz(A4),
+        (HEIGHT, PIVOT_X, L2, L3, L4),
+        TURNED,
+        (
+            branch("shoulder", PIVOT_X + L2 * sin(A2) + L3 * cos(A3) + L4, front=+1, back=-1),
+            branch("elbow", cos(A2 - A3), up=+1, down=-1),
+        ),
+        offset_interface=True,
+    ),
     "numbers for lengths": _machine(
         "Numbers",
         (A1, A2, Z, A4),

@@ -31,6 +31,7 @@ EXPECTED = {
     "seven axes": 8,
     "numbers for lengths": 2,
     "flange that turns against two axes": 4,
+    "palletizer with both motors at the base": 4,
 }
 """The largest number of solutions, as a search of the closure from many starts finds them."""
 MOST = 300
@@ -134,6 +135,13 @@ def test_garbage_ends_in_a_status(name: str, garbage: float) -> None:
         controller = machine.controller()
         assert controller.forward([garbage] * count)[0] != OK
         assert controller.inverse((garbage, 0.0, 0.0), frame.rotation, (), [0.0] * count)[0] != OK
+
+
+def test_a_flange_that_bars_keep_level_turns_about_one_axis() -> None:
+    """What an orientation kinematics behind it is told: the rotations of its chain cancel but for those about z."""
+    robot = made("palletizer with both motors at the base").robot
+    image = robot.orientation_image()
+    assert (robot.FREEDOM, image.flange_axis, image.base_axis) == ("one", (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
 
 @pytest.mark.parametrize("name", HELD)
