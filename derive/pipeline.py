@@ -112,8 +112,10 @@ def derive_one(mechanism: Mechanism, profile: str | None = None) -> Built:
     derived = build(mechanism)
     evidence = witness(derived)
     whole = replace(derived, evidence=evidence, self_test=self_test(derived))
-    pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in pictures_of(derived).items()}
-    parts = {language.name: language.part(whole) for language in languages(profile)}
+    found = ((language.name, language.part(whole)) for language in languages(profile))
+    parts = {name: part for name, part in found if part is not None}
+    drawn = pictures_of(derived) if StructuredTextFiles.name in parts else {}
+    pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in drawn.items()}
     return Built(_derived(whole), _measured(evidence), time.perf_counter() - start, parts, pictures, evidence)
 
 
@@ -150,8 +152,12 @@ def _texts(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, str
     return {
         str(Path(language.name) / name): text
         for language in outputs
-        for name, text in sorted(language.files([one.parts[language.name] for one in built]).items())
+        for name, text in sorted(language.files(_parts(built, language)).items())
     }
+
+
+def _parts(built: Sequence[Built], language: Language) -> list[Part]:
+    return [one.parts[language.name] for one in built if language.name in one.parts]
 
 
 def _derived(kinematics: Kinematics) -> str:

@@ -38,6 +38,11 @@ def symbol_of_sum(terms: Terms) -> sp.Symbol:
     return real(name_of(terms))
 
 
+def positive_first(terms: Terms) -> Terms:
+    """The terms of the negative sum where all of them are subtracted: a sum of this form has a name."""
+    return terms if any(sign > 0 for _, sign in terms) else tuple((a, -sign) for a, sign in terms)
+
+
 def terms_of(argument: sp.Expr, angles: Sequence[sp.Symbol]) -> Terms | None:
     """The angles of an argument with their signs; None where it is no sum of angles with coefficients ±1."""
     found = tuple((a, int(argument.coeff(a))) for a in angles if argument.coeff(a) in (1, -1))

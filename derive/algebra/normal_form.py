@@ -29,6 +29,8 @@ def polynomial(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence
     for angle in angles:
         table[sp.sin(angle)] = sine(angle)
         table[sp.cos(angle)] = cosine(angle)
+        table[sp.sin(angle * DEGREE)] = sine(angle)  # an angle of the machine, which is given in degrees
+        table[sp.cos(angle * DEGREE)] = cosine(angle)
     return reduce_units(expanded.xreplace(table), angles, signs)
 
 

@@ -9,7 +9,7 @@ Joints and dimensions have files of their own; descriptions import everything fr
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 import sympy as sp
@@ -252,6 +252,8 @@ class Mechanism:
     bounds: tuple[Bound, ...] = ()
     branches: tuple[Branch, ...] = ()
     search: Search | None = None
+    held: tuple[Joint, ...] = ()
+    """The joints that the inverse leaves where the reference has them, of a machine with more joints than its task."""
     positive: tuple[sp.Expr, ...] = ()
     """Quantities that are positive in this machine: their negative mirror solutions are excluded."""
     limited: tuple[Limited, ...] = ()
@@ -271,6 +273,21 @@ class Mechanism:
         object.__setattr__(self, "positive", tuple(sp.sympify(v) for v in self.positive))
         object.__setattr__(self, "closure", tuple(sp.sympify(v) for v in self.closure))
         object.__setattr__(self, "home", tuple(sp.sympify(v) for v in self.home))
+        held = {joint.name for joint in self.held}  # the reference has the turn of a held joint: it needs no byte
+        joints = (replace(j, multi_turn=False) if j.name in held else j for j in self.joints)
+        object.__setattr__(self, "joints", tuple(joints))
+
+    @property
+    def held_joints(self) -> tuple[Joint, ...]:
+        """The joints that stay at the reference, in the order of the axes."""
+        names = {joint.name for joint in self.held}
+        return tuple(j for j in self.joints if j.name in names)
+
+    @property
+    def solved_joints(self) -> tuple[Joint, ...]:
+        """The joints that the inverse solves for: as many as the task commands quantities."""
+        names = {joint.name for joint in self.held}
+        return tuple(j for j in self.joints if j.name not in names)
 
     @property
     def is_platform(self) -> bool:

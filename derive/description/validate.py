@@ -29,9 +29,10 @@ from derive.ir.constants import (
 _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _PARAMETER = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
-_RESERVED = re.compile(
-    r"(axis|ref|turn|sigma|branch|offset|lower|upper|motor|unlimited)_|check_limits\Z|[xyz]\Z|r[123][123]\Z"
-)
+_OF_AXES = ("axis", "ref", "reference", "turn", "offset", "lower", "upper", "motor", "unlimited")
+"""What programs call values of an axis: `offset_a1`."""
+_OF_BRANCHES = ("sigma", "branch", "sign")
+_RESERVED = {"check_limits", "x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123")}
 """Names that programs need for other values."""
 
 Expressions = tuple[tuple[str, sp.Basic], ...]
@@ -46,10 +47,12 @@ def validate(mechanism: Mechanism) -> Mechanism:
 
 def _problems(mechanism: Mechanism) -> Iterator[str]:
     yield from _names(mechanism)
+    taken = _taken(mechanism)
     for parameter in mechanism.parameters:
-        yield from _parameter(parameter)
+        yield from _parameter(parameter, taken)
     for joint in mechanism.joints:
         yield from _joint(mechanism, joint)
+    yield from _held(mechanism)
     yield from _periods(mechanism)
     yield from _shape(mechanism)
     yield from _symbols(mechanism)
@@ -84,10 +87,19 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
             yield f"joint {joint.name!r} has the name of a sum of other joints: choose another"
 
 
-def _parameter(parameter: Parameter) -> Iterator[str]:
+def _taken(mechanism: Mechanism) -> set[str]:
+    """The names that programs of this mechanism give to values of their own."""
+    axes = [*(j.key for j in mechanism.joints), *(q.name for q in mechanism.limited)]
+    of_axes = {f"{word}_{key}" for word in _OF_AXES for key in axes}
+    return _RESERVED | of_axes | {f"{word}_{b.name}" for word in _OF_BRANCHES for b in mechanism.branches}
+
+
+def _parameter(parameter: Parameter, taken: set[str]) -> Iterator[str]:
     name = parameter.name
-    if not _PARAMETER.match(name) or _RESERVED.match(name):
-        yield f"{name!r} cannot name a parameter: lower-case words joined by _, and none that programs use themselves"
+    if not _PARAMETER.match(name):
+        yield f"{name!r} cannot name a parameter: lower-case words joined by _"
+    if name in taken:
+        yield f"{name!r} cannot name a parameter: programs of this mechanism have another value of that name"
     if not parameter.low < parameter.high:
         yield f"parameter {name!r}: its range {_interval(parameter)} is empty"
     for word, value in (("nominal value", parameter.nominal), ("default", parameter.default)):
@@ -121,6 +133,17 @@ def _joint(mechanism: Mechanism, joint: Joint) -> Iterator[str]:
     motors = {other.motor for other in earlier} | _parameters(mechanism)
     yield from _unknown(f"coupling of joint {joint.name!r}", joint.coupling, motors, "the motor of an earlier joint")
     yield from _unknown(f"pitch of joint {joint.name!r}", joint.pitch, _parameters(mechanism), "a parameter")
+
+
+def _held(mechanism: Mechanism) -> Iterator[str]:
+    names = [j.name for j in mechanism.joints]
+    for joint in mechanism.held:
+        if joint.name not in names:
+            yield f"held names {joint.name!r}, which is no joint of this mechanism"
+        if joint.coupling != 0:
+            yield f"joint {joint.name!r} is held and geared to other axes: hold a joint that has a motor of its own"
+    if mechanism.held and mechanism.chain is None:
+        yield "held joints need a chain: of a closed loop every joint follows from the pose"
 
 
 def _periods(mechanism: Mechanism) -> Iterator[str]:

@@ -30,8 +30,8 @@ class Language(Protocol):
     def name(self) -> str:
         """The folder below `generated/` and below `templates/`."""
 
-    def part(self, kinematics: Kinematics) -> Part:
-        """What is written of one mechanism, whatever the others are."""
+    def part(self, kinematics: Kinematics) -> Part | None:
+        """What is written of one mechanism, whatever the others are; None of one that the language cannot hold."""
 
     def files(self, parts: Sequence[Part]) -> dict[str, str]:
         """All files of the language, of the parts of all mechanisms: path below its folder → text."""

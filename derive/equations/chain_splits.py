@@ -70,7 +70,16 @@ class Unknowns:
         return angles | (set(self.lengths) & present)
 
 
-def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> tuple[Equation, ...]:
+@dataclass(frozen=True)
+class Split:
+    """The position equations of a chain, and the part of the chain that they are written for, with its end point."""
+
+    equations: tuple[Equation, ...]
+    links: tuple[Factor, ...] = ()
+    target: Target = Target(())
+
+
+def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> Split:
     """The position equations of a chain, at the split that isolates an unknown, else those of the whole chain.
 
     Where no split does, the chain is also taken from its flange, to the point in which its first joints intersect.
@@ -81,9 +90,10 @@ def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> t
         factors, target = _behind_the_wrist(chain, sp.Matrix(point), commanded, unknowns)
     found = _split(factors, target, unknowns)
     if len(commanded.columns) < 3 or _alone(found, unknowns):
-        return found
-    turned = _split(*_before_the_shoulder(chain, sp.Matrix(point), commanded, unknowns), unknowns)
-    return turned if _alone(turned, unknowns) else found
+        return Split(found, factors, target)
+    turned, seen = _before_the_shoulder(chain, sp.Matrix(point), commanded, unknowns)
+    from_flange = _split(turned, seen, unknowns)
+    return Split(from_flange, turned, seen) if _alone(from_flange, unknowns) else Split(found, factors, target)
 
 
 def _split(factors: Sequence[Factor], target: Target, unknowns: Unknowns) -> tuple[Equation, ...]:

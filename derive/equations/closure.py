@@ -21,7 +21,7 @@ from derive.description.mechanism import (
     Role,
     Turning,
 )
-from derive.equations.chain_splits import Commanded, Unknowns, is_spatial, split_positions
+from derive.equations.chain_splits import Commanded, Split, Target, Unknowns, is_spatial, split_positions
 from derive.equations.problem import Equation
 from derive.geometry.frames import Chain, Factor, Motion, Txyz
 from derive.geometry.pose import pose_of
@@ -58,6 +58,9 @@ class Closure:
     """The rotations whose product is the commanded one, where the task is more than a rotation about z."""
     columns: tuple[int, ...] = (0, 1, 2)
     """The columns of the commanded rotation that are followed."""
+    links: tuple[Factor, ...] = ()
+    """The chain for which the position equations are written, which ends in `target`."""
+    target: Target = Target(())
 
 
 def signs_of(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
@@ -78,6 +81,11 @@ def fixed_lets(mechanism: Mechanism) -> tuple[Let, ...]:
         *angles,
         *(let for _, let in _fixed_roots(mechanism.equations, tuple(p.symbol for p in mechanism.parameters))),
     )
+
+
+def fixed_names(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """Every name that is made of parameters alone."""
+    return (*(p.symbol for p in mechanism.parameters), *(let.name for let in fixed_lets(mechanism)))
 
 
 def fixed_squares(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
@@ -145,7 +153,7 @@ def pose_closure(mechanism: Mechanism) -> Closure:
     if mechanism.chain is None:
         return _stated_closure(mechanism, {})
     if is_spatial(mechanism.chain) and mechanism.task.turning is not Turning.ABOUT_Z:
-        return _spatial_closure(mechanism, mechanism.chain, mechanism.joints)
+        return _spatial_closure(mechanism, mechanism.chain, mechanism.solved_joints, mechanism.task.turning)
     pose = pose_of(mechanism.chain)
     closure = _position_closure(mechanism, pose.position)
     if mechanism.task.turning is Turning.NONE:
@@ -162,20 +170,27 @@ def pose_closure(mechanism: Mechanism) -> Closure:
 def closure_at(mechanism: Mechanism, known: Joint) -> Closure:
     """The closure of a commanded pose with one joint known."""
     assert mechanism.chain is not None
-    return _spatial_closure(mechanism, mechanism.chain, tuple(j for j in mechanism.joints if j != known))
+    moving = tuple(j for j in mechanism.joints if j != known)
+    return _spatial_closure(mechanism, mechanism.chain, moving, mechanism.task.turning)
 
 
-def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ...]) -> Closure:
-    """The closure of a spatial chain: its position equations are split here, its rotation is split by the solver."""
+def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ...], turning: Turning) -> Closure:
+    """The closure of a spatial chain: its position equations are split here, its rotation is split by the solver.
+
+    turning: the part of the commanded rotation that is known.
+    """
     angles, lengths = (tuple(j.symbol for j in moving if j.is_angle is kind) for kind in (True, False))
     unknowns = Unknowns(angles, lengths, all_angles(mechanism), signs_of(mechanism))
-    follows = mechanism.task.turning is not Turning.NONE
-    columns = (2,) if mechanism.task.turning is Turning.DIRECTION else (0, 1, 2)
+    follows = turning is not Turning.NONE
+    columns = (2,) if turning is Turning.DIRECTION else (0, 1, 2)
     commanded = Commanded(sp.Matrix(3, 3, ROTATION_ENTRIES), columns if follows else ())
-    equations = split_positions(chain, commanded, unknowns) if mechanism.task.position else ()
+    split = split_positions(chain, commanded, unknowns) if mechanism.task.position else Split(())
     pose = pose_of(chain)
     arguments = dict.fromkeys((*_arguments(pose.position), *(t.amount for t in pose.turns)))
-    return Closure(equations, tuple(arguments), turns=pose.turns if follows else (), columns=columns)
+    turns = pose.turns if follows else ()
+    return Closure(
+        split.equations, tuple(arguments), turns=turns, columns=columns, links=split.links, target=split.target
+    )
 
 
 def heading_of(chain: Chain) -> sp.Expr:
@@ -206,7 +221,7 @@ def offset_closure(mechanism: Mechanism, unknown: tuple[Joint, ...]) -> Closure:
     ]
     seen = Chain(factors[: last + 1]) * Txyz(*entries)
     if is_spatial(mechanism.chain):
-        return replace(_spatial_closure(mechanism, seen, unknown), lets=tuple(lets))
+        return replace(_spatial_closure(mechanism, seen, unknown, Turning.NONE), lets=tuple(lets))
     pose = pose_of(seen)
     closure = _position_closure(mechanism, pose.position)
     return Closure(closure.equations, closure.arguments, tuple(lets), closure.plane)

@@ -107,6 +107,8 @@ class Binding:
     new_equations: tuple[Equation, ...] = ()
     residual: sp.Expr | None = None
     """An expression that vanishes if the equations used agree with each other: a squared length."""
+    conditions: tuple[sp.Expr, ...] = ()
+    """Values of parameters that must not vanish: a machine where one does is refused when it is set up."""
     cosine_alone: bool = False
     yields_to_a_sum: bool = False
     """Whether a sum of angles may be the better unknown."""
@@ -146,8 +148,18 @@ class Problem:
     """The columns of the commanded rotation that the task prescribes."""
     position: tuple[sp.Symbol, ...] = ()
     """The coordinates of the commanded position."""
+    links: tuple[Factor, ...] = ()
+    """The chain up to a commanded point; its equations are written again whenever joints become known."""
+    point: tuple[sp.Expr, ...] = ()
+    """The commanded point at the end of `links`."""
+    point_lets: tuple[Let, ...] = ()
+    """The statements that bind the names in it."""
     squares: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     """The squares of lengths that are roots of parameters."""
+    parameters: tuple[sp.Symbol, ...] = ()
+    """The names that are made of parameters alone."""
+    fixed: tuple[sp.Symbol, ...] = ()
+    """The same once no other equation is left: a slope that is made of them becomes a condition on the machine."""
     definitions: Mapping[sp.Symbol, sp.Expr] | None = None
     """The polynomials that known names stand for, to test whether an expression is zero."""
 
@@ -181,6 +193,17 @@ class Problem:
         """Whether an expression of known names cannot vanish for any legal machine and pose."""
         reduced = self.reduce(expression)
         return bool(reduced.is_nonzero or reduced.xreplace({DEGREE: sp.pi / 180}).is_nonzero)
+
+    def determines(self, slope: sp.Expr) -> bool:
+        """Whether equations with this slope have one solution: it is never zero, or parameters alone decide that."""
+        return self.is_never_zero(slope) or bool(self.conditions(slope))
+
+    def conditions(self, slope: sp.Expr) -> tuple[sp.Expr, ...]:
+        """What a machine must have other than zero, where equations are taken whose slope is made of parameters."""
+        if not self.fixed or self.is_never_zero(slope):
+            return ()
+        reduced = self.reduce(slope)
+        return (reduced,) if reduced != 0 and reduced.free_symbols <= {*self.fixed, DEGREE} else ()
 
     def is_positive(self, value: sp.Expr) -> bool:
         """Whether a value is a positive multiple of a quantity that is stated to be positive, or a product of such

@@ -9,7 +9,8 @@ import sympy as sp
 from derive.algebra.angle_sums import name_of, terms_of
 from derive.algebra.normal_form import polynomial
 from derive.description.mechanism import Mechanism
-from derive.equations.closure import angles_of, signs_of
+from derive.equations.closure import angles_of, fixed_angles, signs_of
+from derive.ir.constants import DEGREE
 from derive.ir.program import (
     Let,
 )
@@ -18,6 +19,8 @@ from derive.ir.symbols import (
     real,
     sine,
 )
+
+_FUNCTIONS = ((sine, sp.sin), (cosine, sp.cos))
 
 
 def named_trigonometry(mechanism: Mechanism, values: Iterable[sp.Expr]) -> tuple[tuple[Let, ...], list[sp.Expr]]:
@@ -30,8 +33,11 @@ def named_trigonometry(mechanism: Mechanism, values: Iterable[sp.Expr]) -> tuple
         terms = terms_of(sp.expand(function.args[0]), angles)
         word = "sin" if isinstance(function, sp.sin) else "cos"
         if terms is None:
-            table[function] = polynomial(function, angles, signs_of(mechanism))
-            lets.update({f(a): Let(f(a), g(a)) for a in angles for f, g in ((sine, sp.sin), (cosine, sp.cos))})
+            fixed = [a for a in fixed_angles(mechanism) if a in function.free_symbols]
+            table[function] = polynomial(function, (*angles, *fixed), signs_of(mechanism))
+            moving = angles if function.free_symbols - {*fixed, DEGREE} else ()
+            values_of = [*((a, a) for a in moving), *((a, a * DEGREE) for a in fixed)]
+            lets.update({f(a): Let(f(a), g(v)) for a, v in values_of for f, g in _FUNCTIONS})
         else:
             name = real(f"{word}_{name_of(terms)}")
             table[function] = name

@@ -13,14 +13,15 @@ from derive.description.mechanism import (
     Turning,
 )
 from derive.equations.axes import finite
-from derive.equations.chain_splits import is_spatial
 from derive.equations.choices import with_choices
 from derive.equations.closure import flange_rotation, heading_of
+from derive.equations.conditions import with_conditions
 from derive.equations.limits import limits_program
 from derive.equations.pose_at_axes import (
     Forward,
 )
 from derive.equations.windows import windows
+from derive.geometry.frames import Motion
 from derive.geometry.pose import pose_of
 from derive.ir.passes import assemble, hoist
 from derive.ir.program import (
@@ -96,6 +97,7 @@ def build(mechanism: Mechanism) -> Kinematics:
     closed = assembled(mechanism, pose_at_axes(mechanism))
     forward = closed.forward
     inverse = solve_pose(mechanism)
+    mechanism = with_conditions(mechanism, inverse.derivation.conditions)
     refuse_shared_names(mechanism, (*forward.statements, *inverse.naming, *inverse.derivation.statements))
     assignments = assign(mechanism, inverse, forward)
     at_axes = derivation_at_axes(mechanism, inverse, forward)
@@ -178,12 +180,27 @@ def _scanned(mechanism: Mechanism) -> Kinematics:
 
 def _count(mechanism: Mechanism) -> None:
     """Refuse more conditions than joints or coordinates: they cannot be met, and no later step would notice."""
-    rows, joints, equations = jacobian_rows(mechanism), mechanism.joints, mechanism.equations
+    rows, equations = jacobian_rows(mechanism), mechanism.equations
     commanded = f"{len(rows)} quantities ({', '.join(rows)})"
-    if len(rows) > len(joints):
-        raise DescriptionError(f"the task commands {commanded}, and there are only {len(joints)} joints")
+    spare = len(mechanism.solved_joints) - len(rows)
+    if spare:
+        raise DescriptionError(_wrong_number(mechanism, spare, commanded))
     if len(equations) > len(rows):
         raise DescriptionError(f"the closure has {len(equations)} equations, and the task commands only {commanded}")
+
+
+def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
+    """The sentence for a machine with other than as many joints as its task commands quantities."""
+    joints, held = mechanism.joints, mechanism.held
+    if spare < 0:
+        left = f"{len(joints)} joints" + (f", of which {len(held)} are held" if held else "")
+        return f"the task commands {commanded}, and there are only {left}"
+    number = "one joint" if spare == 1 else f"{spare} joints"
+    names = "the one that is" if spare == 1 else "those that are"
+    return (
+        f"{number} too many: the task commands {commanded}, and {len(mechanism.solved_joints)} joints are to be solved "
+        f"for; name {names} held at the reference: held=({joints[0].name},)"
+    )
 
 
 def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...]) -> Kinematics:
@@ -320,8 +337,10 @@ def _freedom(mechanism: Mechanism) -> Freedom:
     if mechanism.chain is None:
         return Freedom.ZERO
     joints = {j.symbol for j in mechanism.joints}
-    turns = [t for t in pose_of(mechanism.chain).turns if t.amount.free_symbols & joints]
-    return Freedom.ZERO if not turns else Freedom.THREE if is_spatial(mechanism.chain) else Freedom.ONE
+    turns = [t for t in pose_of(mechanism.chain).turns if t.motion is Motion.TURN]  # opposite ones have merged
+    if not any(t.amount.free_symbols & joints for t in turns):
+        return Freedom.ZERO
+    return Freedom.THREE if len({t.axis for t in turns}) > 1 else Freedom.ONE
 
 
 def _image_program(mechanism: Mechanism) -> Program:

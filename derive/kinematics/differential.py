@@ -51,7 +51,6 @@ from derive.kinematics.branch_assignment import Assignment
 from derive.kinematics.kinematics import Margin
 from derive.kinematics.parameters import (
     has_length,
-    machine_parameters,
 )
 from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.plate.plate import platform_jacobian
@@ -215,7 +214,7 @@ class Factor:
 
 def factor_of(mechanism: Mechanism, found: Assignment | Measure) -> Factor:
     """The slope of a branch, or a measure, over its scale."""
-    has_unit = not has_length(machine_parameters(mechanism))
+    has_unit = not has_length(mechanism)
     if isinstance(found, Assignment):
         return Factor(found.branch.margin, found.margin(mechanism), has_unit and found.slope.scale.has(SCALE))
     return Factor(found.name, found.value / found.scale, has_unit and found.scale.has(SCALE), is_signed=False)
@@ -249,6 +248,7 @@ def _exponents(mechanism: Mechanism, margins: Program, jacobian: Program) -> lis
     good = np.broadcast_to(status == Status.OK, (64,))
     rows, columns = len(jacobian_rows(mechanism)), len(mechanism.joints)
     matrix = np.stack([np.broadcast_to(v, (64,)) for v in entries.values()], axis=-1).reshape(64, rows, columns)[good]
+    matrix = matrix[:, :, [j in mechanism.solved_joints for j in mechanism.joints]]
     volume = np.log(np.sqrt(np.abs(np.linalg.det(matrix @ matrix.transpose(0, 2, 1)))))
     logs = [np.log(np.abs(np.broadcast_to(values[o.name], (64,))[good])) for o in margins.outputs]
     own = _independent(logs)

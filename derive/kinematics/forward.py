@@ -186,7 +186,8 @@ def derivation_at_axes(mechanism: Mechanism, inverse: Inverse, forward: Forward)
     present = {s.name for s in forward.statements if isinstance(s, Let)}
     lets = tuple(s for n, s in trigonometric.items() if n not in present)
     lets += tuple(Let(s.sigma, Select(sp.Ge(s.value, 0), 1, -1)) for s in inverse.derivation.slopes)
-    return (*forward.statements, *lets, *kept)
+    fixed = tuple(let for let in fixed_lets(mechanism) if let.name not in own)
+    return (*forward.statements, *fixed, *lets, *kept)
 
 
 def _angle_values(mechanism: Mechanism, inverse: Inverse) -> dict[sp.Symbol, sp.Expr]:

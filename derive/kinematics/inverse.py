@@ -19,6 +19,7 @@ from derive.equations.closure import (
     all_angles,
     closure_at,
     fixed_lets,
+    fixed_names,
     fixed_squares,
     flange_rotation,
     offset_closure,
@@ -74,10 +75,11 @@ class Inverse:
 
 def solve_pose(mechanism: Mechanism) -> Inverse:
     """Solve the closure of a commanded pose for the joints."""
-    closure = pose_closure(mechanism)
-    derivation = _solve(mechanism, closure, mechanism.joints)
-    naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *_heading(mechanism), *closure.lets)
-    return Inverse(closure, derivation, naming, mechanism.joints)
+    closure, held = pose_closure(mechanism), mechanism.held_joints
+    derivation = _solve(mechanism, closure, mechanism.solved_joints)
+    kept = tuple(s for j in held for s in frozen_lets(j))
+    naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *_heading(mechanism), *closure.lets)
+    return Inverse(closure, derivation, naming, mechanism.solved_joints, held)
 
 
 def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:
@@ -115,6 +117,10 @@ def _solve(
         rotation=ROTATION_ENTRIES if closure.turns else (),
         columns=closure.columns,
         position=(*POSITION, *FLANGE),
+        parameters=fixed_names(mechanism),
+        links=closure.links,
+        point=closure.target.point,
+        point_lets=closure.target.lets,
         squares=fixed_squares(mechanism),
         positive=tuple(polynomial(p, all_angles(mechanism), signs_of(mechanism)) for p in mechanism.positive),
     )
@@ -122,13 +128,14 @@ def _solve(
 
 
 def _frozen_joints(mechanism: Mechanism) -> tuple[Joint, ...]:
-    """The last rotary joints of a chain, as many as the position does not determine."""
-    excess = len(mechanism.joints) - len(mechanism.task.position)
+    """The held joints, and the last rotary ones of a chain, as many as the position does not determine."""
+    held, solved = mechanism.held_joints, mechanism.solved_joints
+    excess = len(solved) - len(mechanism.task.position)
     if mechanism.chain is None or excess <= 0:
-        return ()
+        return held
     turning = [f for f in mechanism.chain.factors if f.motion is Motion.TURN]
-    order = [j for f in turning for j in mechanism.joints if j.is_angle and j.symbol in f.amount.free_symbols]
-    return tuple(list(dict.fromkeys(order))[-excess:])
+    order = [j for f in turning for j in solved if j.is_angle and j.symbol in f.amount.free_symbols]
+    return (*held, *list(dict.fromkeys(order))[-excess:])
 
 
 def heading_parts(mechanism: Mechanism) -> tuple[sp.Expr, sp.Expr]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role
 from derive.equations.choices import converted, input_of
 from derive.equations.windows import windows
+from derive.geometry.frames import Motion
 from derive.ir.constants import (
     LARGEST,
     TIE_SHARE,
@@ -130,7 +131,7 @@ def setup_program(
         body += machine_statements(mechanism)
         outputs += machine_constants(mechanism)
     else:
-        body.append(Let(SCALE, machine_scale(parameters), "characteristic length of the machine"))
+        body.append(Let(SCALE, machine_scale(mechanism), "characteristic length of the machine"))
         outputs.append(Output(SCALE.name, SCALE))
     if chooses_by_lengths(mechanism):
         body.append(Let(TIE_OF_LENGTHS, TIE_SHARE**2 * SCALE**2, "squared distances closer than this are equal"))
@@ -153,15 +154,27 @@ def chooses_by_lengths(mechanism: Mechanism) -> bool:
     return bool(mechanism.branches) and not any(j.is_angle for j in mechanism.joints)
 
 
-def machine_scale(parameters: Sequence[Parameter]) -> sp.Expr:
-    """The sum of the lengths of the description; one unit of length where there is none."""
+def machine_scale(mechanism: Mechanism) -> sp.Expr:
+    """The sum of the lengths of the description, given as parameters or as numbers; one unit of length where there is
+    none.
+    """
+    parameters = machine_parameters(mechanism)
     own = [p for p in parameters if p.role in _LENGTHS or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)]
-    return sp.Add(*[sp.Abs(p.symbol) for p in own]) if has_length(parameters) else sp.Integer(1)
+    lengths = (*(sp.Abs(p.symbol) for p in own), *_numbers(mechanism))
+    return sp.Add(*lengths) if has_length(mechanism) else sp.Integer(1)
 
 
-def has_length(parameters: Iterable[Parameter]) -> bool:
+def has_length(mechanism: Mechanism) -> bool:
     """Whether a machine has a length that is never zero, by which others can be divided."""
-    return any(p.role in _LENGTHS for p in parameters)
+    return any(p.role in _LENGTHS for p in mechanism.parameters) or bool(_numbers(mechanism))
+
+
+def _numbers(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
+    """The lengths that the description states as numbers: shifts of the chain, lengths of rods."""
+    factors = () if mechanism.chain is None else mechanism.chain.factors
+    shifts = (f.amount for f in factors if f.motion is Motion.SHIFT)
+    terms = [t for v in (*shifts, *(r.length for r in mechanism.rods)) for t in sp.Add.make_args(sp.sympify(v))]
+    return tuple(sp.Abs(t) for t in terms if t.is_number and t != 0)
 
 
 def _range_of(parameter: Parameter) -> tuple[Require, ...]:

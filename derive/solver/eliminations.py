@@ -57,7 +57,14 @@ def eliminations(problem: Problem) -> tuple[Equation, ...]:
 
 def squares(problem: Problem, count: int = 2) -> tuple[Equation, ...]:
     """Sums of squares of `count` equations; the known side is named as the length `reach`."""
-    found = [_sum_of_squares(problem, some) for some in combinations(problem.equations, count)]
+    equations = [e for e in problem.equations if not e.expression.free_symbols & {*problem.lengths}]
+    found = [_sum_of_squares(problem, some) for some in combinations(equations, count)]
+    return tuple(equation for equation in found if equation is not None)
+
+
+def squares_with_lengths(problem: Problem) -> tuple[Equation, ...]:
+    """Sums of squares of two equations that hold an unknown length: of a boom beside the axis that turns it."""
+    found = [_sum_of_squares(problem, some) for some in combinations(problem.equations, 2)]
     return tuple(equation for equation in found if equation is not None)
 
 
@@ -84,5 +91,5 @@ def _sum_of_squares(problem: Problem, equations: tuple[Equation, ...]) -> Equati
 
 
 def _has_plain_unknown(problem: Problem, expression: sp.Expr) -> bool:
-    """Whether an angle or a length occurs outside sines and cosines: its square would be no simpler."""
-    return bool(expression.free_symbols & {*problem.lengths, *problem.angles})
+    """Whether an angle occurs outside sines and cosines: its square would be no simpler."""
+    return bool(expression.free_symbols & {*problem.angles})

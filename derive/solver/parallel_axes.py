@@ -12,9 +12,10 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.algebra.angle_sums import Terms, symbol_of_sum, terms_of
-from derive.algebra.normal_form import polynomial, reduce_units
+from derive.algebra.angle_sums import Terms, positive_first, symbol_of_sum, terms_of
+from derive.algebra.normal_form import polynomial, reduce_units, split_known
 from derive.equations.problem import Binding, Equation, Problem
+from derive.geometry.frames import Factor
 from derive.ir.program import Let
 from derive.ir.symbols import cosine, sine
 
@@ -43,11 +44,10 @@ def candidate_sums(problem: Problem, arguments: Sequence[sp.Expr]) -> tuple[Sum,
     differences = [b - a for a, b in combinations(arguments, 2)]
     found: dict[sp.Symbol, Sum] = {}
     for argument in [*arguments, *differences]:
-        expanded = sp.expand(argument)
-        # A fixed rotation of the base
-        constant = expanded.xreplace(dict.fromkeys(expanded.free_symbols, sp.Integer(0)))
-        terms = terms_of(expanded - constant, problem.angles)
+        unknown, _ = split_known(argument, problem.angles)  # the rest: a held joint, a fixed rotation of the base
+        terms = terms_of(unknown, problem.angles)
         if terms is not None and len(terms) > 1:
+            terms = positive_first(terms)
             found.setdefault(symbol_of_sum(terms), Sum(symbol_of_sum(terms), terms, terms[-1][0]))
     return tuple(found.values())
 
@@ -70,10 +70,20 @@ def substitute(problem: Problem, total: Sum) -> Problem:
     references = {**problem.references, total.symbol: sp.Add(*[problem.references[a] * s for a, s in total.terms])}
     equations = tuple(through_sum(e) for e in problem.equations)
     pending = (*problem.pending, total.replaced)
-    turns = tuple(replace(t, amount=sp.expand(t.amount.xreplace({total.replaced: form}))) for t in problem.turns)
     return replace(
-        problem, angles=angles, units=units, equations=equations, references=references, pending=pending, turns=turns
+        problem,
+        angles=angles,
+        units=units,
+        equations=equations,
+        references=references,
+        pending=pending,
+        turns=_through(problem.turns, total.replaced, form),
+        links=_through(problem.links, total.replaced, form),
     )
+
+
+def _through(factors: Sequence[Factor], replaced: sp.Symbol, form: sp.Expr) -> tuple[Factor, ...]:
+    return tuple(replace(f, amount=sp.expand(f.amount.xreplace({replaced: form}))) for f in factors)
 
 
 def resolve(problem: Problem, total: Sum) -> Binding | None:
@@ -83,9 +93,10 @@ def resolve(problem: Problem, total: Sum) -> Binding | None:
         return None
     note = f"{total.replaced.name} from the sum {total.symbol.name} of angles about parallel axes"
     sign = dict(total.terms)[total.replaced]
-    others = tuple((a, s) for a, s in total.terms if a != total.replaced)
+    found = tuple((a, s) for a, s in total.terms if a != total.replaced)
+    others = positive_first(found)
     rest = symbol_of_sum(others) if len(others) > 1 else others[0][0]
-    form = (total.symbol - rest * (others[0][1] if len(others) == 1 else 1)) * sign
+    form = (total.symbol - rest * (1 if others == found else -1)) * sign
     units = (*problem.units, total.replaced, rest)
     amount = sp.Add(*[a * s for a, s in others])
     named = [Let(f(rest), polynomial(g(amount), units, ())) for f, g in _FUNCTIONS] if len(others) > 1 else []

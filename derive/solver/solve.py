@@ -10,16 +10,17 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from derive.equations.positions import positions
 from derive.equations.problem import Binding, Equation, Measure, Problem, Slope
 from derive.equations.rotations import conditions, rotations
 from derive.ir.program import Statement
 from derive.solver.derivation_record import DerivationRecord
-from derive.solver.eliminations import differences, eliminations, squares, squares_of_three
+from derive.solver.eliminations import differences, eliminations, squares, squares_of_three, squares_with_lengths
 from derive.solver.feasible_arc import within_reach
 from derive.solver.folds import beyond_folds
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from derive.solver.subproblems.affine import affine
-from derive.solver.subproblems.affine_pair import affine_pair
+from derive.solver.subproblems.affine_system import affine_pair, affine_triple
 from derive.solver.subproblems.pair import pair
 from derive.solver.subproblems.polar import polar
 from derive.solver.subproblems.quadratic import quadratic
@@ -39,7 +40,14 @@ def _stated(problem: Problem) -> tuple[Equation, ...]:
     return problem.equations + rotations(problem)
 
 
-TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (_stated, differences, eliminations, squares)
+TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (
+    _stated,
+    differences,
+    eliminations,
+    positions,
+    squares,
+    squares_with_lengths,
+)
 Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 
 
@@ -58,6 +66,8 @@ class Derivation:
     sums: tuple[Sum, ...] = ()
     residuals: tuple[sp.Expr, ...] = ()
     """With an equation too many: the expressions that vanish if the equations agree with each other."""
+    conditions: tuple[sp.Expr, ...] = ()
+    """Values of parameters that must not vanish."""
     plain: tuple[Statement, ...] = ()
     """The statements without `beyond_folds` and `within_reach`: the plain definitions of the names."""
 
@@ -73,6 +83,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     sums: tuple[Sum, ...] = ()
     rules: list[str] = []
     left: list[sp.Expr] = []
+    not_zero: list[sp.Expr] = []
     while problem.angles or problem.lengths or problem.pending:
         if problem.is_overdetermined and not problem.equations and not left:
             for condition in conditions(problem):
@@ -81,6 +92,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         problem, binding, sums = _next(problem, sums, arguments)
         binding = record.commit(binding)
         rules.append(binding.rule)
+        not_zero += binding.conditions
         plain = [a for a in binding.unknowns if any(a in e.expression.free_symbols for e in problem.equations)]
         for angle in plain:
             if angle not in problem.lengths:
@@ -90,7 +102,16 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     if not problem.is_overdetermined:
         unfolded = beyond_folds(statements, record.slopes, record.measures, problem.scale)
         statements = within_reach(unfolded, record.slopes, record.measures)
-    return Derivation(statements, record.slopes, record.measures, tuple(rules), sums, tuple(left), record.statements)
+    return Derivation(
+        statements,
+        record.slopes,
+        record.measures,
+        tuple(rules),
+        sums,
+        tuple(left),
+        tuple(not_zero),
+        record.statements,
+    )
 
 
 def _next(
@@ -112,10 +133,31 @@ def _next(
         if better is not None and (found is None or (better.rank < found.rank and problem.turns)):
             return trial, better, (*sums, total)
     if found is None and not problem.is_overdetermined:
-        found = _best([_candidates(problem, squares_of_three(problem))])
+        found = _best(last_resort(problem) for last_resort in _LAST)
     if found is not None:
         return problem, found, sums
     raise Unsolved(_message(problem))
+
+
+def _three_lengths(problem: Problem) -> list[Binding]:
+    return [b for equations in (_stated, positions) for b in affine_triple(problem, equations(problem))]
+
+
+def _by_condition(problem: Problem) -> list[Binding]:
+    """Lengths that equations determine for every machine but those for which a value of parameters vanishes."""
+    known = replace(problem, fixed=problem.parameters)
+    return next((found for tier in TIERS if (found := _lengths(known, tier(known)))), [])
+
+
+def _lengths(problem: Problem, equations: tuple[Equation, ...]) -> list[Binding]:
+    return [b for rule in (affine, affine_pair, affine_triple) for b in rule(problem, equations)]
+
+
+def _three_squares(problem: Problem) -> list[Binding]:
+    return _candidates(problem, squares_of_three(problem))
+
+
+_LAST = (_three_lengths, _by_condition, _three_squares)
 
 
 def _candidates(problem: Problem, equations: tuple[Equation, ...]) -> list[Binding]:

@@ -111,11 +111,8 @@ def check_margins(kin: Kinematics, closure: Closure, samples: Samples) -> float:
     expected = np.ones(len(samples))
     for margin in kin.margins:
         expected = expected * np.abs(outputs[margin.factor]) ** margin.exponent
-    j = (
-        samples.jacobian
-        if samples.jacobian.shape[1] <= samples.jacobian.shape[2]
-        else np.swapaxes(samples.jacobian, 1, 2)
-    )
+    solved = samples.jacobian[:, :, closure.solved]
+    j = solved if solved.shape[1] <= solved.shape[2] else np.swapaxes(solved, 1, 2)
     ratio = np.sqrt(np.linalg.det(j @ np.swapaxes(j, 1, 2))) / expected
     constant = {m: np.median(ratio[samples.machine == m]) for m in np.unique(samples.machine)}
     errors = np.abs(ratio / np.array([constant[m] for m in samples.machine]) - 1.0)

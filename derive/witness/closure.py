@@ -93,6 +93,8 @@ class Closure:
     """The columns of the parameters: those of the description, then the offsets."""
     angles: NDArray[np.bool_]
     """Which joints are angles."""
+    solved: NDArray[np.bool_]
+    """Which joints the inverse solves for: the others keep the value of the reference."""
 
     def row_scale(self, reach: Array) -> Array:
         """The unit of each row of the task, where lengths are measured in reaches."""
@@ -138,6 +140,7 @@ def closure_of(mechanism: Mechanism) -> Closure:
         task=task,
         parameters=tuple(s.name for s in constants),
         angles=np.array([j.is_angle for j in mechanism.joints]),
+        solved=np.array([j not in mechanism.held_joints for j in mechanism.joints]),
     )
 
 

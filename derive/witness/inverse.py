@@ -148,7 +148,8 @@ def _commands(kin: Kinematics, samples: Samples) -> dict[str, Array]:
         axis = samples.axes[:, i]
         near = axis + rng.uniform(-_NEAR, _NEAR, len(samples))
         anywhere = rng.uniform(-720.0, 720.0, len(samples))
-        commands[joint.reference.name] = np.where(explicit & joint.multi_turn, anywhere, near)
+        held = joint in kin.mechanism.held_joints
+        commands[joint.reference.name] = axis if held else np.where(explicit & joint.multi_turn, anywhere, near)
         if joint.multi_turn:
             count = np.floor((axis + 180.0) / 360.0)
             commands[joint.turn.name] = np.where(explicit, np.where(count >= 0, count + 1, count), 0.0)

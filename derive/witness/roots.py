@@ -31,21 +31,36 @@ class Problem:
     units: Array
     """The unit of each scaled unknown, in radians or lengths."""
     angles: NDArray[np.bool_]
+    held: Array
+    """The values of the joints that are not solved for; no number for the others."""
 
     def take(self, rows: Rows) -> Problem:
         """The problem at the chosen rows."""
         return Problem(
-            self.closure, self.pose[rows], self.parameters[rows], self.weights[rows], self.units[rows], self.angles
+            self.closure,
+            self.pose[rows],
+            self.parameters[rows],
+            self.weights[rows],
+            self.units[rows],
+            self.angles,
+            self.held[rows],
         )
 
     def residual(self, unknowns: Array) -> Array:
-        """Φ."""
-        return self.weights * self.closure.residual(unknowns * self.units, self.pose, self.parameters)[:, :, 0]
+        """Φ, and the distances of the joints that are not solved for from their values."""
+        phi = self.weights * self.closure.residual(unknowns * self.units, self.pose, self.parameters)[:, :, 0]
+        return np.concatenate([phi, self._off(unknowns)[:, ~self.closure.solved]], axis=1)
+
+    def _off(self, unknowns: Array) -> Array:
+        off = unknowns - self.held
+        return np.where(self.angles, (off + np.pi) % (2 * np.pi) - np.pi, off)
 
     def slopes(self, unknowns: Array) -> Array:
         """∂Φ by the unknowns."""
         b = self.closure.by_joints(unknowns * self.units, self.pose, self.parameters)
-        return np.asarray(self.weights[:, :, None] * b * self.units[:, None, :])
+        phi = self.weights[:, :, None] * b * self.units[:, None, :]
+        kept = np.eye(len(self.angles))[~self.closure.solved]
+        return np.concatenate([phi, np.broadcast_to(kept, (len(phi), *kept.shape))], axis=1)
 
     def is_positive(self, unknowns: Array) -> NDArray[np.bool_]:
         """Whether the description admits the solution, or excludes it as a mirror image."""
@@ -61,7 +76,8 @@ def problem_at(closure: Closure, samples: Samples) -> Problem:
     by_joints = closure.by_joints(*state) * units[:, None, :]
     sizes = np.linalg.norm(np.concatenate([by_pose, by_joints], axis=2), axis=2)
     sizes[:, closure.equations :] = 1.0  # entries of a rotation are of order one already
-    return Problem(closure, samples.pose, samples.parameters, 1.0 / sizes, units, closure.angles)
+    held = np.where(closure.solved, np.nan, samples.joints / units)
+    return Problem(closure, samples.pose, samples.parameters, 1.0 / sizes, units, closure.angles, held)
 
 
 def all_solutions(problem: Problem) -> list[Array]:

@@ -193,10 +193,12 @@ def _unit(joint: Joint) -> float:
 
 
 def _least_singular_value(closure: Closure, samples: Samples) -> Array:
-    """The least singular value of the Jacobian, with lengths in reaches: small near a singularity of either type."""
+    """The least singular value of the Jacobian of the joints that are solved for, with lengths in reaches: small near a
+    singularity of either type.
+    """
     columns, rows = closure.joint_scale(samples.reach), closure.row_scale(samples.reach)
     scaled = np.nan_to_num(samples.jacobian * columns[:, None, :] / rows[:, :, None], posinf=0.0, neginf=0.0)
-    return np.asarray(np.linalg.svd(scaled, compute_uv=False)[:, -1])
+    return np.asarray(np.linalg.svd(scaled[:, :, closure.solved], compute_uv=False)[:, -1])
 
 
 def _rank_within(group: NDArray[np.int64], chosen: NDArray[np.bool_]) -> NDArray[np.int64]:

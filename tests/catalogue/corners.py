@@ -33,7 +33,6 @@ from derive.kinematics.assembly import assembled
 from derive.kinematics.forward import derivation_at_axes, pose_at_axes
 from derive.kinematics.inverse import solve_pose
 from derive.kinematics.parameters import (
-    machine_parameters,
     machine_scale,
 )
 from derive.kinematics.scanned import solve_both
@@ -104,7 +103,7 @@ def factors(machine: Machine) -> Factors:
     """The factors of a machine (n, factors) as a function of axis values (n, joints)."""
     mechanism = machine.mechanism
     constants = {k: np.asarray(v, dtype=float) for k, v in machine.robot.parameters.items()}
-    constants[SCALE.name] = np.asarray(evaluate(machine_scale(machine_parameters(mechanism)), constants), dtype=float)
+    constants[SCALE.name] = np.asarray(evaluate(machine_scale(mechanism), constants), dtype=float)
     constants[DEGREE.name] = np.asarray(np.pi / 180.0)
     names = [f"factor {o.name}" for o in factor_program(mechanism).outputs]
 

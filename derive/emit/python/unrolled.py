@@ -195,9 +195,10 @@ def _single(kin: Kinematics, one: Program) -> Method:
 
 
 def _optional(kin: Kinematics) -> Argument:
-    """The reference, which may be left out."""
-    reference = branch(kin).arguments[-1]
-    return replace(reference, default=repeated("0.0", len(reference.shape)))
+    """The reference, which may be left out: then no branch has axes where one of them is held at the reference."""
+    reference, held = branch(kin).arguments[-1], kin.mechanism.held_joints
+    values = ['float("nan")' if joint in held else "0.0" for joint in kin.mechanism.joints]
+    return replace(reference, default=f"({', '.join(values)},)" if held else repeated("0.0", len(values)))
 
 
 def has_folds(kin: Kinematics) -> bool:

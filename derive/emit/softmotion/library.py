@@ -60,9 +60,13 @@ class StructuredTextFiles:
         """Refuse a profile that the contract has not, before anything is derived."""
         load(self.profile)
 
-    def part(self, kinematics: Kinematics) -> Part:
-        """The block of one mechanism, its self-test, and its row of the overview."""
+    def part(self, kinematics: Kinematics) -> Part | None:
+        """The block of one mechanism, its self-test, and its row of the overview; None of one with more axes than a
+        position in SoftMotion has.
+        """
         contract, templates = load(self.profile), _templates()
+        if len(kinematics.mechanism.joints) > len(contract.spelling["axes"]["fields"]):
+            return None
         block = block_of(kinematics, contract)
         found: Part = {"row": row_of(kinematics), "text": _unit(kinematics, block, contract, templates), "test": None}
         test = test_of(kinematics, block)

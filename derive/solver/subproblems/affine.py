@@ -1,6 +1,7 @@
 """Affine:  k v + c = 0  with k never zero.
 
-One root, v = -c / k. Slope k. There is no degenerate case: an equation whose k can vanish is not taken.
+One root, v = -c / k. Slope k. There is no degenerate case: an equation whose k can vanish is not taken. Where k is made
+of parameters alone, the machine is refused for which it vanishes.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ def affine(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Bindin
         if len(unknowns) != 1 or unknowns[0] not in problem.lengths:
             continue
         linear = linear_coefficients(equation.expression, unknowns)
-        if linear is None or not problem.is_never_zero(linear[0][0]):
+        if linear is None or not problem.determines(linear[0][0]):
             continue
         (slope,), rest = linear
         note = f"{unknowns[0].name} from the {equation.label} equation, which is linear in it"
-        yield Binding("affine", unknowns, (*equation.lets, Let(unknowns[0], sp.expand(-rest / slope), note)))
+        statements = (*equation.lets, Let(unknowns[0], sp.expand(-rest / slope), note))
+        yield Binding("affine", unknowns, statements, conditions=problem.conditions(slope))

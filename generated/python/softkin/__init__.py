@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from softkin.gantry3 import Gantry3
     from softkin.gantrycutter2 import GantryCutter2
     from softkin.gantrycutter3 import GantryCutter3
+    from softkin.headhead_cb import HeadHeadCB
+    from softkin.headtable_bc import HeadTableBC
     from softkin.hexapod import Hexapod
     from softkin.hgantry2 import HGantry2
     from softkin.hgantry3 import HGantry3
@@ -60,6 +62,7 @@ if TYPE_CHECKING:
     from softkin.scara4_zccc import Scara4ZCCC
     from softkin.scara4_zccoupled_type1 import Scara4ZCcoupledType1
     from softkin.sccc import SCCC
+    from softkin.tabletable_ac import TableTableAC
     from softkin.tgantry2 import TGantry2
     from softkin.tgantry3 import TGantry3
     from softkin.tool import Tool
@@ -93,6 +96,8 @@ __all__ = [
     "GantryCutter3",
     "HGantry2",
     "HGantry3",
+    "HeadHeadCB",
+    "HeadTableBC",
     "Hexapod",
     "Kin5Axes",
     "KinType12XY",
@@ -119,6 +124,7 @@ __all__ = [
     "Status",
     "TGantry2",
     "TGantry3",
+    "TableTableAC",
     "Tool",
     "TripodLinear",
     "TripodP3Z",
@@ -142,6 +148,8 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Gantry3": ("gantry3", "Gantry3"),
     "Kin_GantryCutter2": ("gantrycutter2", "GantryCutter2"),
     "Kin_GantryCutter3": ("gantrycutter3", "GantryCutter3"),
+    "Softkin_HeadHead_CB": ("headhead_cb", "HeadHeadCB"),
+    "Softkin_HeadTable_BC": ("headtable_bc", "HeadTableBC"),
     "Kin_Hexapod": ("hexapod", "Hexapod"),
     "Kin_HGantry2": ("hgantry2", "HGantry2"),
     "Kin_HGantry3": ("hgantry3", "HGantry3"),
@@ -164,6 +172,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Scara4_ZCCC": ("scara4_zccc", "Scara4ZCCC"),
     "Kin_Scara4_ZCcoupled_Type1": ("scara4_zccoupled_type1", "Scara4ZCcoupledType1"),
     "Kin_SCCC": ("sccc", "SCCC"),
+    "Softkin_TableTable_AC": ("tabletable_ac", "TableTableAC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),
     "Kin_TGantry3": ("tgantry3", "TGantry3"),
     "Kin_Tool": ("tool", "Tool"),

@@ -55,7 +55,7 @@ class Table:
         width = len(robot.AXES)
         self._positions = numbers(positions, None, (3,), "positions")
         self.count = len(self._positions)
-        near = np.zeros(width) if references is None else references
+        near = np.array(robot._without_reference()) if references is None else references
         self._references = numbers(near, self.count, (width,), "references")
         self._rotations = None
         if robot.READS_ROTATION:

@@ -142,6 +142,8 @@ class Mechanism(ABC):
     BRANCHES: int
     """How many bytes of the configuration are branches; they come first."""
     PERIOD_AXES: tuple[int, ...]
+    HELD: tuple[int, ...] = ()
+    """The indices of the axes that the inverse leaves where the reference has them."""
     """The axes of the period bytes, by index."""
     DISTANCE_AXES: tuple[int, ...]
     """The axes that decide an automatic choice, by index."""
@@ -235,7 +237,8 @@ class Mechanism(ABC):
         350 degrees apart takes its one value inside them; any other the value nearest to the reference.
         Limits refuse then, they never choose again: for a move from point to point name the period of an axis with a
         wider range.
-        reference: one value an axis, the present axis values as a rule; without one, zeros.
+        reference: one value an axis, the present axis values as a rule; without one, zeros. Axes of `HELD` keep its
+        values: a machine that has some needs one.
         Raises BAD_INPUT, UNREACHABLE (out of reach, or beyond a limit), or IMPOSSIBLE. The `refusal` of the error is
         what `diagnose` returns: which quantity, how much is missing, and whether another turn is inside.
         """
@@ -275,7 +278,7 @@ class Mechanism(ABC):
 
         signs: 1 for byte 1 of a branch, -1 for byte 2.
         """
-        near = (0.0,) * len(self.AXES) if reference is None else reference
+        near = self._without_reference() if reference is None else reference
         axes = self._branch(*frame, signs, (0,) * len(self.PERIOD_AXES), near)
         return None if isinstance(axes, Diagnosis) else axes
 
@@ -425,8 +428,18 @@ class Mechanism(ABC):
         raise KinematicsError(refused.status, f"{self.NAME}.{call}: {refused.status.meaning}: {detail}", refused)
 
     def _near(self, reference: Numbers | None) -> Reals:
-        count = len(self.AXES)
-        return (0.0,) * count if reference is None else reals(reference, count, "reference")
+        if reference is None:
+            return self._without_reference()
+        return reals(reference, len(self.AXES), "reference")
+
+    def _without_reference(self) -> Reals:
+        """Zeros. Raises BAD_INPUT where an axis is held at the reference: nobody but the caller knows where it is."""
+        if self.HELD:
+            names = " and ".join(self.AXES[i].name for i in self.HELD)
+            raise KinematicsError(
+                Status.BAD_INPUT, f"{self.NAME}: a reference is needed: it holds the value of {names}"
+            )
+        return (0.0,) * len(self.AXES)
 
     def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Turns]:
         """Branch bytes, and the turns as the programs read them."""

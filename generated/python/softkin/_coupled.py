@@ -83,6 +83,7 @@ class Coupled(Mechanism):
         self.MARGINS = taken + tuple(f"orientation_{m}" if m in taken else m for m in second.MARGINS)
         self.READS_ROTATION = first.READS_ROTATION or second.READS_ROTATION
         self.BRANCHES = first.BRANCHES + second.BRANCHES
+        self.HELD = first.HELD + tuple(count + i for i in second.HELD)
         self.PERIOD_AXES = first.PERIOD_AXES + tuple(count + i for i in second.PERIOD_AXES)
         angles = tuple(i for i, axis in enumerate(self.AXES) if axis.unit == "deg")
         seen = set(first.DISTANCE_AXES) & set(angles) or not first.BRANCHES

@@ -125,3 +125,32 @@ def test_a_sum_that_is_solved_names_itself() -> None:
     changed = substitute(CLOSURE, the_sum("a1 + a2"))
     assert cosine(real("total")) in changed.atoms()
     assert polynomial(sp.cos(real("total")), changed.units, ()) == cosine(real("total"))
+
+
+def names_of_sums(*arguments: sp.Expr, angles: tuple[sp.Symbol, ...] = ANGLE_NAMES) -> list[str]:
+    given_problem = problem(sp.sin(A1) - Y, angles=angles)
+    return [total.symbol.name for total in candidate_sums(given_problem, arguments)]
+
+
+def test_a_known_angle_is_no_term_of_a_sum() -> None:
+    """A joint that is held, or a fixed rotation of the base."""
+    assert names_of_sums(A1 + A2 + A3, angles=(A1, A3)) == ["a13"]
+    assert names_of_sums(A1 + A2 + sp.pi / 6) == ["a12"]
+
+
+def test_a_sum_of_which_every_term_is_subtracted_is_the_negative_of_one_with_the_name() -> None:
+    (total,) = candidate_sums(problem(sp.sin(A1) - Y, angles=ANGLE_NAMES), [-A2 - A3])
+    assert (total.symbol.name, total.terms) == ("a23", ((A2, 1), (A3, 1)))
+
+
+@few
+@given(turns=st.tuples(ANGLES, ANGLES, ANGLES))
+def test_the_rest_of_a_sum_is_subtracted_as_a_whole(turns: tuple[float, float, float]) -> None:
+    """a3 - a1 - a2 is known: the rest is -(a1 + a2), and cos_a12 means a1 + a2."""
+    total = Sum(real("total"), ((A1, -1), (A2, -1), (A3, 1)), A3)
+    binding = resolve(problem(X - Y, known=(A1, A2, real("total"))), total)
+    assert binding is not None
+    named = trigonometry(a1=turns[0], a2=turns[1], total=turns[2] - turns[0] - turns[1])
+    values, _ = execute(binding.statements, named)
+    assert distance(angle_of(values, A3), turns[2]) <= 1e-12
+    assert distance(angle_of(values, real("a12")), turns[0] + turns[1]) <= 1e-12

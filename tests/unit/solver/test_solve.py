@@ -97,6 +97,7 @@ CASES = {
     "rail and arm": Case(plane((L1, A1), (L2, HEADING), x=P), (A1,), (P,), rules=("trigonometric", "affine")),
     "oblique rail and arm": Case(plane((P, sp.pi / 6), (L1, A1)), (A1,), (P,), rules=("trigonometric", "affine")),
     "telescope": Case(plane((P, A1), (L1, HEADING)), (A1,), (P,), rules=("polar",)),
+    "telescope beside its axis": Case(plane((P, A1), (TOOL_Y, A1 + RIGHT)), (A1,), (P,), rules=("quadratic", "pair")),
     "telescope that cannot turn inside out": Case(
         plane((P + K, A1)), (A1,), (P,), positive=(P + K,), rules=("polar", "affine"), slots=1
     ),
@@ -214,10 +215,6 @@ UNSOLVED = {
         "no subproblem determines p, q; equations left:\n    first: p + q - x = 0\n    second: 2*p + 2*q - y = 0",
     ),
     "no more equations than one": (Case(plane((L1, A1)), (A1, A2)), "the closure does not determine a2"),
-    "a telescope beside its axis": (
-        Case(plane((P, A1), (TOOL_Y, A1 + RIGHT)), (A1,), (P,)),
-        "no subproblem determines p, a1; equations left:\n    first: cos_a1*p - sin_a1*tool_y - x = 0\n",
-    ),
     "a factor that can vanish": (Case({"x": TOOL_X * P}, (), (P,)), "no subproblem determines p"),
     "rails that can be parallel": (Case(plane((P, HEADING), x=Q), (), (P, Q)), "no subproblem determines p, q"),
     "three links, no turn": (

@@ -1,0 +1,69 @@
+"""Affine system:  M v = e  for two or three unknown lengths v in as many equations, with det M never zero.
+
+One root, by Cramer's rule. Slope det M. There is no degenerate case: equations whose slope can vanish are not taken. A
+single coefficient may vanish: a table turned by 90 degrees exchanges its axes. Where det M is made of parameters alone,
+the machine is refused for which it vanishes: two of its slides are parallel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import sympy as sp
+
+from derive.algebra.normal_form import linear_coefficients
+from derive.equations.problem import Binding, Equation, Problem
+from derive.ir.program import Let
+
+_NAMES = {2: "pair", 3: "triple"}
+_WORDS = {2: "linear in both", 3: "linear in all three"}
+
+
+def affine_pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every two lengths that two equations determine together."""
+    return _systems(problem, equations, 2)
+
+
+def affine_triple(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every three lengths that three equations determine together."""
+    return _systems(problem, equations, 3)
+
+
+def _systems(problem: Problem, equations: tuple[Equation, ...], count: int) -> Iterator[Binding]:
+    for some in combinations(equations, count):
+        present = [problem.unknowns_of(e.expression) for e in some]
+        unknowns = tuple(u for u in problem.lengths if any(u in found for found in present))
+        alone = any(len(found) < 2 for found in present)  # such an equation determines its length by itself
+        if len(unknowns) == count and not alone and all(set(found) <= set(unknowns) for found in present):
+            binding = _solve(problem, some, unknowns)
+            if binding is not None:
+                yield binding
+
+
+def _solve(problem: Problem, equations: tuple[Equation, ...], unknowns: tuple[sp.Symbol, ...]) -> Binding | None:
+    rows = [linear_coefficients(e.expression, unknowns) for e in equations]
+    if any(row is None for row in rows):
+        return None
+    matrix = sp.Matrix([row[0] for row in rows if row is not None])
+    rest = sp.Matrix([row[1] for row in rows if row is not None])
+    slope = problem.reduce(matrix.det(method="berkowitz"))
+    if not problem.determines(slope):
+        return None
+    inverse = slope if slope in problem.signs or -slope in problem.signs else 1 / slope
+    values = [problem.tidy(v * inverse) for v in -_adjugate(problem, matrix) * rest]
+    labels, names = ([str(v) for v in group] for group in ((e.label for e in equations), unknowns))
+    note = f"{_listed(names)} from the {_listed(labels)} equations, {_WORDS[len(unknowns)]}"
+    lets = (Let(unknowns[0], values[0], note), *map(Let, unknowns[1:], values[1:]))
+    statements = (*(let for e in equations for let in e.lets), *lets)
+    return Binding(f"affine {_NAMES[len(unknowns)]}", unknowns, statements, conditions=problem.conditions(slope))
+
+
+def _adjugate(problem: Problem, matrix: sp.Matrix) -> sp.Matrix:
+    """det M times the inverse of M; the cofactors of three rows in their normal form, of a rotation its own entries."""
+    adjugate = matrix.adjugate()
+    return adjugate if matrix.rows == 2 else adjugate.applyfunc(problem.reduce)
+
+
+def _listed(names: list[str]) -> str:
+    return f"{', '.join(names[:-1])} and {names[-1]}"

@@ -1,0 +1,233 @@
+"""Machines that are in no catalogue, by the rule that each needs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sympy import Integer, cos, pi, sin
+
+from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
+from derive.mechanism import (
+    Branch,
+    Joint,
+    Mechanism,
+    Parameter,
+    Task,
+    Turning,
+    Vendor,
+    angle,
+    branch,
+    distance,
+    length,
+    linear,
+    radians,
+    rotary,
+)
+
+X, Y, Z, R = (linear(name, f"slide {name}") for name in ("X", "Y", "Z", "R"))
+A, B, C, A1, A2, A3, A4, A5, A6, E1 = (
+    rotary(name, f"turn {name}") for name in ("A", "B", "C", "A1", "A2", "A3", "A4", "A5", "A6", "E1")
+)
+PIVOT_X, PIVOT_Y, PIVOT_Z = (
+    distance(f"pivot_{c}", f"pivot, {c}", nominal=v) for c, v in zip("xyz", (20, 30, 80), strict=True)
+)
+BESIDE = distance("beside", "how far the boom is beside its axis", nominal=50.0)
+HEIGHT = distance("height", "height of the shoulder", nominal=200.0)
+L1, L2, L3, L4 = (length(f"link_{k}", f"link {k}", nominal=v) for k, v in enumerate((300.0, 400.0, 350.0, 120.0), 1))
+LEAN = angle("lean", "lean of one axis against another", nominal=50.0)
+SLIDES = Tx(X) * Ty(Y) * Tz(Z)
+
+DIRECTION, TURNED = Task("xyz", Turning.DIRECTION), Task("xyz", Turning.ABOUT_Z)
+POSE = Task("xyz", Turning.FULL)
+ELBOW = branch("elbow", sin(A2), right=+1, left=-1)
+
+
+def _tilt(joint: Joint) -> tuple[Branch, ...]:
+    return (branch("tilt", sin(joint), positive=+1, negative=-1),)
+
+
+def _machine(
+    name: str,
+    joints: tuple[Joint, ...],
+    chain: Chain,
+    parameters: tuple[Parameter, ...],
+    task: Task,
+    branches: tuple[Branch, ...] = (),
+    **details: object,
+) -> Mechanism:
+    stated = {"offset_interface": False, **details}
+    return Mechanism(
+        name=f"Kin_{name}",
+        vendor=Vendor.TEXTBOOK,
+        family="articulated",
+        source="the tests",
+        summary="A machine that is in no catalogue.",
+        joints=joints,
+        parameters=parameters,
+        chain=chain,
+        task=task,
+        branches=branches,
+        **stated,  # type: ignore[arg-type]
+    )
+
+
+THREE_LENGTHS = {
+    "trunnion": _machine(
+        "Trunnion",
+        (X, Y, Z, A, C),
+        Rz(-C) * Ty(-PIVOT_Y) * Tz(-PIVOT_Z) * Rx(-A) * SLIDES,
+        (PIVOT_Y, PIVOT_Z),
+        DIRECTION,
+        _tilt(A),
+    ),
+    "table with B and C": _machine(
+        "TableBc",
+        (X, Y, Z, B, C),
+        Rz(C) * Tx(PIVOT_X) * Tz(PIVOT_Z) * Ry(B) * SLIDES,
+        (PIVOT_X, PIVOT_Z),
+        DIRECTION,
+        _tilt(B),
+    ),
+    "table with an oblique axis": _machine(
+        "Nutating",
+        (X, Y, Z, B, C),
+        Rz(C) * Tz(PIVOT_Z) * Rx(radians(LEAN)) * Rz(B) * Rx(-radians(LEAN)) * SLIDES,
+        (PIVOT_Z, LEAN),
+        DIRECTION,
+        _tilt(B),
+    ),
+    "oblique slides on a table": _machine(
+        "Oblique",
+        (X, Y, Z, C),
+        Rz(C) * Tx(X) * Rz(pi / 5) * Ty(Y) * Rx(pi / 7) * Tz(Z) * Rx(-pi / 7) * Rz(-pi / 5),
+        (),
+        TURNED,
+    ),
+}
+
+SQUARES_WITH_LENGTHS = {
+    "telescope beside its column": _machine(
+        "BoomTurn",
+        (A1, R, A2),
+        Rz(A1) * Ty(BESIDE) * Tx(R) * Rz(A2) * Tx(L4),
+        (BESIDE, L4),
+        Task("xy", Turning.ABOUT_Z),
+        positive=(R,),
+    ),
+    "telescope that may turn inside out": _machine(
+        "BoomBoth",
+        (A1, R, A2),
+        Rz(A1) * Ty(BESIDE) * Tx(R) * Rz(A2) * Tx(L4),
+        (BESIDE, L4),
+        Task("xy", Turning.ABOUT_Z),
+        (branch("boom", R, ahead=+1, behind=-1),),
+    ),
+    "telescope above its shoulder": _machine(
+        "BoomUp",
+        (A1, A2, R),
+        Tz(HEIGHT) * Rz(A1) * Ry(A2) * Tz(BESIDE) * Tx(R),
+        (BESIDE, HEIGHT),
+        Task("xyz"),
+        (branch("shoulder", R * cos(A2) + BESIDE * sin(A2), front=+1, back=-1),),
+        positive=(R,),
+    ),
+}
+
+PARAMETERS_DECIDE = {
+    "skewed rail": _machine(
+        "Skewed", (X, Y, Z), Tx(X) * Rz(radians(LEAN)) * Ty(Y) * Rz(-radians(LEAN)) * Tz(Z), (LEAN,), Task("xyz")
+    ),
+    "rails in a wedge": _machine(
+        "Wedge",
+        (X, Y, Z),
+        Ry(radians(LEAN)) * Tx(X) * Ry(-2 * radians(LEAN)) * Tx(Z) * Ry(radians(LEAN)) * Ty(Y),
+        (LEAN,),
+        Task("xyz"),
+    ),
+}
+
+HELD = {
+    "rail and arm with two links": _machine(
+        "RailArm",
+        (X, A1, A2),
+        Tx(X) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2),
+        (L1, L2),
+        Task("xy"),
+        (ELBOW,),
+        held=(X,),
+        offset_interface=True,
+    ),
+    "SCARA on a rail": _machine(
+        "ScaraRail",
+        (X, A1, A2, Z, A4),
+        Tx(X) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(Z) * Rz(A4),
+        (L1, L2),
+        TURNED,
+        (ELBOW,),
+        held=(X,),
+    ),
+    "arm on a track": _machine(
+        "Track",
+        (X, A1, A2, A3, A4, A5, A6),
+        Tx(X) * Rz(A1) * Tz(HEIGHT) * Ry(A2) * Tz(L2) * Ry(A3) * Tx(L3) * Rx(A4) * Ry(A5) * Rx(A6) * Tx(L4),
+        (HEIGHT, L2, L3, L4),
+        POSE,
+        (
+            branch("shoulder", L2 * sin(A2) + L3 * cos(A2 + A3), front=+1, back=-1),
+            branch("elbow", cos(A3), up=+1, down=-1),
+            branch("wrist", sin(A5), positive=+1, negative=-1),
+        ),
+        held=(X,),
+    ),
+    "seven axes": _machine(
+        "Seven",
+        (A1, A2, E1, A3, A4, A5, A6),
+        Rz(A1) * Tz(L1) * Ry(A2) * Rz(E1) * Tz(L2) * Ry(A3) * Rz(A4) * Tz(L3) * Ry(A5) * Rz(A6) * Tz(L4),
+        (L1, L2, L3, L4),
+        POSE,
+        (
+            branch("elbow", sin(A3), positive=+1, negative=-1),
+            branch(
+                "shoulder", L2 * sin(A2) + L3 * (sin(A2) * cos(A3) + cos(A2) * cos(E1) * sin(A3)), front=+1, back=-1
+            ),
+            branch("wrist", sin(A5), positive=+1, negative=-1),
+        ),
+        held=(E1,),
+    ),
+}
+
+OTHERS = {
+    "palletizer with both motors at the base": _machine(
+        "Palletizer",
+        (A1, A2, A3, A4),
+        Tz(HEIGHT) * Rz(A1) * Tx(PIVOT_X) * Ry(A2) * Tz(L2) * Ry(A3 - A2) * Tx(L3) * Ry(-A3) * Tx(L4) * Rz(A4),
+        (HEIGHT, PIVOT_X, L2, L3, L4),
+        TURNED,
+        (
+            branch("shoulder", PIVOT_X + L2 * sin(A2) + L3 * cos(A3) + L4, front=+1, back=-1),
+            branch("elbow", cos(A2 - A3), up=+1, down=-1),
+        ),
+        offset_interface=True,
+    ),
+    "numbers for lengths": _machine(
+        "Numbers",
+        (A1, A2, Z, A4),
+        Rz(A1) * Tx(Integer(250)) * Rz(A2) * Tx(Integer(200)) * Tz(Z) * Rz(A4),
+        (),
+        TURNED,
+        (ELBOW,),
+    ),
+    "flange that turns against two axes": _machine(
+        "Level",
+        (A1, A2, A3, A4),
+        Rz(A1) * Tx(PIVOT_X) * Ry(A2) * Tz(L2) * Ry(A3) * Tx(L3) * Ry(-A2 - A3) * Tx(L4) * Rz(A4),
+        (PIVOT_X, L2, L3, L4),
+        TURNED,
+        (
+            branch("shoulder", PIVOT_X + L2 * sin(A2) + L3 * cos(A2 + A3) + L4, front=+1, back=-1),
+            branch("elbow", cos(A3), up=+1, down=-1),
+        ),
+    ),
+}
+
+MACHINES: Mapping[str, Mechanism] = {**THREE_LENGTHS, **SQUARES_WITH_LENGTHS, **PARAMETERS_DECIDE, **HELD, **OTHERS}

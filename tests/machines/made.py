@@ -1,0 +1,87 @@
+"""A machine of the collection, made: derived with every check, its package imported, its block compiled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from tempfile import mkdtemp
+
+import numpy as np
+import softkin
+from numpy.typing import NDArray
+
+from derive.description.mechanism import Mechanism, Role
+from derive.description.validate import validate
+from derive.pipeline import Built, derive_one, files_of, languages
+from tests.catalogue.closure import Closure
+from tests.machines.collection import MACHINES
+from tests.text.controller import OK, Controller
+from tests.text.units import compiled_text
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Made:
+    """One machine: what was derived, and both languages with the same parameters."""
+
+    mechanism: Mechanism
+    built: Built
+    robot: softkin.Mechanism
+    closure: Closure
+    reach: float
+
+    @property
+    def has_block(self) -> bool:
+        """Whether it has a block: one with more than six axes has none."""
+        return "st" in self.built.parts
+
+    def controller(self) -> Controller:
+        """Its block, initialised."""
+        text = self.built.parts["st"]["text"]
+        controller = Controller(compiled_text(f"{self.mechanism.name}.st", text), self.mechanism)
+        assert controller.initialise(self.robot.parameters) == OK
+        return controller
+
+    def axes(self, joints: Array) -> Array:
+        """Axis values of joints in degrees and reaches; a positive quantity that is a joint is positive."""
+        sizes = np.where(self.closure.angles, 1.0, self.reach)
+        positive = np.array([j.symbol in self.mechanism.positive for j in self.mechanism.joints])
+        scaled = np.where(positive, np.abs(joints), joints) * sizes
+        return np.asarray(scaled + self.closure.offsets)
+
+    def error(self, axes: Array, positions: Array, rotations: Array) -> Array:
+        """The largest residual of the commanded closure in every row, with lengths in reaches."""
+        residual = np.abs(self.closure.equations(self.closure.joints(axes), positions, rotations))
+        slides = np.abs(axes - self.closure.offsets)[:, ~self.closure.angles].sum(axis=1)
+        residual[:, : len(self.mechanism.task.position)] /= (self.reach + slides)[:, None]
+        return np.asarray(residual.max(axis=1))
+
+
+@cache
+def made(name: str) -> Made:
+    """Derive and load a machine; its offsets are not zero."""
+    mechanism = validate(MACHINES[name])
+    built = derive_one(mechanism)
+    robot_class = _imported(mechanism, built)
+    offsets = {j.offset.name: 7.0 * k - 20.0 for k, j in enumerate(mechanism.joints)}
+    robot = robot_class(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
+    lengths = [abs(p.nominal) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
+    return Made(mechanism, built, robot, Closure(mechanism, robot.parameters), sum(lengths) or 500.0)
+
+
+def _imported(mechanism: Mechanism, built: Built) -> type[softkin.Mechanism]:
+    """The class of the generated package: its modules are read beside those of the catalogue."""
+    folder = Path(mkdtemp(prefix="machine-"))
+    for path, data in files_of([built], languages()).items():
+        if path.startswith("python/softkin/"):
+            target = folder / path.removeprefix("python/")
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(data)
+    for package in ("softkin", "softkin._array_programs", "softkin._unrolled"):
+        paths = import_module(package).__path__
+        paths.append(str(folder / package.replace(".", "/")))
+    module = import_module(f"softkin.{mechanism.name.removeprefix('Kin_').lower()}")
+    return next(v for v in vars(module).values() if getattr(v, "NAME", None) == mechanism.name)

@@ -1,0 +1,205 @@
+"""Every machine of the collection: no solution is wrong, none is lost, and both languages say the same."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import pytest
+import softkin
+from numpy.typing import NDArray
+from softkin import KinematicsError, Status
+
+from tests.machines.collection import HELD, MACHINES, PARAMETERS_DECIDE
+from tests.machines.made import Array, Made, made
+from tests.text.controller import OK
+
+EVERY = pytest.mark.parametrize("name", MACHINES)
+EXPECTED = {
+    "trunnion": 2,
+    "table with B and C": 2,
+    "table with an oblique axis": 2,
+    "oblique slides on a table": 1,
+    "telescope beside its column": 1,
+    "telescope that may turn inside out": 2,
+    "telescope above its shoulder": 2,
+    "skewed rail": 1,
+    "rails in a wedge": 1,
+    "rail and arm with two links": 2,
+    "SCARA on a rail": 2,
+    "arm on a track": 8,
+    "seven axes": 8,
+    "numbers for lengths": 2,
+    "flange that turns against two axes": 4,
+    "palletizer with both motors at the base": 4,
+}
+"""The largest number of solutions, as a search of the closure from many starts finds them."""
+MOST = 300
+_CLOSED, _SAME, _NEAR_SINGULAR = 1e-9, 1e-7, 1e-3
+
+
+def grid(machine: Made) -> Array:
+    """Joints at multiples of a quarter turn and of a length, where every singular pose is, and anywhere."""
+    rng = np.random.default_rng(4)
+    angles, slides = (-180.0, -90.0, 0.0, 90.0, 180.0), (-0.5, 0.0, 0.3)
+    rows = np.array(list(product(*[angles if a else slides for a in machine.closure.angles])))
+    if len(rows) > MOST:
+        rows = rows[rng.choice(len(rows), MOST, replace=False)]
+    sizes = np.where(machine.closure.angles, 200.0, 0.9)
+    return machine.axes(np.concatenate([rows, rng.uniform(-1.0, 1.0, (100, rows.shape[1])) * sizes]))
+
+
+def is_own(machine: Made, axes: Array) -> NDArray[np.bool_]:
+    """Whether every positive quantity of the machine is."""
+    return np.all(machine.closure.positive(machine.closure.joints(axes)) > 1e-6, axis=1)
+
+
+def margins(machine: Made, axes: list[float]) -> list[float]:
+    """The singularity margins at axis values."""
+    return list(machine.robot.singularity(axes).margins.values())
+
+
+@EVERY
+def test_the_number_of_solutions(name: str) -> None:
+    """The witness counts them; it has also compared every slot, the Jacobian and the margins with the closure."""
+    evidence = made(name).built.evidence
+    assert evidence is not None and evidence.inverted is not None
+    assert evidence.inverted.solutions == EXPECTED[name]
+
+
+@EVERY
+def test_every_solution_closes_and_no_pose_is_lost(name: str) -> None:
+    machine = made(name)
+    axes = grid(machine)
+    axes = axes[is_own(machine, axes)]
+    positions, rotations = machine.closure.poses(axes)
+    slots, statuses = machine.robot.inverse_all_batch(positions, rotations, axes)
+    found = statuses == Status.OK
+    assert found.any(axis=1).all(), "a pose at which the machine stands is refused in every slot"
+    for slot in range(slots.shape[1]):
+        rows = found[:, slot]
+        assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= _CLOSED
+
+
+@EVERY
+def test_the_way_back(name: str) -> None:
+    """Away from singular poses the configuration that forward kinematics names leads to the same axes."""
+    machine = made(name)
+    axes = grid(machine)
+    axes = axes[is_own(machine, axes)]
+    regular = np.array([min(np.abs(margins(machine, row)), default=1.0) > _NEAR_SINGULAR for row in axes.tolist()])
+    positions, rotations, configurations, statuses = machine.robot.forward_batch(axes[regular])
+    assert (statuses == Status.OK).all() and regular.sum() > 50
+    back, statuses = machine.robot.inverse_batch(positions, rotations, configurations, axes[regular])
+    assert (statuses == Status.OK).all()
+    assert np.abs(back - axes[regular]).max() <= 1e-6
+
+
+@EVERY
+def test_both_languages_say_the_same(name: str) -> None:
+    machine = made(name)
+    if not machine.has_block:
+        assert len(machine.mechanism.joints) > 6
+        return
+    controller, robot = machine.controller(), machine.robot
+    chosen = grid(machine)[::5]
+    for axes in chosen.tolist():
+        status, answer = controller.forward(axes)
+        if status != OK:
+            assert not is_own(machine, np.array([axes]))[0]
+            with pytest.raises(KinematicsError):
+                robot.forward(axes)
+            continue
+        (frame, configuration), (position, rows, data) = robot.forward(axes), answer
+        assert np.allclose(position, frame.position, rtol=0.0, atol=1e-9 * machine.reach)
+        assert np.allclose(rows, frame.rotation, rtol=0.0, atol=1e-12)
+        assert data[: len(robot.CONFIGURATION)] == tuple(byte % 256 for byte in configuration)
+        for solution in robot.inverse_all(frame, axes):
+            status, found = controller.inverse(frame.position, frame.rotation, solution.configuration, axes)
+            assert (status == OK) == (solution.axes is not None)
+            if solution.axes is not None:
+                assert np.allclose(found[: len(axes)], solution.axes, rtol=0.0, atol=_SAME * machine.reach)
+
+
+@EVERY
+@pytest.mark.parametrize("garbage", [float("nan"), float("inf"), -float("inf"), 1e300])
+def test_garbage_ends_in_a_status(name: str, garbage: float) -> None:
+    machine = made(name)
+    count = len(machine.mechanism.joints)
+    with pytest.raises(KinematicsError):
+        machine.robot.forward([garbage] * count)
+    frame, _ = machine.robot.forward(machine.axes(np.full((1, count), 0.4))[0])
+    with pytest.raises(KinematicsError):
+        machine.robot.inverse(((garbage, 0.0, 0.0), frame.rotation), None, [0.0] * count)
+    if machine.has_block:
+        controller = machine.controller()
+        assert controller.forward([garbage] * count)[0] != OK
+        assert controller.inverse((garbage, 0.0, 0.0), frame.rotation, (), [0.0] * count)[0] != OK
+
+
+def test_a_flange_that_bars_keep_level_turns_about_one_axis() -> None:
+    """What an orientation kinematics behind it is told: the rotations of its chain cancel but for those about z."""
+    robot = made("palletizer with both motors at the base").robot
+    image = robot.orientation_image()
+    assert (robot.FREEDOM, image.flange_axis, image.base_axis) == ("one", (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+
+@pytest.mark.parametrize("name", HELD)
+def test_a_held_joint_keeps_the_value_of_the_reference(name: str) -> None:
+    machine = made(name)
+    held = [machine.mechanism.joints.index(j) for j in machine.mechanism.held_joints]
+    assert machine.robot.HELD == tuple(held) != ()
+    axes = grid(machine)[-20:]
+    positions, rotations = machine.closure.poses(axes)
+    for own, position, rotation in zip(axes, positions, rotations, strict=True):
+        for turn in (0.0, 5.0):
+            reference = own.copy()
+            reference[held] += turn
+            for solution in machine.robot.inverse_all((position, rotation), reference):
+                if solution.axes is not None:
+                    assert [solution.axes[i] for i in held] == [reference[i] for i in held]
+                    error = machine.error(np.array([solution.axes]), position[None], rotation[None])
+                    assert error.max() <= _CLOSED
+
+
+@pytest.mark.parametrize("name", HELD)
+def test_a_held_joint_needs_a_reference(name: str) -> None:
+    robot = made(name).robot
+    frame, _ = robot.forward(made(name).axes(np.full((1, len(robot.AXES)), 0.4))[0])
+    calls = (
+        lambda: robot.inverse(frame),
+        lambda: robot.inverse_all(frame),
+        lambda: robot.inverse_batch([frame.position], [frame.rotation]),
+        lambda: robot.inverse_all_batch([frame.position], [frame.rotation]),
+    )
+    for call in calls:
+        with pytest.raises(KinematicsError, match="a reference is needed: it holds the value of"):
+            call()
+    assert set(robot.branches((frame.position, frame.rotation))) == {None}
+
+
+@pytest.mark.parametrize("name", HELD)
+def test_the_jacobian_has_a_column_for_every_axis_and_the_margins_leave_the_held_ones_out(name: str) -> None:
+    """Where the margins vanish the axes that are solved for cannot move the flange, whatever the held ones can."""
+    machine = made(name)
+    solved = [j not in machine.mechanism.held_joints for j in machine.mechanism.joints]
+    ratios = []
+    for axes in grid(machine)[-40:].tolist():
+        jacobian = np.array(machine.robot.jacobian(axes))
+        expected = machine.closure.jacobian(np.array([axes]), machine.closure.poses(np.array([axes]))[0])[0]
+        assert np.allclose(jacobian, expected, rtol=1e-9, atol=1e-9 * machine.reach)
+        ratios.append(abs(np.linalg.det(jacobian[:, solved])) / np.prod(np.abs(margins(machine, axes))))
+    assert np.ptp(np.log(ratios)) <= 1e-6
+
+
+@pytest.mark.parametrize(("name", "lean"), [("skewed rail", 89.99999999999), ("rails in a wedge", 1e-12)])
+def test_parallel_slides_are_refused_when_the_machine_is_set_up(name: str, lean: float) -> None:
+    machine = made(name)
+    assert len(PARAMETERS_DECIDE) == 2
+    robot = type(machine.robot)
+    assert isinstance(robot(lean=45.0), softkin.Mechanism)
+    with pytest.raises(KinematicsError, match=r"must not vanish: slides would be parallel") as refusal:
+        robot(lean=lean)
+    assert refusal.value.status is Status.NOT_INITIALIZED
+    controller = machine.controller()
+    assert controller.initialise({**machine.robot.parameters, "lean": lean}) != OK
