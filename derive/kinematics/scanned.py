@@ -4,7 +4,7 @@ Both derivations stand in one program. Names of the closed form end in `_closed`
 conditions of the closed form refuse nothing where a scan is made. Branches are two-root steps of both derivations, as
 everywhere. A branch that no step of the trial decides is read off the root that was found. The last byte of the
 configuration says whether the residual rises or falls at the root. The sign of this slope is that of det J over the
-product of the slopes of the trial's steps. So det J is the only margin, and no formula is derived for it.
+product of the determinants of the trial's steps. So det J is the only margin, and no formula is derived for it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from derive.equations.pose_at_axes import (
 from derive.equations.trigonometry import named_trigonometry
 from derive.geometry.frames import Chain
 from derive.ir.interpret import run
-from derive.ir.passes import assemble, renamed
+from derive.ir.passes import normalise, renamed
 from derive.ir.primitives import (
     Atan2,
     Select,
@@ -179,14 +179,14 @@ def search_given(both: Scanned) -> Program:
     arguments = _arguments(both, search_of(both))
     read = [*(real(c) for c in COORDINATE_NAMES), *ROTATION_ENTRIES, *(j.reference for j in both.mechanism.joints)]
     statements = (*finite(read), *both.closed.naming, searched_flag(both.mechanism))
-    return assemble("search_given", statements, [Output(name.name, value) for name, value in arguments])
+    return normalise("search_given", statements, [Output(name.name, value) for name, value in arguments])
 
 
 def from_joints(mechanism: Mechanism) -> Program:
     """The axis values of known joints."""
     known = {j.symbol for j in mechanism.joints}
     lets = [of_angle(let, j, known) for j in mechanism.joints for let in axis_lets(j)]
-    return assemble("from_joints", lets, [Output(j.axis.name, j.axis) for j in mechanism.joints])
+    return normalise("from_joints", lets, [Output(j.axis.name, j.axis) for j in mechanism.joints])
 
 
 def search_of(both: Scanned) -> Program:
@@ -246,12 +246,12 @@ def _trial(both: Scanned) -> Trial:
     joint = mechanism.search.joint.symbol
     own = (Let(cosine(joint), sp.cos(TRIED)), Let(sine(joint), sp.sin(TRIED)))
     solved = with_branch_signs(both.trial.derivation.statements, both.trial_branches)
-    signs = {a.sigma: _wanted(a.branch) * (SIDE if a.slope.reach is not None else 1) for a in both.trial_branches}
+    signs = {a.sigma: _wanted(a.branch) * (SIDE if a.determinant.reach is not None else 1) for a in both.trial_branches}
     residual = real("residual")
     left = Let(residual, both.trial.derivation.residuals[0])
     statements = with_goal(_named_apart((*own, *both.trial.closure.lets, *solved, left), "tried"))
     statements = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
-    angles = [m.angle for m in both.trial.derivation.measures]
+    angles = [m.angle for m in both.trial.derivation.conditionings]
     joints = {j.symbol: j for j in mechanism.joints}
     trial = trial_of(statements, real("residual_tried"), [(a, reference_value(joints[a])) for a in angles])
     return replace(trial, angles=tuple(real(f"{a.name}_tried") for a in angles))
@@ -331,15 +331,15 @@ def determinant_margin(both: Scanned) -> tuple[tuple[Statement, ...], sp.Expr]:
 
 
 def _determinant_scale(both: Scanned) -> sp.Expr:
-    scale = sp.Mul(*[a.slope.scale for a in both.closed_branches])
+    scale = sp.Mul(*[a.determinant.scale for a in both.closed_branches])
     lengths = {s.name: s.value for s in both.closed.derivation.statements if isinstance(s, Let)}
     scale = scale.xreplace({name: lengths[name] for name in scale.free_symbols & lengths.keys()})
     return SCALE ** len(both.mechanism.task.position) / scale
 
 
 def _orientation(both: Scanned) -> int:
-    """+1 where the slope of the residual has the sign of det J over the slopes of the steps, else -1. All poses must
-    agree.
+    """+1 where the slope of the residual has the sign of det J over the determinants of the steps, else -1. All poses
+    must agree.
     """
     mechanism = both.mechanism
     assert mechanism.search is not None
@@ -351,10 +351,10 @@ def _orientation(both: Scanned) -> int:
     lets = [Let(real(f"margin_{n}"), v) for n, v in trial.items()]
     statements = (*derivation_at_axes(mechanism, both.trial, both.forward), *determinant, *lets)
     outputs = [Output("slope", scaled * sp.Mul(*[let.name for let in lets]))]
-    values, _ = run(assemble("orientation_of_the_scan", statements, outputs), {**machine, **axes})
+    values, _ = run(normalise("orientation_of_the_scan", statements, outputs), {**machine, **axes})
     signs = np.unique(np.sign(values["slope"] * slope))
     if len(signs) != 1:
-        raise DescriptionError("the slope of the residual is not the determinant over the slopes of the steps")
+        raise DescriptionError("the slope of the residual is not det J over the determinants of the steps")
     return int(signs[0])
 
 
@@ -366,9 +366,9 @@ def _measured_slope(both: Scanned, samples: dict[str, NDArray[np.float64]]) -> N
     names = [*(real(c) for c in "xyz"), *both.forward.rotation]
     outputs = [Output(n.name, n) for n in names]
     outputs += [Output(f"margin_{a.branch.name}", a.margin(mechanism)) for a in both.trial_branches]
-    values, _ = run(assemble("pose", derivation_at_axes(mechanism, both.trial, both.forward), outputs), samples)
+    values, _ = run(normalise("pose", derivation_at_axes(mechanism, both.trial, both.forward), outputs), samples)
     trial = _trial(both)
-    program = assemble("trial", trial.statements, [Output("value", trial.value)])
+    program = normalise("trial", trial.statements, [Output("value", trial.value)])
     known = {**samples, **{GOAL[real(n)].name: v for n, v in values.items() if real(n) in GOAL}}
     for a in both.trial_branches:
         known[_wanted(a.branch).name] = np.where(values[f"margin_{a.branch.name}"] >= 0, 1.0, -1.0)

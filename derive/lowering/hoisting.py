@@ -101,7 +101,7 @@ def hoisted(
         if own is not None:
             names[node] = replace(own, name=free.fresh(own.name.name, own.name), order=order)
             continue
-        proposal = said(Value(node, 1), called, readers.get(node, "constant"))
+        proposal = said(Value(node, 1), called, readers.get(node, ""))
         names[node] = Named(free.fresh(proposal), 1, "", order)
     outputs = tuple(Output(named.name.name, named.name) for named in names.values())
     values = tuple(Value(node, named.sign) for node, named in names.items())

@@ -17,7 +17,7 @@ from itertools import combinations
 import sympy as sp
 
 from derive.ir.names import Names
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -65,7 +65,7 @@ def with_known_projections(program: Program) -> Program:
     body, taken = list(program.body), Names.of(program)
     for direction in _directions(program):
         body = list(_seen(body, direction, taken))
-    return assemble(program.name, body, program.outputs)
+    return normalise(program.name, body, program.outputs)
 
 
 def _seen(body: Iterable[Statement], direction: _Direction, taken: Names) -> Iterator[Statement]:

@@ -17,7 +17,7 @@ from derive.ir.constants import (
     DEGREE,
 )
 from derive.ir.names import Names
-from derive.ir.passes import assemble, is_read_once
+from derive.ir.passes import is_read_once, normalise
 from derive.ir.primitives import (
     Atan2,
 )
@@ -47,4 +47,4 @@ def without_minus(program: Program) -> Program:
         else rewritten(s, lambda e: e.xreplace(changed))
         for s in program.body
     ]
-    return assemble(program.name, body, [Output(o.name, o.value.xreplace(changed)) for o in program.outputs])
+    return normalise(program.name, body, [Output(o.name, o.value.xreplace(changed)) for o in program.outputs])

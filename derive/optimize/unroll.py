@@ -20,7 +20,7 @@ from itertools import groupby, product
 import sympy as sp
 
 from derive.ir.names import Names
-from derive.ir.passes import assemble, renamed
+from derive.ir.passes import normalise, renamed
 from derive.ir.primitives import (
     Root,
     Select,
@@ -105,13 +105,13 @@ def unroll(program: Program, signs: Sequence[Sign]) -> Program:
         outputs.append(Output(suffixed(REFUSAL, signs, choice), refusals[choice]))
         values = unroller.values(choice)
         outputs += [Output(suffixed(o.name, signs, choice), o.value.xreplace(values)) for o in program.outputs]
-    return assemble(program.name, unroller.body, outputs)
+    return normalise(program.name, unroller.body, outputs)
 
 
 def specialised(program: Program, values: Mapping[sp.Symbol, sp.Expr]) -> Program:
     """The program with some inputs given: choices that this decides disappear."""
     body = [rewritten(s, lambda e: e.xreplace(dict(values))) for s in program.body]
-    return assemble(program.name, body, [Output(o.name, o.value.xreplace(dict(values))) for o in program.outputs])
+    return normalise(program.name, body, [Output(o.name, o.value.xreplace(dict(values))) for o in program.outputs])
 
 
 @dataclass

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     NearestPeriod,
     Wrap,
@@ -47,7 +47,7 @@ def without_chosen_turns(program: Program) -> Program:
     """
     counted = turns_that_count(program)
     body = [_in_any_turn(s, counted) for s in _of_good_input(program)]
-    return assemble(program.name, body, program.outputs)
+    return normalise(program.name, body, program.outputs)
 
 
 def turns_that_count(program: Program) -> frozenset[sp.Symbol]:

@@ -14,15 +14,15 @@ from tests.harness.library import Library, StError, StFault, compile_st
 from tests.text.breakage import FAULTS, MECHANISM, REFUSED, WRONG, texts
 from tests.text.comparisons import COMPARISONS
 from tests.text.controller import OK, Controller
-from tests.text.twins import Twins, twins_of
+from tests.text.serial_pairs import SerialPair, serial_pairs_of
 
 
-def with_text_of(library: Library, label: str) -> Twins:
+def with_text_of(library: Library, label: str) -> SerialPair:
     """A machine, with another text for its block."""
-    (one,) = (t for t in twins_of(MECHANISM) if t.machine.label == label)
+    (one,) = (t for t in serial_pairs_of(MECHANISM) if t.machine.label == label)
     controller = Controller(library, MECHANISM)
     assert controller.initialise(one.robot.parameters) == OK
-    return Twins(one.machine, controller)
+    return SerialPair(one.machine, controller)
 
 
 def compare(library: Library, *methods: str) -> None:

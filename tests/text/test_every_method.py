@@ -1,4 +1,4 @@
-"""Every method of every emitted block is executed, and answers what its Python twin answers."""
+"""Every method of every emitted block is executed, and answers what the Python package answers."""
 
 from __future__ import annotations
 

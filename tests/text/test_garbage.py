@@ -19,7 +19,7 @@ from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK
 from tests.text.limits import has_limits
 from tests.text.pairs import Pair
 from tests.text.samples import NO_TURN, Rows
-from tests.text.twins import Twins
+from tests.text.serial_pairs import SerialPair
 
 GARBAGE = (math.nan, math.inf, -math.inf, 1e300, -1e300, 1.1e9)
 NO_ROTATIONS: tuple[Rows, ...] = (
@@ -147,9 +147,9 @@ def test_what_is_no_rotation(pairs: tuple[Pair, ...]) -> None:
                     assert one.controller.image_with_orientation(rows)[0] == BAD_INPUT
 
 
-def test_a_pose_that_cannot_be_assembled(twins: tuple[Twins, ...]) -> None:
+def test_a_pose_that_cannot_be_assembled(serial_pairs: tuple[SerialPair, ...]) -> None:
     """A joint beyond what the closure allows: a negative radius, an angle past the vertical."""
-    for one in twins[:5]:
+    for one in serial_pairs[:5]:
         for index, joint in enumerate(one.mechanism.joints):
             if joint.domain is None:
                 continue

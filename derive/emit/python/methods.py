@@ -22,7 +22,7 @@ def methods(kin: Kinematics) -> list[Method]:
     """The methods of the generated class that are programs, in the order of their use."""
     axes = _axes(kin)
     axis_values = axes.shape
-    measures = _measures(kin)
+    branch_margins = _branch_margins(kin)
     rows = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i, _ in enumerate(kin.rows, 1))
     margins = tuple(m.name for m in kin.margins)
     found = [
@@ -40,7 +40,7 @@ def methods(kin: Kinematics) -> list[Method]:
         text = "The twist of the frame by rows, per radian."
         entries = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i in range(1, 7))
         found.append(Method("twist", text, kin.twist, (axes,), "Matrix", entries))
-    found += [*_compatible(kin), *carried(kin), *_total_image(kin)]
+    found += [*_compatible(kin), *end_point_shift(kin), *_total_image(kin)]
     if kin.projection is not None and kin.chooses_twist:
         text = "The nearest rotation that the flange can have."
         found.append(Method("projection", text, kin.projection, (ROTATION_ARGUMENT,), "Rotation", ROTATION))
@@ -53,7 +53,7 @@ def methods(kin: Kinematics) -> list[Method]:
         )
     if kin.offset_configuration is not None:
         text = "The signed margin of every branch for a point off the flange."
-        found.append(Method("offset_measures", text, kin.offset_configuration, (axes, offset), "Reals", measures))
+        found.append(Method("offset_margins", text, kin.offset_configuration, (axes, offset), "Reals", branch_margins))
     return found
 
 
@@ -90,7 +90,7 @@ def every_root(kin: Kinematics) -> list[Method]:
 
 def forward(kin: Kinematics) -> Method:
     """Forward kinematics."""
-    result = (POSITION, ROTATION, _measures(kin))
+    result = (POSITION, ROTATION, _branch_margins(kin))
     text = "Position, rotation and the signed margin of every branch."
     return Method("forward", text, kin.forward, (_axes(kin),), "Pose", result)
 
@@ -106,7 +106,7 @@ def forwards(kin: Kinematics) -> list[Method]:
         ),
     )
     text = "The same, found from a given start."
-    result = (POSITION, ROTATION, _measures(kin))
+    result = (POSITION, ROTATION, _branch_margins(kin))
     return [forward(kin), Method("forward_from", text, kin.forward_from, (_axes(kin), *start), "Pose", result)]
 
 
@@ -117,12 +117,12 @@ def branch(kin: Kinematics) -> Method:
     return Method("branch", text, kin.branch, (*pose, *_choice(kin)), "Reals", _axes(kin).shape, is_explained=True)
 
 
-def carried(kin: Kinematics) -> list[Method]:
-    """Where the end point of an orientation kinematics is, on a flange that turns."""
-    if kin.carried is None:
+def end_point_shift(kin: Kinematics) -> list[Method]:
+    """The vector to the end point of an orientation kinematics, on a flange that turns."""
+    if kin.end_point_shift is None:
         return []
-    text = "From a flange that turns to the end point."
-    return [Method("carried", text, kin.carried, (ROTATION_ARGUMENT, *_AXES), "Vector", POSITION)]
+    text = "The vector from a flange that turns to the end point."
+    return [Method("end_point_shift", text, kin.end_point_shift, (ROTATION_ARGUMENT, *_AXES), "Vector", POSITION)]
 
 
 def _compatible(kin: Kinematics) -> list[Method]:
@@ -147,7 +147,7 @@ def _axes(kin: Kinematics) -> Argument:
     return Argument("axes", "Reals", tuple(j.axis.name for j in kin.mechanism.joints))
 
 
-def _measures(kin: Kinematics) -> tuple[Shape, ...]:
+def _branch_margins(kin: Kinematics) -> tuple[Shape, ...]:
     return tuple(f"branch_{b.name}" for b in kin.branches)
 
 

@@ -17,7 +17,7 @@ from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
 from derive.emit.python.calls import every_root
 from derive.emit.python.finish import Function
 from derive.emit.python.layout import formatted
-from derive.emit.python.methods import branch, carried, forwards, limits, methods, shared
+from derive.emit.python.methods import branch, end_point_shift, forwards, limits, methods, shared
 from derive.emit.python.printer import ScalarPrinter, literal, primitives_in
 from derive.emit.python.program import Method, constants_of, has_search, scalar_body, unpacked
 from derive.emit.python.refusal import explained
@@ -194,7 +194,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     """The class of a mechanism, and its programs on arrays."""
     names = _index(kin)
     scalar = methods(kin)
-    arrays = [_untold(m) for m in (*shared(kin), *forwards(kin), branch(kin), limits(kin), *carried(kin))]
+    arrays = [_untold(m) for m in (*shared(kin), *forwards(kin), branch(kin), limits(kin), *end_point_shift(kin))]
     array_programs = _array_programs(kin)
     reasons = explained(reasons_of(kin))
     bodies = [scalar_body(m, reasons) if m.is_explained else scalar_body(_untold(m)) for m in scalar]

@@ -172,7 +172,7 @@ def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
         kinematics.offset_branch,
         kinematics.offset_configuration,
         kinematics.compatible,
-        kinematics.carried,
+        kinematics.end_point_shift,
         kinematics.total_image,
     )
     return tuple(p for p in found if p is not None)

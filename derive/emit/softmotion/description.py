@@ -143,7 +143,7 @@ def _workspace(kinematics: Kinematics) -> Iterator[str]:
     elif not bounds:
         yield from wrap(f"Every position that {limits} allow.", _WIDTH)
     else:
-        why = "Diagnose says which, and by how much if that has a measure"
+        why = "Diagnose says which of them, and by how much where that can be measured"
         yield from wrap(f"A pose inside {limits} is refused for these reasons only; {why}:", _WIDTH)
         yield ""
     for bound in bounds:

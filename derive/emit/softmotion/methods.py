@@ -104,7 +104,7 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
         "AxesToConfiguration_Offset": kinematics.offset_configuration,
         "Jacobian": kinematics.jacobian,
         "IsCompatibleWithPosKin": kinematics.compatible,
-        "GetPositionFromOrientation3": kinematics.carried,
+        "GetPositionFromOrientation3": kinematics.end_point_shift,
         "GetOrientationImageTotal": kinematics.total_image,
         "GetOrientationImageWithOri": kinematics.image if kinematics.total_image else kinematics.projection,
     }

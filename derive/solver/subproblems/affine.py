@@ -1,6 +1,6 @@
 """Affine:  k v + c = 0  with k never zero.
 
-One root, v = -c / k. Slope k. There is no degenerate case: an equation whose k can vanish is not taken.
+One root, v = -c / k. Determinant k. There is no degenerate case: an equation whose k can vanish is not taken.
 """
 
 from __future__ import annotations
@@ -23,6 +23,6 @@ def affine(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Bindin
         linear = linear_coefficients(equation.expression, unknowns)
         if linear is None or not problem.is_never_zero(linear[0][0]):
             continue
-        (slope,), rest = linear
+        (coefficient,), rest = linear
         note = f"{unknowns[0].name} from the {equation.label} equation, which is linear in it"
-        yield Binding("affine", unknowns, (*equation.lets, Let(unknowns[0], sp.expand(-rest / slope), note)))
+        yield Binding("affine", unknowns, (*equation.lets, Let(unknowns[0], sp.expand(-rest / coefficient), note)))

@@ -1,7 +1,7 @@
 """Affine pair:  k1 v + m1 w = e1,  k2 v + m2 w = e2  with k1 m2 - k2 m1 never zero.
 
-One root, by Cramer's rule. Slope k1 m2 - k2 m1. There is no degenerate case: equations whose slope can vanish are not
-taken. A single coefficient may vanish: a table turned by 90 degrees exchanges its axes.
+One root, by Cramer's rule. Determinant k1 m2 - k2 m1. There is no degenerate case: equations whose determinant can
+vanish are not taken. A single coefficient may vanish: a table turned by 90 degrees exchanges its axes.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ def affine_pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[B
         if row1 is None or row2 is None:
             continue
         ((k1, m1), rest1), ((k2, m2), rest2) = row1, row2
-        slope = problem.reduce(k1 * m2 - k2 * m1)
-        if not problem.is_never_zero(slope):
+        determinant = problem.reduce(k1 * m2 - k2 * m1)
+        if not problem.is_never_zero(determinant):
             continue
         names = " and ".join(unknown.name for unknown in unknowns)
         note = f"{names} from the {first.label} and {second.label} equations, linear in both"
-        inverse = slope if slope in problem.signs or -slope in problem.signs else 1 / slope
+        inverse = determinant if determinant in problem.signs or -determinant in problem.signs else 1 / determinant
         values = [problem.tidy(v * inverse) for v in (m1 * rest2 - m2 * rest1, k2 * rest1 - k1 * rest2)]
         lets = (Let(unknowns[0], values[0], note), Let(unknowns[1], values[1]))
         yield Binding("affine pair", unknowns, (*first.lets, *second.lets, *lets))

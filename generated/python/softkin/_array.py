@@ -117,8 +117,8 @@ class OrientationPrograms(Programs):
     """The same of an orientation kinematics."""
 
     @abstractmethod
-    def carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
-        """From a flange that turns to the end point."""
+    def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
+        """The vector from a flange that turns to the end point."""
 
 
 def both_signs(branches: int) -> Signs:

@@ -35,9 +35,9 @@ class CoupledPrograms(Programs):
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """The frame of the second on the frame of the first."""
-        (position, flange, measures), status = self.first.forward(axes[: self.count])
+        (position, flange, margins), status = self.first.forward(axes[: self.count])
         (end, rotation, own), outcome = self.second.forward(axes[self.count :])
-        pose = _plus(position, _turned(flange, end)), _product(flange, rotation), measures + own
+        pose = _plus(position, _turned(flange, end)), _product(flange, rotation), margins + own
         return pose, _both(status, outcome)
 
     def branch(
@@ -52,7 +52,7 @@ class CoupledPrograms(Programs):
             place = _plus(position, _turned(self.flange, end), -1.0)
             axes, found = self.first.branch(place, rotation, *first)
             return axes + own, _both(_both(status, outcome), found)
-        shift, status = self.second.carried(rotation, *self.axis)
+        shift, status = self.second.end_point_shift(rotation, *self.axis)
         axes, outcome = self.first.branch(_plus(position, shift, -1.0), rotation, *first)
         (_, flange, _), found = self.first.forward(axes)
         own, last = self.second.branch(_origin(position), _seen_from(flange, rotation), *second)

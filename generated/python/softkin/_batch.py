@@ -72,14 +72,14 @@ def _poses(robot: Mechanism, values: Array, program: Callable[[slice], _Forward]
     statuses = np.empty(count, np.uint8)
     for rows in _chunks(count):
         with np.errstate(all="ignore"):
-            (position, rotation, measures), status = program(rows)
+            (position, rotation, margins), status = program(rows)
         failed = status != Status.OK
         _write(positions[rows], position, failed)
         for i in range(3):
             _write(rotations[rows, i], rotation[i], failed)
         written = configurations[rows]
-        for i, measure in zip(robot._branch_bytes, measures, strict=True):
-            written[:, i] = _branch_bytes(measure)
+        for i, margin in zip(robot._branch_bytes, margins, strict=True):
+            written[:, i] = _branch_bytes(margin)
         for i, axis in zip(robot._period_bytes, robot.PERIOD_AXES, strict=True):
             written[:, i] = _periods(values[rows, axis])
         written[failed] = 0
@@ -224,8 +224,8 @@ class _Best:
         return nearer
 
 
-def _branch_bytes(measure: Real) -> NDArray[np.int64]:
-    return np.where(np.abs(measure) <= COINCIDENT, COINCIDE, np.where(np.greater(measure, 0.0), FIRST, SECOND))
+def _branch_bytes(margin: Real) -> NDArray[np.int64]:
+    return np.where(np.abs(margin) <= COINCIDENT, COINCIDE, np.where(np.greater(margin, 0.0), FIRST, SECOND))
 
 
 def _periods(axis: Array) -> Array:

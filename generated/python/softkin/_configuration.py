@@ -50,11 +50,11 @@ def slots(branch_bytes: Configuration) -> tuple[Slot, ...]:
     return tuple((slot, tuple(1 if byte == FIRST else -1 for byte in slot)) for slot in found)
 
 
-def branch_byte(measure: float) -> int:
+def branch_byte(margin: float) -> int:
     """The byte of a branch by its signed margin."""
-    if abs(measure) <= COINCIDENT:
+    if abs(margin) <= COINCIDENT:
         return COINCIDE
-    return FIRST if measure > 0.0 else SECOND
+    return FIRST if margin > 0.0 else SECOND
 
 
 def period(axis: float) -> int:

@@ -211,8 +211,8 @@ class Mechanism(ABC):
         pose = self._forward(values)
         if isinstance(pose, Status):
             self._fail("forward", pose, axes=values)
-        position, rows, measures = pose
-        return Frame(position, rows), self._written(measures, values)
+        position, rows, margins = pose
+        return Frame(position, rows), self._written(margins, values)
 
     def orientation(self, axes: Numbers) -> Rotation:
         """The rotation of the frame at axis values, by rows."""
@@ -449,9 +449,9 @@ class Mechanism(ABC):
         """The configuration of branch bytes and period bytes."""
         return branches + periods
 
-    def _written(self, measures: Reals, axes: Reals) -> Configuration:
+    def _written(self, margins: Reals, axes: Reals) -> Configuration:
         """The configuration of a pose."""
-        return tuple(map(branch_byte, measures)) + self._periods(axes)
+        return tuple(map(branch_byte, margins)) + self._periods(axes)
 
     def _periods(self, axes: Reals) -> Configuration:
         return tuple([1 if FIRST_TURN <= axes[i] < SECOND_TURN else period(axes[i]) for i in self.PERIOD_AXES])

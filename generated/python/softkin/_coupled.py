@@ -120,21 +120,21 @@ class Coupled(Mechanism):
         first, turning = self.position_part.BRANCHES, len(self.position_part.PERIOD_AXES)
         return branches[:first] + periods[:turning] + branches[first:] + periods[turning:]
 
-    def _written(self, measures: Reals, axes: Reals) -> Configuration:
+    def _written(self, margins: Reals, axes: Reals) -> Configuration:
         """The configuration of a pose: of the first part, then of the second."""
         first, second, cut = self.position_part, self.orientation_part, self.position_part.BRANCHES
-        carried = first._written(measures[:cut], axes[: self._count])
-        return carried + second._written(measures[cut:], axes[self._count :])
+        carrier_bytes = first._written(margins[:cut], axes[: self._count])
+        return carrier_bytes + second._written(margins[cut:], axes[self._count :])
 
     def _forward(self, axes: Reals) -> Pose | Status:
-        carried = self.position_part._forward(axes[: self._count])
-        if isinstance(carried, Status):
-            return carried
+        carrier = self.position_part._forward(axes[: self._count])
+        if isinstance(carrier, Status):
+            return carrier
         own = self.orientation_part._forward(axes[self._count :])
         if isinstance(own, Status):
             return own
-        position, flange, measures = carried
-        return plus(position, turned(flange, own[0])), product(flange, own[1]), measures + own[2]
+        position, flange, margins = carrier
+        return plus(position, turned(flange, own[0])), product(flange, own[1]), margins + own[2]
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         flange = self.position_part._orientation(axes[: self._count])
@@ -178,7 +178,7 @@ class Coupled(Mechanism):
         self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
     ) -> Reals | Diagnosis | Status:
         """On a flange that the position axes turn: in an allowed pair they do not depend on the orientation axes."""
-        shift = self.orientation_part._carried(rotation, *self._axis)
+        shift = self.orientation_part._end_point_shift(rotation, *self._axis)
         if isinstance(shift, Status):
             return shift
         axes = self.position_part._branch(plus(position, shift, -1.0), rotation, *carrier)
@@ -199,24 +199,24 @@ class Coupled(Mechanism):
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
-        carried = self.position_part._singularity(axes[: self._count])
-        if isinstance(carried, Status):
-            return carried
+        carrier = self.position_part._singularity(axes[: self._count])
+        if isinstance(carrier, Status):
+            return carrier
         own = self.orientation_part._singularity(axes[self._count :])
-        return own if isinstance(own, Status) else carried + own
+        return own if isinstance(own, Status) else carrier + own
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian: the flange moves the end point as a rigid body, the orientation axes relative to it."""
         first, second = axes[: self._count], axes[self._count :]
-        carried, own = self.position_part._twist(first), self.orientation_part._twist(second)
+        carrier, own = self.position_part._twist(first), self.orientation_part._twist(second)
         flange, end = self.position_part._orientation(first), self.orientation_part._forward(second)
-        for part in (carried, own, flange, end):
+        for part in (carrier, own, flange, end):
             if isinstance(part, Status):
                 return part
-        assert not (isinstance(carried, Status) or isinstance(own, Status))
+        assert not (isinstance(carrier, Status) or isinstance(own, Status))
         assert not (isinstance(flange, Status) or isinstance(end, Status))
         arm = turned(flange, end[0])
-        columns = [moved(column, arm) for column in zip(*carried, strict=True)]
+        columns = [moved(column, arm) for column in zip(*carrier, strict=True)]
         columns += [(*turned(flange, c[:3]), *turned(flange, c[3:])) for c in zip(*own, strict=True)]
         return tuple(zip(*columns, strict=True)) if columns else ((),) * len(TWIST)
 

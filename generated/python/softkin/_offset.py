@@ -42,10 +42,10 @@ class OffsetKinematics(Mechanism):
     def configuration_offset(self, axes: Numbers, offset: Numbers) -> Configuration:
         """The configuration with which `inverse_offset` finds these axis values again; offset: as there."""
         values, arm = reals(axes, len(self.AXES), "axes"), _vector(offset, "offset")
-        measures = self._offset_measures(values, arm)
-        if isinstance(measures, Status):
-            self._fail("configuration_offset", measures, axes=values, offset=arm)
-        return self._written(measures, values)
+        margins = self._offset_margins(values, arm)
+        if isinstance(margins, Status):
+            self._fail("configuration_offset", margins, axes=values, offset=arm)
+        return self._written(margins, values)
 
     @abstractmethod
     def _offset_branch(
@@ -53,7 +53,7 @@ class OffsetKinematics(Mechanism):
     ) -> Reals | Diagnosis: ...
 
     @abstractmethod
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status: ...
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status: ...
 
 
 def _vector(values: Numbers, what: str) -> Vector:

@@ -38,8 +38,8 @@ class IterativeForward(Mechanism):
         pose = self._forward_from(values, place, turn)
         if isinstance(pose, Status):
             self._fail("forward", pose, axes=values, position=place)
-        position, rows, measures = pose
-        return Frame(position, rows), self._written(measures, values)
+        position, rows, margins = pose
+        return Frame(position, rows), self._written(margins, values)
 
     def forward_batch(
         self, axes: ArrayLike, start: tuple[ArrayLike, ArrayLike] | None = None

@@ -65,7 +65,7 @@ class Constants:
         machine_scale = displacement + inner_arm + outer_arm + tcp_displacement
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = 1.0 if tcp_above else -1.0
-        part_of_normal_divisor = 1e-22 * outer_arm * outer_arm
+        product_in_normal_divisor = 1e-22 * outer_arm * outer_arm
         twice_outer_arm = 2.0 * outer_arm
         outer_arm_squared_times_rounding = 1e-12 * outer_arm * outer_arm
         machine_scale_times_plane = 1e-6 * machine_scale
@@ -77,11 +77,11 @@ class Constants:
         assembly_sign_by_outer_arm_squared = assembly_sign / (outer_arm * outer_arm)
         outer_arm_squared = outer_arm * outer_arm
         twice_inner_arm = 2.0 * inner_arm
-        part_of_slope_1_by_x = 2.0 * tcp_displacement - 2.0 * displacement
+        sum_in_slope_1_by_x = 2.0 * tcp_displacement - 2.0 * displacement
         self.inner_arm, self.outer_arm, self.displacement = inner_arm, outer_arm, displacement
         self.tcp_displacement, self.offset_a1, self.offset_a2 = tcp_displacement, offset_a1, offset_a2
         self.min_type2_margin, self.machine_scale, self.assembly_sign = min_type2_margin, machine_scale, assembly_sign
-        self.part_of_normal_divisor, self.twice_outer_arm = part_of_normal_divisor, twice_outer_arm
+        self.product_in_normal_divisor, self.twice_outer_arm = product_in_normal_divisor, twice_outer_arm
         self.outer_arm_squared_times_rounding = outer_arm_squared_times_rounding
         self.machine_scale_times_plane = machine_scale_times_plane
         self.inner_arm_times_shortest_link = inner_arm_times_shortest_link
@@ -91,7 +91,7 @@ class Constants:
         self.inner_arm_plus_outer_arm = inner_arm_plus_outer_arm
         self.assembly_sign_by_outer_arm_squared = assembly_sign_by_outer_arm_squared
         self.outer_arm_squared, self.twice_inner_arm = outer_arm_squared, twice_inner_arm
-        self.part_of_slope_1_by_x = part_of_slope_1_by_x
+        self.sum_in_slope_1_by_x = sum_in_slope_1_by_x
 
 
 class BipodRotary(OffsetKinematics):
@@ -198,7 +198,7 @@ class BipodRotary(OffsetKinematics):
         k = self._constants
         assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm, outer_arm_squared_times_rounding = k.outer_arm, k.outer_arm_squared_times_rounding
-        part_of_normal_divisor = k.part_of_normal_divisor
+        product_in_normal_divisor = k.product_in_normal_divisor
         tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -218,7 +218,7 @@ class BipodRotary(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -251,7 +251,7 @@ class BipodRotary(OffsetKinematics):
         k = self._constants
         inner_arm, offset_a1, offset_a2 = k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
-        part_of_normal_divisor = k.part_of_normal_divisor
+        product_in_normal_divisor = k.product_in_normal_divisor
         tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -271,7 +271,7 @@ class BipodRotary(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -411,7 +411,7 @@ class BipodRotary(OffsetKinematics):
         assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm, outer_arm_squared = k.outer_arm, k.outer_arm_squared
         outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
-        part_of_normal_divisor = k.part_of_normal_divisor
+        product_in_normal_divisor = k.product_in_normal_divisor
         tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -431,7 +431,7 @@ class BipodRotary(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -470,7 +470,7 @@ class BipodRotary(OffsetKinematics):
         assembly_sign, inner_arm = k.assembly_sign, k.inner_arm
         machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
         offset_a2, outer_arm_squared_times_rounding = k.offset_a2, k.outer_arm_squared_times_rounding
-        part_of_normal_divisor, part_of_slope_1_by_x = k.part_of_normal_divisor, k.part_of_slope_1_by_x
+        product_in_normal_divisor, sum_in_slope_1_by_x = k.product_in_normal_divisor, k.sum_in_slope_1_by_x
         tcp_displacement_minus_displacement, twice_inner_arm = k.tcp_displacement_minus_displacement, k.twice_inner_arm
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
@@ -491,7 +491,7 @@ class BipodRotary(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -511,12 +511,12 @@ class BipodRotary(OffsetKinematics):
         height_by_normal = root(height_square / normal_square) * assembly_sign
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         twice_x = 2.0 * x
-        slope_1_by_x = twice_x + twice_inner_arm * cos_a1 - part_of_slope_1_by_x
+        slope_1_by_x = twice_x + twice_inner_arm * cos_a1 - sum_in_slope_1_by_x
         foot_y = 0.5 * centre_1_to_2_y
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         twice_y = 2.0 * y
         slope_1_by_y = twice_y + twice_inner_arm * sin_a1
-        slope_2_by_x = part_of_slope_1_by_x + twice_x - twice_inner_arm * cos_a2
+        slope_2_by_x = sum_in_slope_1_by_x + twice_x - twice_inner_arm * cos_a2
         slope_2_by_y = twice_y + twice_inner_arm * sin_a2
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x
@@ -644,13 +644,13 @@ class BipodRotary(OffsetKinematics):
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
         assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm, outer_arm_squared_times_rounding = k.outer_arm, k.outer_arm_squared_times_rounding
-        part_of_normal_divisor = k.part_of_normal_divisor
+        product_in_normal_divisor = k.product_in_normal_divisor
         tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -670,7 +670,7 @@ class BipodRotary(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres

@@ -183,8 +183,8 @@ class CAxis(OrientationKinematics, TwistChoice):
         """Whether a flange that turns can carry this."""
         return Status.OK
 
-    def _carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
-        """From a flange that turns to the end point."""
+    def _end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
+        """The vector from a flange that turns to the end point."""
         return (0.0, 0.0, 0.0)
 
     def _total_image(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> TotalImage | Status:

@@ -215,10 +215,10 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         if not reasonable(flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         flange_along = flange_axis_z * tool_z  # the flange's part along the axis about which the flange turns
-        part_of_flange_offset = tool_z - flange_along * flange_axis_z
+        sum_in_flange_offset = tool_z - flange_along * flange_axis_z
         # distance of the flange's part from the axis about which the flange turns
         flange_offset = root(
-            part_of_flange_offset * part_of_flange_offset
+            sum_in_flange_offset * sum_in_flange_offset
             + flange_along * flange_along * (flange_axis_x * flange_axis_x + flange_axis_y * flange_axis_y)
         )
         # a part of the end point turns with the flange
@@ -226,8 +226,8 @@ class CAxisTool(OrientationKinematics, TwistChoice):
             return Status.INVALID_COUPLING
         return Status.OK
 
-    def _carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
-        """From a flange that turns to the end point."""
+    def _end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
+        """The vector from a flange that turns to the end point."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self._constants

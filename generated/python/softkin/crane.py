@@ -207,9 +207,9 @@ class Crane(OffsetKinematics):
             direction_y_phi = radius_theta
         else:
             reference_phi = (ref_phi - offset_phi) * DEGREE
-            part_of_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
-            direction_x_phi = cos(part_of_direction_y_phi)
-            direction_y_phi = sin(part_of_direction_y_phi)
+            value_in_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
+            direction_x_phi = cos(value_in_direction_y_phi)
+            direction_y_phi = sin(value_in_direction_y_phi)
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0) / DEGREE
         return (axis_r, axis_theta, axis_phi)
 
@@ -334,13 +334,13 @@ class Crane(OffsetKinematics):
             direction_y_phi = radius_theta
         else:
             reference_phi = (ref_phi - offset_phi) * DEGREE
-            part_of_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
-            direction_x_phi = cos(part_of_direction_y_phi)
-            direction_y_phi = sin(part_of_direction_y_phi)
+            value_in_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
+            direction_x_phi = cos(value_in_direction_y_phi)
+            direction_y_phi = sin(value_in_direction_y_phi)
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0) / DEGREE
         return (axis_r, axis_theta, axis_phi)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
@@ -383,9 +383,9 @@ class Crane(OffsetKinematics):
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
-            part_of_direction_y_phi = nearest_on_arc((ref_phi - offset_phi) * DEGREE, 90.0 * DEGREE, 90.0 * DEGREE)
-            direction_x_phi = cos(part_of_direction_y_phi)
-            direction_y_phi = sin(part_of_direction_y_phi)
+            value_in_direction_y_phi = nearest_on_arc((ref_phi - offset_phi) * DEGREE, 90.0 * DEGREE, 90.0 * DEGREE)
+            direction_x_phi = cos(value_in_direction_y_phi)
+            direction_y_phi = sin(value_in_direction_y_phi)
         return (
             offset_r + radius_phi,
             offset_theta + arctan2(direction_y_theta, direction_x_theta) * RADIAN,

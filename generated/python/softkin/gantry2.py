@@ -197,7 +197,7 @@ class Gantry2(OffsetKinematics):
         axis_y = joint_y + offset_y
         return (axis_x, axis_y)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_x, axis_y = axes
         # inputs must be numbers, and of reasonable size

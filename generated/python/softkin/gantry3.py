@@ -202,7 +202,7 @@ class Gantry3(OffsetKinematics):
         axis_z = joint_z + offset_z
         return (axis_x, axis_y, axis_z)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_x, axis_y, axis_z = axes
         if not reasonable(axis_x, axis_y, axis_z):

@@ -288,7 +288,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         axis_y = joint_y + offset_y
         return (axis_x, axis_y, ref_r)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_x, axis_y, axis_r = axes
         if not reasonable(axis_r, axis_x, axis_y):

@@ -298,7 +298,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         axis_z = joint_z + offset_z
         return (axis_x, axis_y, axis_z, ref_r)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_x, axis_y, axis_z, axis_r = axes
         if not reasonable(axis_r, axis_x, axis_y, axis_z):

@@ -232,7 +232,7 @@ class HGantry3(OffsetKinematics):
         axis_z = joint_z + offset_z
         return (axis_a, axis_b, axis_z)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a, axis_b, axis_z = axes
         if not reasonable(axis_a, axis_b, axis_z):

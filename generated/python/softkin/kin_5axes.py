@@ -322,14 +322,14 @@ class Kin5Axes(Mechanism):
         joint_y_minus_y = joint_y - y
         joint_z = axis_z - offset_z
         z = joint_z + tool_length_times_tool_side * cos_b
-        part = (joint_z - z) * tool_side
+        shared_product = (joint_z - z) * tool_side
         joint_x = axis_x - offset_x
         r13_at_b = -r31_at_b * cos_a
         x = joint_x + r13_at_b * tool_length_times_tool_side
         x_minus_joint_x = x - joint_x
         return (
-            (1.0, 0.0, 0.0, joint_y_minus_y, -part * cos_a),
-            (0.0, 1.0, 0.0, x_minus_joint_x, -part * sin_a),
+            (1.0, 0.0, 0.0, joint_y_minus_y, -shared_product * cos_a),
+            (0.0, 1.0, 0.0, x_minus_joint_x, -shared_product * sin_a),
             (0.0, 0.0, 1.0, 0.0, (joint_y_minus_y * sin_a - x_minus_joint_x * cos_a) * tool_side),
             (0.0, 0.0, 0.0, r31_at_b, tool_side * (r21_at_b * cos_a - r11_at_b * sin_a)),
             (0.0, 0.0, 0.0, 0.0, tool_side * (cos_a * cos_a + sin_a * sin_a)),

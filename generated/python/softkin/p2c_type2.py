@@ -69,32 +69,32 @@ class Constants:
         machine_scale = displacement + inner_arm + outer_arm + tcp_link_distance
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = 1.0 if tcp_above else -1.0
-        part_of_normal_divisor = 1e-22 * outer_arm * outer_arm
+        product_in_normal_divisor = 1e-22 * outer_arm * outer_arm
         twice_outer_arm = 2.0 * outer_arm
         outer_arm_squared_times_rounding = 1e-12 * outer_arm * outer_arm
         machine_scale_times_plane = 1e-6 * machine_scale
         inner_arm_times_shortest_link = 1e-9 * inner_arm
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
-        part_of_pivot_1_x = 0.5 * tcp_link_distance - displacement
+        sum_in_pivot_1_x = 0.5 * tcp_link_distance - displacement
         inner_arm_plus_outer_arm = inner_arm + outer_arm
         inner_arm_minus_outer_arm = inner_arm - outer_arm
         assembly_sign_by_outer_arm_squared = assembly_sign / (outer_arm * outer_arm)
         outer_arm_squared = outer_arm * outer_arm
         twice_inner_arm = 2.0 * inner_arm
-        part_of_slope_1_by_x = tcp_link_distance - 2.0 * displacement
+        sum_in_slope_1_by_x = tcp_link_distance - 2.0 * displacement
         self.inner_arm, self.outer_arm, self.displacement = inner_arm, outer_arm, displacement
         self.tcp_link_distance, self.offset_a1, self.offset_a2 = tcp_link_distance, offset_a1, offset_a2
         self.min_type2_margin, self.machine_scale, self.assembly_sign = min_type2_margin, machine_scale, assembly_sign
-        self.part_of_normal_divisor, self.twice_outer_arm = part_of_normal_divisor, twice_outer_arm
+        self.product_in_normal_divisor, self.twice_outer_arm = product_in_normal_divisor, twice_outer_arm
         self.outer_arm_squared_times_rounding = outer_arm_squared_times_rounding
         self.machine_scale_times_plane = machine_scale_times_plane
         self.inner_arm_times_shortest_link = inner_arm_times_shortest_link
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
-        self.part_of_pivot_1_x, self.inner_arm_plus_outer_arm = part_of_pivot_1_x, inner_arm_plus_outer_arm
+        self.sum_in_pivot_1_x, self.inner_arm_plus_outer_arm = sum_in_pivot_1_x, inner_arm_plus_outer_arm
         self.inner_arm_minus_outer_arm = inner_arm_minus_outer_arm
         self.assembly_sign_by_outer_arm_squared = assembly_sign_by_outer_arm_squared
         self.outer_arm_squared, self.twice_inner_arm = outer_arm_squared, twice_inner_arm
-        self.part_of_slope_1_by_x = part_of_slope_1_by_x
+        self.sum_in_slope_1_by_x = sum_in_slope_1_by_x
 
 
 class P2CType2(OffsetKinematics):
@@ -201,17 +201,17 @@ class P2CType2(OffsetKinematics):
         k = self._constants
         assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm, outer_arm_squared_times_rounding = k.outer_arm, k.outer_arm_squared_times_rounding
-        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
+        product_in_normal_divisor, sum_in_pivot_1_x = k.product_in_normal_divisor, k.sum_in_pivot_1_x
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = part_of_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -221,7 +221,7 @@ class P2CType2(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -242,9 +242,9 @@ class P2CType2(OffsetKinematics):
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         foot_y = 0.5 * centre_1_to_2_y
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
-        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
         branch_knee_1 = (y * cos_a1 - span_1_x * sin_a1) / outer_arm
-        span_2_x = part_of_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
         branch_knee_2 = (span_2_x * sin_a2 - y * cos_a2) / outer_arm
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_knee_1, branch_knee_2))
 
@@ -254,17 +254,17 @@ class P2CType2(OffsetKinematics):
         k = self._constants
         inner_arm, offset_a1, offset_a2 = k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
-        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
+        product_in_normal_divisor, sum_in_pivot_1_x = k.product_in_normal_divisor, k.sum_in_pivot_1_x
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = part_of_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -274,7 +274,7 @@ class P2CType2(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -304,15 +304,15 @@ class P2CType2(OffsetKinematics):
         inner_arm_minus_outer_arm, inner_arm_plus_outer_arm = k.inner_arm_minus_outer_arm, k.inner_arm_plus_outer_arm
         inner_arm_times_shortest_link = k.inner_arm_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
-        min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        part_of_pivot_1_x, single_a1, single_a2 = k.part_of_pivot_1_x, k.single_a1, k.single_a2
+        min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
+        single_a2, sum_in_pivot_1_x = k.single_a2, k.sum_in_pivot_1_x
         if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
         y_squared = y * y
         effective_a1 = root(y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
@@ -337,7 +337,7 @@ class P2CType2(OffsetKinematics):
                 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = part_of_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
         effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -414,17 +414,17 @@ class P2CType2(OffsetKinematics):
         assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm, outer_arm_squared = k.outer_arm, k.outer_arm_squared
         outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
-        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
+        product_in_normal_divisor, sum_in_pivot_1_x = k.product_in_normal_divisor, k.sum_in_pivot_1_x
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = part_of_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -434,7 +434,7 @@ class P2CType2(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -455,9 +455,9 @@ class P2CType2(OffsetKinematics):
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
-        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
         margin_stretched_1 = (y * cos_a1 - span_1_x * sin_a1) / outer_arm
-        span_2_x = part_of_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
         margin_stretched_2 = (span_2_x * sin_a2 - y * cos_a2) / outer_arm
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
@@ -473,18 +473,18 @@ class P2CType2(OffsetKinematics):
         assembly_sign, inner_arm = k.assembly_sign, k.inner_arm
         machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
         offset_a2, outer_arm_squared_times_rounding = k.offset_a2, k.outer_arm_squared_times_rounding
-        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
-        part_of_slope_1_by_x, twice_inner_arm = k.part_of_slope_1_by_x, k.twice_inner_arm
+        product_in_normal_divisor, sum_in_pivot_1_x = k.product_in_normal_divisor, k.sum_in_pivot_1_x
+        sum_in_slope_1_by_x, twice_inner_arm = k.sum_in_slope_1_by_x, k.twice_inner_arm
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = part_of_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -494,7 +494,7 @@ class P2CType2(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -514,12 +514,12 @@ class P2CType2(OffsetKinematics):
         height_by_normal = root(height_square / normal_square) * assembly_sign
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         twice_x = 2.0 * x
-        slope_1_by_x = twice_x - part_of_slope_1_by_x - twice_inner_arm * cos_a1
+        slope_1_by_x = twice_x - sum_in_slope_1_by_x - twice_inner_arm * cos_a1
         foot_y = 0.5 * centre_1_to_2_y
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         twice_y = 2.0 * y
         slope_1_by_y = twice_y - twice_inner_arm * sin_a1
-        slope_2_by_x = part_of_slope_1_by_x + twice_x - twice_inner_arm * cos_a2
+        slope_2_by_x = sum_in_slope_1_by_x + twice_x - twice_inner_arm * cos_a2
         slope_2_by_y = twice_y - twice_inner_arm * sin_a2
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x
@@ -553,8 +553,8 @@ class P2CType2(OffsetKinematics):
         inner_arm_minus_outer_arm, inner_arm_plus_outer_arm = k.inner_arm_minus_outer_arm, k.inner_arm_plus_outer_arm
         inner_arm_times_shortest_link = k.inner_arm_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
-        min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        part_of_pivot_1_x, single_a1, single_a2 = k.part_of_pivot_1_x, k.single_a1, k.single_a2
+        min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
+        single_a2, sum_in_pivot_1_x = k.single_a2, k.sum_in_pivot_1_x
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -562,7 +562,7 @@ class P2CType2(OffsetKinematics):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_x = x - point_x  # position of the flange: the point less its offset
-        span_1_x = flange_x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = flange_x - sum_in_pivot_1_x  # rod 1: known part of its vector
         flange_y = y - point_y  # position of the flange: the point less its offset
         flange_y_squared = flange_y * flange_y
         effective_a1 = root(flange_y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
@@ -588,7 +588,7 @@ class P2CType2(OffsetKinematics):
                 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = flange_x + part_of_pivot_1_x  # rod 2: known part of its vector
+        span_2_x = flange_x + sum_in_pivot_1_x  # rod 2: known part of its vector
         effective_a2 = root(flange_y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -647,23 +647,23 @@ class P2CType2(OffsetKinematics):
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
         assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm, outer_arm_squared_times_rounding = k.outer_arm, k.outer_arm_squared_times_rounding
-        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
+        product_in_normal_divisor, sum_in_pivot_1_x = k.product_in_normal_divisor, k.sum_in_pivot_1_x
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = part_of_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -673,7 +673,7 @@ class P2CType2(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -694,9 +694,9 @@ class P2CType2(OffsetKinematics):
         flange_y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
         flange_x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
-        span_1_x = flange_x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = flange_x - sum_in_pivot_1_x  # rod 1: known part of its vector
         branch_knee_1 = (flange_y * cos_a1 - span_1_x * sin_a1) / outer_arm
-        span_2_x = flange_x + part_of_pivot_1_x  # rod 2: known part of its vector
+        span_2_x = flange_x + sum_in_pivot_1_x  # rod 2: known part of its vector
         branch_knee_2 = (span_2_x * sin_a2 - flange_y * cos_a2) / outer_arm
         return (branch_knee_1, branch_knee_2)
 

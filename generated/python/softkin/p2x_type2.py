@@ -57,14 +57,14 @@ class Constants:
         machine_scale_times_rounding = 1e-12 * machine_scale
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
         machine_scale_times_plane = 1e-6 * machine_scale
-        part_of_constant = 2.5e-13 * arm_length * arm_length
+        shared_product = 2.5e-13 * arm_length * arm_length
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         assembly_sign_by_arm_length = assembly_sign / arm_length
         self.arm_length, self.tcp_link_distance, self.offset_a1 = arm_length, tcp_link_distance, offset_a1
         self.offset_a2, self.min_type2_margin, self.assembly_sign = offset_a2, min_type2_margin, assembly_sign
         self.span_1_x, self.machine_scale_times_rounding = span_1_x, machine_scale_times_rounding
         self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
-        self.machine_scale_times_plane, self.part_of_constant = machine_scale_times_plane, part_of_constant
+        self.machine_scale_times_plane, self.shared_product = machine_scale_times_plane, shared_product
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
         self.assembly_sign_by_arm_length = assembly_sign_by_arm_length
 
@@ -199,7 +199,7 @@ class P2XType2(OffsetKinematics):
         k = self._constants
         arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
         machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
-        offset_a1, offset_a2, part_of_constant, span_1_x = k.offset_a1, k.offset_a2, k.part_of_constant, k.span_1_x
+        offset_a1, offset_a2, shared_product, span_1_x = k.offset_a1, k.offset_a2, k.shared_product, k.span_1_x
         if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -208,7 +208,7 @@ class P2XType2(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         radicand_a2 = (arm_length + y) * (arm_length - y)  # quadratic equation for a2: rod 1 (through x)
         # rod 1 (through x) cannot reach
-        if not (radicand_a2 >= -part_of_constant):
+        if not (radicand_a2 >= -shared_product):
             missing = 0.5 * (abs(arm_length - y) + abs(arm_length + y)) - arm_length
             return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
         type2_flat = assembly_sign_by_arm_length * y
@@ -309,7 +309,7 @@ class P2XType2(OffsetKinematics):
         k = self._constants
         arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
         machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
-        offset_a1, offset_a2, part_of_constant, span_1_x = k.offset_a1, k.offset_a2, k.part_of_constant, k.span_1_x
+        offset_a1, offset_a2, shared_product, span_1_x = k.offset_a1, k.offset_a2, k.shared_product, k.span_1_x
         if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -320,7 +320,7 @@ class P2XType2(OffsetKinematics):
         # quadratic equation for a2: rod 1 (through x)
         radicand_a2 = (arm_length + flange_y) * (arm_length - flange_y)
         # rod 1 (through x) cannot reach
-        if not (radicand_a2 >= -part_of_constant):
+        if not (radicand_a2 >= -shared_product):
             missing = 0.5 * (abs(arm_length - flange_y) + abs(arm_length + flange_y)) - arm_length
             return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
         type2_flat = assembly_sign_by_arm_length * flange_y
@@ -338,7 +338,7 @@ class P2XType2(OffsetKinematics):
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
@@ -370,13 +370,13 @@ class P2XType2(OffsetKinematics):
         k = self._constants
         arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
         machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
-        offset_a1, offset_a2, part_of_constant, span_1_x = k.offset_a1, k.offset_a2, k.part_of_constant, k.span_1_x
+        offset_a1, offset_a2, shared_product, span_1_x = k.offset_a1, k.offset_a2, k.shared_product, k.span_1_x
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
         radicand_a2 = (arm_length + y) * (arm_length - y)  # quadratic equation for a2: rod 1 (through x)
         # rod 1 (through x) cannot reach
-        if not (radicand_a2 >= -part_of_constant):
+        if not (radicand_a2 >= -shared_product):
             return None
         type2_flat = assembly_sign_by_arm_length * y
         # flat: the other assembly mode, or too near to losing the plate

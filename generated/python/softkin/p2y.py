@@ -227,7 +227,7 @@ class P2Y(OffsetKinematics):
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         # inputs must be numbers, and of reasonable size

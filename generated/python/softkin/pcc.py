@@ -408,7 +408,7 @@ class PCC(OffsetKinematics):
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants

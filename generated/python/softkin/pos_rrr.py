@@ -687,7 +687,7 @@ class PosRRR(OffsetKinematics):
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         point_x, point_y, point_z = offset

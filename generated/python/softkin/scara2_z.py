@@ -396,7 +396,7 @@ class Scara2Z(OffsetKinematics):
         axis_z = joint_z + offset_z
         return (axis_a1, axis_a2, axis_z)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_z = axes
         point_x, point_y, _ = offset

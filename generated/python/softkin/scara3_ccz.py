@@ -397,7 +397,7 @@ class Scara3CCZ(OffsetKinematics):
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         point_x, point_y, _ = offset

@@ -338,12 +338,12 @@ class Scara3Z(TwistChoice):
         sin_a123 = sin(a1_plus_a2_plus_a3)
         arm_length_3_times_sin_a123 = arm_length_3 * sin_a123
         sin_a12 = sin(a1_plus_a2)
-        part = arm_length_3_times_sin_a123 + arm_length_2 * sin_a12
+        shared_sum = arm_length_3_times_sin_a123 + arm_length_2 * sin_a12
         cos_a12 = cos(a1_plus_a2)
-        part_2 = arm_length_3_times_cos_a123 + arm_length_2 * cos_a12
+        shared_sum_2 = arm_length_3_times_cos_a123 + arm_length_2 * cos_a12
         return (
-            (-part - arm_length_1 * sin_a1, -part, -arm_length_3_times_sin_a123, 0.0),
-            (part_2 + arm_length_1 * cos_a1, part_2, arm_length_3_times_cos_a123, 0.0),
+            (-shared_sum - arm_length_1 * sin_a1, -shared_sum, -arm_length_3_times_sin_a123, 0.0),
+            (shared_sum_2 + arm_length_1 * cos_a1, shared_sum_2, arm_length_3_times_cos_a123, 0.0),
             (0.0, 0.0, 0.0, 1.0),
             (1.0, 1.0, 1.0, 0.0),
         )
@@ -372,12 +372,12 @@ class Scara3Z(TwistChoice):
         sin_a123 = sin(a1_plus_a2_plus_a3)
         arm_length_3_times_sin_a123 = arm_length_3 * sin_a123
         sin_a12 = sin(a1_plus_a2)
-        part = arm_length_3_times_sin_a123 + arm_length_2 * sin_a12
+        shared_sum = arm_length_3_times_sin_a123 + arm_length_2 * sin_a12
         cos_a12 = cos(a1_plus_a2)
-        part_2 = arm_length_3_times_cos_a123 + arm_length_2 * cos_a12
+        shared_sum_2 = arm_length_3_times_cos_a123 + arm_length_2 * cos_a12
         return (
-            (-part - arm_length_1 * sin_a1, -part, -arm_length_3_times_sin_a123, 0.0),
-            (part_2 + arm_length_1 * cos_a1, part_2, arm_length_3_times_cos_a123, 0.0),
+            (-shared_sum - arm_length_1 * sin_a1, -shared_sum, -arm_length_3_times_sin_a123, 0.0),
+            (shared_sum_2 + arm_length_1 * cos_a1, shared_sum_2, arm_length_3_times_cos_a123, 0.0),
             (0.0, 0.0, 0.0, 1.0),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),

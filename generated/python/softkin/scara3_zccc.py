@@ -344,12 +344,12 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         sin_a234 = sin(a2_plus_a3_plus_a4)
         link_length_3_times_sin_a234 = link_length_3 * sin_a234
         sin_a23 = sin(a2_plus_a3)
-        part = link_length_3_times_sin_a234 + link_length_2 * sin_a23
+        shared_sum = link_length_3_times_sin_a234 + link_length_2 * sin_a23
         cos_a23 = cos(a2_plus_a3)
-        part_2 = cos_a234_times_link_length_3 + link_length_2 * cos_a23
+        shared_sum_2 = cos_a234_times_link_length_3 + link_length_2 * cos_a23
         return (
-            (0.0, -part - link_length_1 * sin_a2, -part, -link_length_3_times_sin_a234),
-            (0.0, part_2 + link_length_1 * cos_a2, part_2, cos_a234_times_link_length_3),
+            (0.0, -shared_sum - link_length_1 * sin_a2, -shared_sum, -link_length_3_times_sin_a234),
+            (0.0, shared_sum_2 + link_length_1 * cos_a2, shared_sum_2, cos_a234_times_link_length_3),
             (1.0, 0.0, 0.0, 0.0),
             (0.0, 1.0, 1.0, 1.0),
         )
@@ -378,12 +378,12 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         sin_a234 = sin(a2_plus_a3_plus_a4)
         link_length_3_times_sin_a234 = link_length_3 * sin_a234
         sin_a23 = sin(a2_plus_a3)
-        part = link_length_3_times_sin_a234 + link_length_2 * sin_a23
+        shared_sum = link_length_3_times_sin_a234 + link_length_2 * sin_a23
         cos_a23 = cos(a2_plus_a3)
-        part_2 = cos_a234_times_link_length_3 + link_length_2 * cos_a23
+        shared_sum_2 = cos_a234_times_link_length_3 + link_length_2 * cos_a23
         return (
-            (0.0, -part - link_length_1 * sin_a2, -part, -link_length_3_times_sin_a234),
-            (0.0, part_2 + link_length_1 * cos_a2, part_2, cos_a234_times_link_length_3),
+            (0.0, -shared_sum - link_length_1 * sin_a2, -shared_sum, -link_length_3_times_sin_a234),
+            (0.0, shared_sum_2 + link_length_1 * cos_a2, shared_sum_2, cos_a234_times_link_length_3),
             (1.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
@@ -486,7 +486,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3, ref_a4)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         point_x, point_y, _ = offset

@@ -73,20 +73,19 @@ class Constants:
             "a4", (-720.0, 720.0) if abs(gear_coupling / DEGREE - pitch_zc / (360.0 * DEGREE)) > 0.0 else None
         )
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
-        part_of_constant = -1.0 if flange_down else 1.0
+        shared_value = -1.0 if flange_down else 1.0
         machine_scale_times_free_angle = 1e-11 * machine_scale
-        part_of_constant_2 = gear_coupling / DEGREE - pitch_zc / (360.0 * DEGREE)
+        shared_sum = gear_coupling / DEGREE - pitch_zc / (360.0 * DEGREE)
         link_length_1_times_shortest_link = 1e-9 * link_length_1
-        part_of_z = (gear_coupling - pitch_zc / 360.0) / DEGREE
+        quotient_in_z = (gear_coupling - pitch_zc / 360.0) / DEGREE
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         self.link_length_1, self.link_length_2, self.pitch_zc = link_length_1, link_length_2, pitch_zc
         self.gear_coupling, self.flange_down, self.offset_a1 = gear_coupling, flange_down, offset_a1
         self.offset_a2, self.offset_a3, self.offset_a4 = offset_a2, offset_a3, offset_a4
-        self.machine_scale, self.part_of_constant = machine_scale, part_of_constant
-        self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.part_of_constant_2 = part_of_constant_2
-        self.link_length_1_times_shortest_link, self.part_of_z = link_length_1_times_shortest_link, part_of_z
+        self.machine_scale, self.shared_value = machine_scale, shared_value
+        self.machine_scale_times_free_angle, self.shared_sum = machine_scale_times_free_angle, shared_sum
+        self.link_length_1_times_shortest_link, self.quotient_in_z = link_length_1_times_shortest_link, quotient_in_z
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
 
@@ -208,7 +207,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
-        offset_a3, offset_a4, part_of_constant, part_of_z = k.offset_a3, k.offset_a4, k.part_of_constant, k.part_of_z
+        offset_a3, offset_a4, quotient_in_z, shared_value = k.offset_a3, k.offset_a4, k.quotient_in_z, k.shared_value
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -222,7 +221,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         y = link_length_1 * sin_a1 + link_length_2 * sin_a12
         a3 = axis_a3 - offset_a3
         a4 = DEGREE * (axis_a4 - offset_a4)
-        z = a3 + a4 * part_of_z
+        z = a3 + a4 * quotient_in_z
         a1_plus_a2_plus_a4 = a1_plus_a2 + a4
         cos_a124 = cos(a1_plus_a2_plus_a4)
         sin_a124 = sin(a1_plus_a2_plus_a4)
@@ -230,9 +229,9 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         return (
             (x, y, z),
             (
-                (cos_a124, -part_of_constant * sin_a124, 0.0),
-                (sin_a124, part_of_constant * cos_a124, 0.0),
-                (0.0, 0.0, part_of_constant),
+                (cos_a124, -shared_value * sin_a124, 0.0),
+                (sin_a124, shared_value * cos_a124, 0.0),
+                (0.0, 0.0, shared_value),
             ),
             (sin_a2,),
         )
@@ -241,7 +240,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        offset_a1, offset_a2, offset_a4, part_of_constant = k.offset_a1, k.offset_a2, k.offset_a4, k.part_of_constant
+        offset_a1, offset_a2, offset_a4, shared_value = k.offset_a1, k.offset_a2, k.offset_a4, k.shared_value
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -251,9 +250,9 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         cos_a124 = cos(a1_plus_a2_plus_a4)
         sin_a124 = sin(a1_plus_a2_plus_a4)
         return (
-            (cos_a124, -part_of_constant * sin_a124, 0.0),
-            (sin_a124, part_of_constant * cos_a124, 0.0),
-            (0.0, 0.0, part_of_constant),
+            (cos_a124, -shared_value * sin_a124, 0.0),
+            (sin_a124, shared_value * cos_a124, 0.0),
+            (0.0, 0.0, shared_value),
         )
 
     def _branch(
@@ -271,7 +270,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
-        offset_a4, part_of_z, single_a1, single_a2 = k.offset_a4, k.part_of_z, k.single_a1, k.single_a2
+        offset_a4, quotient_in_z, single_a1, single_a2 = k.offset_a4, k.quotient_in_z, k.single_a1, k.single_a2
         single_a4 = k.single_a4
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
@@ -342,7 +341,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         a4 = DEGREE * (axis_a4 - offset_a4)  # A4: joint value with its whole turns
-        a3 = z - a4 * part_of_z  # a3 from the z equation, which is linear in it
+        a3 = z - a4 * quotient_in_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 
@@ -378,7 +377,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
-        part_of_constant_2 = k.part_of_constant_2
+        shared_sum = k.shared_sum
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -393,18 +392,18 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         return (
             (-link_length_2_times_sin_a12 - link_length_1 * sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
             (cos_a12_times_link_length_2 + link_length_1 * cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
-            (0.0, 0.0, 1.0, part_of_constant_2),
+            (0.0, 0.0, 1.0, shared_sum),
             (1.0, 1.0, 0.0, 1.0),
         )
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         k = self._constants
-        part_of_constant = k.part_of_constant
+        shared_value = k.shared_value
         return (
-            ((1.0, 0.0, 0.0), (0.0, part_of_constant, 0.0), (0.0, 0.0, part_of_constant)),
+            ((1.0, 0.0, 0.0), (0.0, shared_value, 0.0), (0.0, 0.0, shared_value)),
             (0.0, 0.0, 1.0),
-            (0.0, 0.0, part_of_constant),
+            (0.0, 0.0, shared_value),
         )
 
     def _twist(self, axes: Reals) -> Matrix | Status:
@@ -412,7 +411,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
-        part_of_constant_2 = k.part_of_constant_2
+        shared_sum = k.shared_sum
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -427,7 +426,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         return (
             (-link_length_2_times_sin_a12 - link_length_1 * sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
             (cos_a12_times_link_length_2 + link_length_1 * cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
-            (0.0, 0.0, 1.0, part_of_constant_2),
+            (0.0, 0.0, 1.0, shared_sum),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 1.0, 0.0, 1.0),
@@ -437,7 +436,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         k = self._constants
-        flange_down, part_of_constant = k.flange_down, k.part_of_constant
+        flange_down, shared_value = k.flange_down, k.shared_value
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         if flange_down:
             heading_along = r11 - r22
@@ -452,9 +451,9 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return (
-            (cos_heading, -part_of_constant * sin_heading, 0.0),
-            (sin_heading, part_of_constant * cos_heading, 0.0),
-            (0.0, 0.0, part_of_constant),
+            (cos_heading, -shared_value * sin_heading, 0.0),
+            (sin_heading, shared_value * cos_heading, 0.0),
+            (0.0, 0.0, shared_value),
         )
 
     def _offset_branch(
@@ -471,7 +470,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         link_length_1_times_shortest_link, link_length_2 = k.link_length_1_times_shortest_link, k.link_length_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
-        part_of_z, single_a1, single_a2 = k.part_of_z, k.single_a1, k.single_a2
+        quotient_in_z, single_a1, single_a2 = k.quotient_in_z, k.single_a1, k.single_a2
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         reference_a4 = (ref_a4 - offset_a4) * DEGREE
@@ -545,12 +544,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         # commanded point, in the frame of the last moving joint
-        tool_z = point_z + (-2.0 * point_z if flange_down else 0.0) + part_of_z * reference_a4
+        tool_z = point_z + (-2.0 * point_z if flange_down else 0.0) + quotient_in_z * reference_a4
         a3 = z - tool_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, ref_a4)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         point_x, point_y, _ = offset

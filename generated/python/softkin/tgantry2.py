@@ -228,7 +228,7 @@ class TGantry2(OffsetKinematics):
         axis_b = b + offset_b
         return (axis_a, axis_b)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a, axis_b = axes
         # inputs must be numbers, and of reasonable size

@@ -129,22 +129,22 @@ class Tool(OrientationKinematics):
             return Status.BAD_INPUT
         # the flange's part along the axis about which the flange turns
         flange_along = flange_axis_x * tool_x + flange_axis_y * tool_y + flange_axis_z * tool_z
-        part_of_flange_offset = tool_x - flange_along * flange_axis_x
-        part_of_flange_offset_2 = tool_y - flange_along * flange_axis_y
-        part_of_flange_offset_3 = tool_z - flange_along * flange_axis_z
+        sum_in_flange_offset = tool_x - flange_along * flange_axis_x
+        sum_in_flange_offset_2 = tool_y - flange_along * flange_axis_y
+        sum_in_flange_offset_3 = tool_z - flange_along * flange_axis_z
         # distance of the flange's part from the axis about which the flange turns
         flange_offset = sqrt(
-            part_of_flange_offset * part_of_flange_offset
-            + part_of_flange_offset_2 * part_of_flange_offset_2
-            + part_of_flange_offset_3 * part_of_flange_offset_3
+            sum_in_flange_offset * sum_in_flange_offset
+            + sum_in_flange_offset_2 * sum_in_flange_offset_2
+            + sum_in_flange_offset_3 * sum_in_flange_offset_3
         )
         # a part of the end point turns with the flange
         if not (flange_offset <= unnoticed_shift):
             return Status.INVALID_COUPLING
         return Status.OK
 
-    def _carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
-        """From a flange that turns to the end point."""
+    def _end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
+        """The vector from a flange that turns to the end point."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self._constants

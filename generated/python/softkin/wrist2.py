@@ -344,10 +344,10 @@ class Wrist2(OrientationKinematics):
             return Status.BAD_INPUT
         # the flange's part along the axis about which the flange turns
         flange_along = flange_axis_z * roll_axis_offset_z
-        part_of_flange_offset = roll_axis_offset_z - flange_along * flange_axis_z
+        sum_in_flange_offset = roll_axis_offset_z - flange_along * flange_axis_z
         # distance of the flange's part from the axis about which the flange turns
         flange_offset = root(
-            part_of_flange_offset * part_of_flange_offset
+            sum_in_flange_offset * sum_in_flange_offset
             + flange_along * flange_along * (flange_axis_x * flange_axis_x + flange_axis_y * flange_axis_y)
         )
         # a part of the end point turns with the flange
@@ -357,8 +357,8 @@ class Wrist2(OrientationKinematics):
             return Status.INVALID_COUPLING
         return Status.OK
 
-    def _carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
-        """From a flange that turns to the end point."""
+    def _end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
+        """The vector from a flange that turns to the end point."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis

@@ -339,8 +339,8 @@ class Wrist3(OrientationKinematics):
         """Whether a flange that turns can carry this."""
         return Status.OK
 
-    def _carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
-        """From a flange that turns to the end point."""
+    def _end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
+        """The vector from a flange that turns to the end point."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         k = self._constants
         tool_offset_x, tool_offset_y, tool_offset_z = k.tool_offset_x, k.tool_offset_y, k.tool_offset_z

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from softkin import _array, _scalar
 
 from derive.ir.interpret import run, solve
-from derive.ir.passes import assemble, hoist
+from derive.ir.passes import hoist, normalise
 from derive.ir.program import (
     Iterate,
     Let,
@@ -41,7 +41,7 @@ def square_root(limit: int = 20) -> Program:
         limit=limit,
         otherwise=Status.IMPOSSIBLE,
     )
-    return assemble("heron", (loop,), [Output("x", X), Output("step", STEP)])
+    return normalise("heron", (loop,), [Output("x", X), Output("step", STEP)])
 
 
 def test_every_row_iterates_until_it_is_done() -> None:
@@ -76,7 +76,7 @@ def test_passes_see_into_a_loop() -> None:
     loop = square_root().body[0]
     assert isinstance(loop, Iterate)
     alias = replace(loop, step=(Let(Y, B), Let(STEP, (A - Y * X**2) / (2 * X))))
-    program = assemble("p", (Let(B, A**2), alias), [Output("x", X)])
+    program = normalise("p", (Let(B, A**2), alias), [Output("x", X)])
     assert [type(s) for s in program.body] == [Let, Iterate]
     (lowered,), hoisted = hoist([program], ["a"])
     assert [h.name for h in hoisted] == [B] and [type(s) for s in lowered.body] == [Iterate]

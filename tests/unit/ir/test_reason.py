@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
-from derive.ir.passes import assemble, hoist, untold, with_inputs
+from derive.ir.passes import hoist, normalise, untold, with_inputs
 from derive.ir.primitives import Select
 from derive.ir.program import Let, Output, Program, Require, Status, reads, rewritten, told
 from derive.ir.reason import Kind, OtherTurn, Reason, Subject, Unit, Why, about, about_joint
@@ -31,31 +31,31 @@ def amount_of(program: Program) -> sp.Expr | None:
 
 
 def test_what_only_an_amount_reads_is_written_out_in_it() -> None:
-    program = assemble("p", [Let(B, 2 * X), Let(C, B + Y), refusing(C**2)], OUT)
+    program = normalise("p", [Let(B, 2 * X), Let(C, B + Y), refusing(C**2)], OUT)
     assert program.bound() == ()
     assert amount_of(program) == (2 * X + Y) ** 2
     assert program.inputs == (X, Y)
 
 
 def test_what_is_bound_before_the_refusal_is_read() -> None:
-    program = assemble("p", [Let(B, 2 * X), refusing(B + 1, sp.Gt(B, 0))], [Output("o", B)])
+    program = normalise("p", [Let(B, 2 * X), refusing(B + 1, sp.Gt(B, 0))], [Output("o", B)])
     assert program.bound() == (B,)
     assert amount_of(program) == B + 1
 
 
 def test_what_is_bound_behind_the_refusal_is_written_out() -> None:
     """The order is that of the values that are needed: an amount moves none of them."""
-    program = assemble("p", [Let(B, 2 * X), refusing(B + 1)], [Output("o", B**2 + B)])
+    program = normalise("p", [Let(B, 2 * X), refusing(B + 1)], [Output("o", B**2 + B)])
     assert [type(s) for s in program.body] == [Require, Let]
     assert amount_of(program) == 2 * X + 1
 
 
 def test_aliases_are_folded_in_amounts() -> None:
-    assert amount_of(assemble("p", [Let(B, X), refusing(B + Y)], OUT)) == X + Y
+    assert amount_of(normalise("p", [Let(B, X), refusing(B + Y)], OUT)) == X + Y
 
 
 def test_amounts_read_constants_that_are_hoisted() -> None:
-    program = assemble("p", [Let(B, 2 * K), Let(C, B + X), refusing(B, sp.Gt(C, 0))], [Output("o", C)])
+    program = normalise("p", [Let(B, 2 * K), Let(C, B + X), refusing(B, sp.Gt(C, 0))], [Output("o", C)])
     (lowered,), hoisted = hoist([program], ["k"])
     assert [let.value for let in hoisted] == [2 * K]
     assert amount_of(lowered) == hoisted[0].name
@@ -85,7 +85,7 @@ def test_every_expression_of_a_reason_is_rewritten() -> None:
 
 
 def test_who_is_told_nothing_computes_nothing() -> None:
-    program = untold(assemble("p", [Let(B, Select(sp.Gt(Y, 0), Y, X)), refusing(B)], OUT))
+    program = untold(normalise("p", [Let(B, Select(sp.Gt(Y, 0), Y, X)), refusing(B)], OUT))
     assert amount_of(program) is None
     assert program.inputs == (X,)
     assert program.requires()[0].condition == sp.Gt(X, 0)

@@ -11,7 +11,7 @@ import sympy as sp
 from derive.emit.python.printer import ScalarPrinter
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
 from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Solve, Statement, Status
 from derive.ir.symbols import Flag, called, count, flag, real
@@ -106,7 +106,7 @@ def test_a_name_that_is_read_as_another_type_is_refused() -> None:
 
 def test_assembling_keeps_types_and_drops_what_else_is_known() -> None:
     length = sp.Symbol("length", positive=True)
-    program = assemble(
+    program = normalise(
         "p", [Let(A, length > 1), Let(X, Select(A, ToReal(N), length))], [Output("o", X), Output("n", N)]
     )
     assert [type(s) for s in program.bound()] == [Flag, sp.Symbol]

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Status
 from derive.ir.symbols import real
@@ -21,7 +21,7 @@ CONSTANTS = ("c", "d")
 
 
 def program(*lets: Let | Require, outputs: tuple[sp.Symbol, ...]) -> Program:
-    return assemble("program", lets, [Output(o.name, o) for o in outputs])
+    return normalise("program", lets, [Output(o.name, o) for o in outputs])
 
 
 def lets_of(one: Program) -> dict[str, sp.Expr]:
@@ -123,7 +123,7 @@ def test_a_loop_keeps_what_moves_inside_and_what_stays_outside() -> None:
 
 def test_a_caller_calls_the_program_as_it_is_now() -> None:
     shared = Program("shared", (X, C), (Let(F, X * C * C),), (Output("f", F),))
-    caller = assemble("caller", [Call(shared, ((X, Y),), (F,))], [Output("f", F)])
+    caller = normalise("caller", [Call(shared, ((X, Y),), (F,))], [Output("f", F)])
     (inner, outer), _ = lowered([shared, caller], CONSTANTS)
     (call,) = (s for s in outer.body if isinstance(s, Call))
     assert call.program == inner and "c_squared" in {s.name for s in outer.inputs}
@@ -158,7 +158,7 @@ def random_program(draw: st.DrawFn) -> Program:
     for k in range(draw(st.integers(2, 7))):
         lets.append(Let(real(f"value_{k}"), draw(expression(list(names)))))
         names.append(lets[-1].name)
-    return assemble("program", lets, [Output(name.name, name) for name in names[-3:]])
+    return normalise("program", lets, [Output(name.name, name) for name in names[-3:]])
 
 
 @settings(max_examples=150)
@@ -167,7 +167,7 @@ def test_values_stay_the_same(one: Program, seed: int) -> None:
     (shorter,), hoisted = lowered([one], CONSTANTS)
     rng = np.random.default_rng(seed)
     given_ = {name: rng.uniform(-2.0, 2.0, 5) for name in "xyzcd"}
-    constants, _ = run(assemble("setup", hoisted, [Output(let.name.name, let.name) for let in hoisted]), given_)
+    constants, _ = run(normalise("setup", hoisted, [Output(let.name.name, let.name) for let in hoisted]), given_)
     before, _ = run(one, given_)
     after, _ = run(shorter, {**given_, **constants})
     for name, value in before.items():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from derive.ir.constants import DEGREE
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, ToReal, Wrap
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import count, real
@@ -21,7 +21,7 @@ ELBOW = Sign(count("sigma_elbow"), ("down", "up"))
 
 
 def of(*lets: Let, outputs: tuple[sp.Symbol, ...]) -> Program:
-    return assemble("p", lets, [Output(o.name, o) for o in outputs])
+    return normalise("p", lets, [Output(o.name, o) for o in outputs])
 
 
 def shorter(program: Program, constants: str = "") -> Program:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -137,7 +137,7 @@ def test_a_single_choice_stays_an_expression() -> None:
 
 
 def refusing(*body: Statement) -> Program:
-    return assemble("branch", body, [Output("a", A), Output("b", B)])
+    return normalise("branch", body, [Output("a", A), Output("b", B)])
 
 
 def test_choices_on_both_sides_of_a_refusal_are_one_where_the_first_stands() -> None:

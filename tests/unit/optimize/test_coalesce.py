@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -30,7 +30,7 @@ A, B, C, P, Q, R, X, Y = (real(n) for n in "abcpqrxy")
 
 
 def unrolled(*body: Statement, outputs: dict[str, sp.Expr]) -> Program:
-    return unroll(assemble("p", body, [Output(name, value) for name, value in outputs.items()]), SIGNS)
+    return unroll(normalise("p", body, [Output(name, value) for name, value in outputs.items()]), SIGNS)
 
 
 def test_squares_that_differ_with_equal_sums_have_one_name() -> None:

@@ -8,7 +8,7 @@ import sympy as sp
 from derive.ir.constants import (
     DEGREE,
 )
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Atan2,
     NearestPeriod,
@@ -47,7 +47,7 @@ def axis(name: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Let:
 
 
 def of(*lets: Let, outputs: tuple[sp.Symbol, ...]) -> Program:
-    return assemble("p", lets, [Output(o.name, o) for o in outputs])
+    return normalise("p", lets, [Output(o.name, o) for o in outputs])
 
 
 def length(value: sp.Expr) -> Let:
@@ -92,7 +92,7 @@ def test_what_else_is_made_of_it_keeps_the_division(read: sp.Expr) -> None:
 
 def test_a_condition_on_it_keeps_the_division() -> None:
     body = (*DIRECTION, axis(AXIS1, S1, C1), Require(sp.Ge(C1, 0), Status.UNREACHABLE))
-    program = assemble("p", body, [Output("o", AXIS1)])
+    program = normalise("p", body, [Output("o", AXIS1)])
     assert plain_directions(program) == program
 
 
@@ -185,7 +185,7 @@ def test_angles_first_where_nothing_reads_sines_but_the_sum() -> None:
     assert found["angle_q2"] == real("angle_of_a") + real("angle_of_q3") and found["angle_of_a"] == Atan2(B, A)
     assert not {"along", "across", "l", "cos_q1", "sin_q2"} & set(found)
     turn = (Let(A, sp.cos(E)), Let(B, sp.sin(E)))  # of length one
-    same(*(assemble("p", (*turn, *p.body), p.outputs) for p in (program, with_added_angles(program, frozenset("ab")))))
+    same(*(normalise("p", (*turn, *p.body), p.outputs) for p in (program, with_added_angles(program, frozenset("ab")))))
     other = of(*lets, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), outputs=(AXIS1, AXIS2, C12, S12, C2))
     assert "cos_q2" in values(with_added_angles(other, frozenset("ab")))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -33,7 +33,7 @@ MADE = (
 
 
 def of(*lets: Let) -> Program:
-    return assemble("p", (*MADE, *lets), [Output(let.name.name, let.name) for let in lets])
+    return normalise("p", (*MADE, *lets), [Output(let.name.name, let.name) for let in lets])
 
 
 def test_ahead_and_beside_are_known() -> None:
@@ -74,5 +74,5 @@ def test_nor_is_a_direction_by_another_length() -> None:
     """The divisor has to be the square of the length of this very point."""
     for length in (Root(X**2 + 2 * Y**2), Root(X**2 + Y**2 + L**2), X + Y):
         lets = (Let(D, length), *MADE[1:], Let(real("ahead"), X * C + Y * S))
-        program = assemble("p", lets, [Output("ahead", real("ahead"))])
+        program = normalise("p", lets, [Output("ahead", real("ahead"))])
         assert with_known_projections(program) == program

@@ -8,7 +8,7 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, ToReal
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import count, real
@@ -26,7 +26,7 @@ def _scaled(length: sp.Expr, condition: sp.Basic) -> Program:
     axis = NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
     divisor = Let(DIVISOR, Select(condition, LENGTH, 1))
     lets = [Let(LENGTH, length), divisor, Let(COS, X / DIVISOR), Let(SIN, Y / DIVISOR), Let(AXIS, axis)]
-    return assemble("p", lets, [Output("axis_q", AXIS)])
+    return normalise("p", lets, [Output("axis_q", AXIS)])
 
 
 def mirrored(program: Program) -> Program:
@@ -65,7 +65,7 @@ def test_a_divisor_leaves_a_direction_only_where_it_is_a_length(
 @pytest.mark.parametrize("factor", [K, -K, X * K, -Root(K**2), sp.Integer(-1)])
 def test_a_factor_of_any_sign_turns_a_direction(factor: sp.Expr) -> None:
     axis = NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
-    program = assemble("p", [Let(COS, factor * X), Let(SIN, factor * Y), Let(AXIS, axis)], [Output("axis_q", AXIS)])
+    program = normalise("p", [Let(COS, factor * X), Let(SIN, factor * Y), Let(AXIS, axis)], [Output("axis_q", AXIS)])
     for change in (plain_directions, without_minus, mirrored, lambda p: without_minus(mirrored(p))):
         _agree(program, change(program))
 
@@ -74,7 +74,7 @@ def test_a_branch_sign_turns_a_direction() -> None:
     sigma = Sign(count("sigma_elbow"), ("up", "down"))
     sign, axis = real("sign_elbow"), NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
     lets = [Let(sign, ToReal(sigma.symbol)), Let(COS, sign * X), Let(SIN, sign * Y), Let(AXIS, axis)]
-    program = assemble("p", lets, [Output("axis_q", AXIS)])
+    program = normalise("p", lets, [Output("axis_q", AXIS)])
     given = {name: SAMPLES[name] for name in ("x", "y", "ref")}
     every, _ = run(unroll(mirrored(program), (sigma,)), given)
     for number, word in ((1, "up"), (-1, "down")):

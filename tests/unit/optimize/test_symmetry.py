@@ -9,7 +9,7 @@ from derive.ir.constants import (
     DEGREE,
 )
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Atan2,
     NearestPeriod,
@@ -43,7 +43,7 @@ def wrist() -> Program:
         Let(AXIS_DOWN, NearestPeriod(D + Atan2(M_DOWN, C_DOWN) / DEGREE, N)),
         Let(AXIS_UP, NearestPeriod(D + Atan2(M_UP, C_UP) / DEGREE, N)),
     ]
-    return assemble("wrist", lets, [Output("down", AXIS_DOWN), Output("up", AXIS_UP)])
+    return normalise("wrist", lets, [Output("down", AXIS_DOWN), Output("up", AXIS_UP)])
 
 
 def values(program: Program) -> dict[str, sp.Expr]:
@@ -76,7 +76,7 @@ def test_an_angle_mirrored_at_its_shift_needs_no_condition() -> None:
         Let(AXIS_DOWN, NearestPeriod(D + Atan2(X, Y) / DEGREE, N)),
         Let(AXIS_UP, NearestPeriod(D + Atan2(-X, Y) / DEGREE, N)),
     ]
-    program = assemble("mirrored", lets, [Output("down", AXIS_DOWN), Output("up", AXIS_UP)])
+    program = normalise("mirrored", lets, [Output("down", AXIS_DOWN), Output("up", AXIS_UP)])
     assert values(with_mirrored_branches(program))["axis_up"] == NearestPeriod(2 * D - AXIS_DOWN, N)
     same(program, with_mirrored_branches(program))
 
@@ -89,12 +89,12 @@ def test_another_value_on_the_other_side_is_no_twin() -> None:
         Let(M_DOWN, A * C_DOWN),
         Let(M_UP, A * C_UP),
     ]
-    program = assemble("other", lets, [Output("down", M_DOWN + 1), Output("up", M_UP + 1)])
+    program = normalise("other", lets, [Output("down", M_DOWN + 1), Output("up", M_UP + 1)])
     assert with_mirrored_branches(program) == program
 
 
 def test_an_angle_that_is_no_turn_is_left_alone() -> None:
     """Its value counts, not its direction: half a turn more would be another value."""
     lets = [Let(AXIS_DOWN, Atan2(X, Y) / DEGREE), Let(AXIS_UP, Atan2(-X, -Y) / DEGREE)]
-    program = assemble("single", lets, [Output("down", AXIS_DOWN + 1), Output("up", AXIS_UP + 1)])
+    program = normalise("single", lets, [Output("down", AXIS_DOWN + 1), Output("up", AXIS_UP + 1)])
     assert with_mirrored_branches(program) == program

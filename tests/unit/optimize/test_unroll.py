@@ -11,7 +11,7 @@ import sympy as sp
 
 from derive.description.catalogue import MECHANISMS, load
 from derive.ir.interpret import run
-from derive.ir.passes import assemble, renamed
+from derive.ir.passes import normalise, renamed
 from derive.ir.primitives import (
     NearestPeriod,
     Root,
@@ -183,7 +183,7 @@ def with_limits(branch: Program, limits: Program) -> Program:
     own = {name: called(f"limit_{name.name}", name) for name in limits.bound()}
     values = {**own, **{real(o.name): o.value for o in branch.outputs}}
     checks = [rewritten(renamed(s, lambda n: own[n]), lambda e: e.xreplace(values)) for s in limits.body]
-    return assemble(branch.name, (*branch.body, *checks), branch.outputs)
+    return normalise(branch.name, (*branch.body, *checks), branch.outputs)
 
 
 @pytest.mark.parametrize("name", SHAPES)

@@ -44,7 +44,7 @@ def test_a_direction_never_vanishes(s: float, b: float) -> None:
 def test_one_root_without_conditions() -> None:
     binding = answer(affine, MANY_TERMS)
     assert binding.unknowns == (V,)
-    assert binding.slope is binding.measure is None
+    assert binding.determinant is binding.conditioning is None
     assert all(isinstance(s, Let) for s in binding.statements)
 
 

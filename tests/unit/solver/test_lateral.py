@@ -8,7 +8,7 @@ import sympy as sp
 
 from derive.equations.problem import Equation, Problem
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.program import (
     Output,
     Status,
@@ -29,7 +29,7 @@ def solved(x: float, y: float, beside: float, side: float, free: float = 0.7) ->
     equation = Equation("sideways", cosine(Q) * Y - sine(Q) * X - (BESIDE if beside else 0))
     problem = Problem((Q,), (), (equation,), (Q,), {Q: real("free")}, SCALE)
     (binding,) = trigonometric(problem, (equation,))
-    program = assemble("aim", binding.statements, [Output("c", cosine(Q)), Output("s", sine(Q))])
+    program = normalise("aim", binding.statements, [Output("c", cosine(Q)), Output("s", sine(Q))])
     given = {"x": x, "y": y, "beside": beside, "sigma_q": side, "free": free, "reach": 1000.0}
     outputs, status = run(program, {k: np.asarray(v) for k, v in given.items()})
     return float(outputs["c"]), float(outputs["s"]), Status(status.item())

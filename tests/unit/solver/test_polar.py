@@ -63,16 +63,16 @@ def test_both_roots(sigma: float, a: float, b: float, free: float) -> None:
     assert abs(hypot(c, s) - 1) <= 1e-13
     if hypot(a, b) > 1e-10:
         assert distance(angle_of(values, V), np.arctan2(sigma * b, sigma * a)) <= 1e-13
-    assert binding.slope is not None
-    assert binding.slope.sigma == SIGMA
-    assert sigma * at(binding.slope.value, values) >= 0
+    assert binding.determinant is not None
+    assert binding.determinant.sigma == SIGMA
+    assert sigma * at(binding.determinant.value, values) >= 0
 
 
 @few
 @given(a=NUMBERS, b=NUMBERS)
 def test_a_positive_radius_has_one_root(a: float, b: float) -> None:
     binding = answer(polar, RADIUS)
-    assert binding.slope is None
+    assert binding.determinant is None
     values, _ = execute(binding.statements, {A: a, B: b, SCALE: 1.0, FREE: 0.0})
     assert values["f"] >= 0
     assert abs(values["f"] - hypot(a, b)) <= 1e-13 * hypot(a, b)
@@ -108,7 +108,7 @@ def test_the_centre_leaves_the_reference(given_problem: object, size: float, is_
         values, status = execute(binding.statements, right)
         assert status is Status.OK
         angles.add(round(angle_of(values, V), 9))
-    assert angles == ({0.4} if is_free else {2.0} if binding.slope is None else {2.0, round(2.0 - np.pi, 9)})
+    assert angles == ({0.4} if is_free else {2.0} if binding.determinant is None else {2.0, round(2.0 - np.pi, 9)})
 
 
 @few
@@ -131,7 +131,7 @@ def test_a_sum_becomes_known(f: float, k: float, v: float) -> None:
     """A radius that is longer than the axis by a fixed part."""
     telescope = problem(A - (F + K) * sp.cos(V), B - (F + K) * sp.sin(V), angles=(V,), lengths=(F,), positive=(F + K,))
     binding = answer(polar, telescope)
-    assert binding.slope is None
+    assert binding.determinant is None
     radius = abs(f + k)
     values, _ = execute(binding.statements, {A: radius * cos(v), B: radius * sin(v), K: k, SCALE: 1.0, FREE: v})
     assert distance(angle_of(values, V), v) <= 1e-12

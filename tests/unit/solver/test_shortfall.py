@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.program import Let, Output
 from derive.ir.reason import Reason, Unit, Why
 from derive.ir.symbols import real
@@ -25,7 +25,7 @@ Q = real("q")
 def value(reason: Reason, **values: float) -> float:
     """The amount at numbers."""
     assert reason.amount is not None
-    found, _ = run(assemble("amount", [], [Output("amount", reason.amount)]), values)
+    found, _ = run(normalise("amount", [], [Output("amount", reason.amount)]), values)
     return float(found["amount"])
 
 

@@ -17,7 +17,7 @@ import sympy as sp
 
 from derive.equations.problem import Problem
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Atan2,
     Wrap,
@@ -152,21 +152,25 @@ def sampled(expression: sp.Expr, numbers: Mapping[str, np.ndarray]) -> np.ndarra
 
 def solutions(case: Case, derivation: Derivation, given: Mapping[str, np.ndarray]) -> list[dict[str, np.ndarray]]:
     """The values of all unknowns for every assignment of the signs."""
-    names = [*(f(a) for a in case.angles for f in (cosine, sine)), *case.lengths, *(s.value for s in derivation.slopes)]
+    names = [
+        *(f(a) for a in case.angles for f in (cosine, sine)),
+        *case.lengths,
+        *(s.value for s in derivation.determinants),
+    ]
     outputs = [Output(f"o{k}", n) for k, n in enumerate(names)]
-    program = assemble("solution", derivation.statements, outputs)
+    program = normalise("solution", derivation.statements, outputs)
     heading = {"cos_heading": np.cos(given["heading"]), "sin_heading": np.sin(given["heading"])}
     free = {reference(a).name: np.zeros(COUNT) for a in case.angles}
     found = []
-    for signs in product((1.0, -1.0), repeat=len(derivation.slopes)):
-        sigma = {s.sigma.name: np.asarray(v) for s, v in zip(derivation.slopes, signs, strict=True)}
+    for signs in product((1.0, -1.0), repeat=len(derivation.determinants)):
+        sigma = {s.sigma.name: np.asarray(v) for s, v in zip(derivation.determinants, signs, strict=True)}
         values, status = run(program, {**given, **heading, **free, **sigma})
         assert set(status) == {Status.OK}
         columns = iter(values.values())
         unknowns = {a.name: np.arctan2(*reversed([next(columns), next(columns)])) for a in case.angles}
         unknowns |= {v.name: next(columns) for v in case.lengths}
-        for sign, slope in zip(signs, columns, strict=True):
-            assert np.all(sign * slope > 0)
+        for sign, determinant in zip(signs, columns, strict=True):
+            assert np.all(sign * determinant > 0)
         found.append(unknowns)
     return found
 
@@ -202,7 +206,7 @@ def test_by_these_rules(name: str) -> None:
 def test_what_cannot_vanish_is_preferred() -> None:
     """First the rotation that is commanded directly, although the wrist stands first; then the shorter formula."""
     turn = {"cos_turn": sp.cos(A1 + HEADING), "sin_turn": sp.sin(A1 + HEADING)}
-    assert Case({**plane((L1, A1)), **turn}, (A1,)).derivation.measures == ()
+    assert Case({**plane((L1, A1)), **turn}, (A1,)).derivation.conditionings == ()
     long, short = Case({"x": 2 * P + L1 * L2 - K * TOOL_X, "y": P}, (), (P,)), Case({"y": P}, (), (P,))
     assert [str(s.value) for s in long.derivation.statements] == [str(s.value) for s in short.derivation.statements]
 
@@ -257,7 +261,7 @@ def test_turns_count_once_they_are_chosen() -> None:
     derivation = solve(case.problem, case.arguments, resolve)
     assert turned == [A1]
     assert derivation.rules == ("pair", "affine")
-    program = assemble("screw", derivation.statements, [Output("p", P)])
+    program = normalise("screw", derivation.statements, [Output("p", P)])
     values, _ = run(
         program, {n: np.asarray(v) for n, v in {"x": 0.0, "y": 1.0, "z": 3.0, "k": 2.0, "turn": 10.0}.items()}
     )
@@ -280,7 +284,7 @@ DERIVE = """
 from tests.unit.solver.test_solve import CASES
 for name in ("2R with a tool beside the arm", "2R with absolute angles", "shoulder and elbow"):
     derivation = CASES[name].derivation
-    print(derivation.rules, derivation.slopes, derivation.measures, *derivation.statements, sep="\\n")
+    print(derivation.rules, derivation.determinants, derivation.conditionings, *derivation.statements, sep="\\n")
 """
 
 

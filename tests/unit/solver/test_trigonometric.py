@@ -1,4 +1,4 @@
-"""Trigonometric: a cos u + b sin u = e has two roots, told apart by the sign of the slope."""
+"""Trigonometric: a cos u + b sin u = e has two roots, told apart by the sign of the determinant."""
 
 from __future__ import annotations
 
@@ -107,10 +107,10 @@ def test_both_roots(name: str, link_1: float, link_2: float, p: float, q: float,
         cos_u, sin_u = found["cos_u"], found["sin_u"]
         assert abs(cos_u**2 + sin_u**2 - 1) <= 1e-11
         assert abs(a * cos_u + b * sin_u - values[E]) <= 1e-13 * h
-        assert case.binding.slope is not None
-        slope = at(case.binding.slope.value, found)
-        assert sigma * slope >= -1e-12 * h
-        assert abs(abs(slope) - h * np.sin(half)) <= 1e-6 * h
+        assert case.binding.determinant is not None
+        determinant = at(case.binding.determinant.value, found)
+        assert sigma * determinant >= -1e-12 * h
+        assert abs(abs(determinant) - h * np.sin(half)) <= 1e-6 * h
         roots[sigma] = angle_of(found, U)
     expected = [middle + half, middle - half]
     for root in expected:  # no true root is missing, and the two slots do not hold the same one
@@ -174,13 +174,14 @@ def test_total(name: str, link_1: float, link_2: float, p: float, q: float, e: f
 
 
 def test_the_margin_needs_no_unit() -> None:
-    """Where the amplitude is one of the machine's lengths, the slope over its scale is a plain sine."""
+    """Where the amplitude is one of the machine's lengths, the determinant over its scale is a plain sine."""
     for name in ("cosine alone", "sine alone", "negative sine", "a fixed direction"):
         case = KINDS[name]
-        assert case.binding.slope is not None
+        assert case.binding.determinant is not None
         small, large = ({**machine(k * 3.0, k * 2.0, 0.0, 0.0), E: 0.0} for k in (1.0, 1000.0))
         margins = [
-            at(case.binding.slope.value / case.binding.slope.scale, solved(case, v, 1.0)[0]) for v in (small, large)
+            at(case.binding.determinant.value / case.binding.determinant.scale, solved(case, v, 1.0)[0])
+            for v in (small, large)
         ]
         assert margins == pytest.approx([1.0, 1.0])
 

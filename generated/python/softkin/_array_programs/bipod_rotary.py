@@ -54,7 +54,7 @@ class ArrayPrograms(Programs):
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
-        normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)  # distance between the centres
         # square of the height over the line of the centres
         height_square = (
@@ -79,7 +79,7 @@ class ArrayPrograms(Programs):
         # the rods do not meet
         require(
             status,
-            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.outer_arm_squared_times_rounding),
+            (normal_square > k.product_in_normal_divisor) & (height_square >= -k.outer_arm_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return (

@@ -73,7 +73,7 @@ class ArrayPrograms(OrientationPrograms):
         require(status, (axis_c >= k.lowest_c) & (axis_c <= k.highest_c), Status.UNREACHABLE)
         return status
 
-    def carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
-        """From a flange that turns to the end point."""
+    def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
+        """The vector from a flange that turns to the end point."""
         status = passed(rotation, flange_axis, base_axis)
         return (0.0, 0.0, 0.0), status

@@ -56,7 +56,7 @@ class ArrayPrograms(Programs):
         axis_a1 = a1 + k.offset_a1
         axis_a2 = a2 + k.offset_a2
         # rod 1 (through x) cannot reach
-        require(status, radicand_a2 >= -k.part_of_constant, Status.UNREACHABLE)
+        require(status, radicand_a2 >= -k.shared_product, Status.UNREACHABLE)
         # flat: the other assembly mode, or too near to losing the plate
         require(status, type2_flat >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2), status

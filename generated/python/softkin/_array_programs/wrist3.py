@@ -121,8 +121,8 @@ class ArrayPrograms(OrientationPrograms):
         require(status, (axis_c >= k.lowest_c) & (axis_c <= k.highest_c), Status.UNREACHABLE)
         return status
 
-    def carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
-        """From a flange that turns to the end point."""
+    def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
+        """The vector from a flange that turns to the end point."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         k = self.constants
         status = passed(rotation, flange_axis, base_axis)

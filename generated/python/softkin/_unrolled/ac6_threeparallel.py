@@ -30,7 +30,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_squared_times_plane_2 = 1e-6 * machine_scale * machine_scale
     machine_scale_times_free_angle_2 = 1e-11 * machine_scale
     size_q1_for_q3_times_rounding_2 = 1e-12 * size_q1_for_q3
-    part_of_cos_q6_left_down = 1.000000001 * size_q1_for_q3
+    product_in_cos_q6_left_down = 1.000000001 * size_q1_for_q3
     twice_offset_a5 = 2.0 * offset_a5
     a2_squared_plus_a3_squared_2 = a2 * a2 + a3 * a3
     a2_plus_a3_2 = a2 + a3
@@ -62,14 +62,14 @@ def unrolled(k: Constants) -> Unrolled:
         # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
-            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
+            product_in_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
             d4_times_wrist_y = d4 * wrist_y
-            cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - part_of_cos_q1_before_q1_for_q3) / divisor_q1
+            cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - product_in_cos_q1_before_q1_for_q3) / divisor_q1
             d4_times_wrist_x = d4 * wrist_x
-            part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
-            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - part_of_sin_q1_before_q1_for_q3) / divisor_q1
-            cos_q1_before_q1_for_q3_right = (part_of_cos_q1_before_q1_for_q3 - d4_times_wrist_y) / divisor_q1
-            sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + part_of_sin_q1_before_q1_for_q3) / divisor_q1
+            product_in_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
+            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - product_in_sin_q1_before_q1_for_q3) / divisor_q1
+            cos_q1_before_q1_for_q3_right = (product_in_cos_q1_before_q1_for_q3 - d4_times_wrist_y) / divisor_q1
+            sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + product_in_sin_q1_before_q1_for_q3) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3_left = cos(reference_a1)
@@ -126,17 +126,19 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5 * r31
             wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
             wrist_y_from_q1_along = d5 * r32
-            part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            product_in_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
             wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
-            part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
+            product_in_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
                 wrist_x_from_q1_fixed = r33_times_radius_q6_left_times_d5 - ahead_q1_before_q1_for_q3
-                along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                along_q6_of_q3 = 2.0 * product_in_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
+                across_q6_of_q3 = (
+                    2.0 * product_in_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
@@ -145,17 +147,17 @@ def unrolled(k: Constants) -> Unrolled:
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3_down
                         - along_q6_of_q3 * cos_q6_before_q6_of_q3_down
                     )
-                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
+                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if part_of_highest_q6_of_q3 > 1.0
-                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
+                        if quotient_in_highest_q6_of_q3 > 1.0
+                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
                     )
-                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
+                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if -part_of_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
+                        if -quotient_in_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -175,13 +177,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
-                part_of_cost_q6_of_q3_left_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
+                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                sum_in_cost_q6_of_q3_left_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
-                        + part_of_cost_q6_of_q3_left_down_2 * part_of_cost_q6_of_q3_left_down_2
+                        sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3
+                        + sum_in_cost_q6_of_q3_left_down_2 * sum_in_cost_q6_of_q3_left_down_2
                     )
                     * radius_q6
                 )
@@ -220,7 +222,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_left_up_down = reference_a2
             angle_q2_left_down_down = reference_a2
         angle_q3_down = arctan2(sin_q3, cos_q3)
-        part_of_axis_a3_left_up_down = angle_q3_down * RADIAN
+        quotient_in_axis_a3_left_up_down = angle_q3_down * RADIAN
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_left_up_down - angle_q3_down) * RADIAN
@@ -251,17 +253,19 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5 * r31
             wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
             wrist_y_from_q1_along = d5 * r32
-            part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            product_in_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
             wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
-            part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
+            product_in_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
                 wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - r33_times_radius_q6_left_times_d5
-                along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                along_q6_of_q3 = 2.0 * product_in_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
+                across_q6_of_q3 = (
+                    2.0 * product_in_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
@@ -270,17 +274,17 @@ def unrolled(k: Constants) -> Unrolled:
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3_up
                         - along_q6_of_q3 * cos_q6_before_q6_of_q3_up
                     )
-                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
+                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if part_of_highest_q6_of_q3 > 1.0
-                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
+                        if quotient_in_highest_q6_of_q3 > 1.0
+                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
                     )
-                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
+                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if -part_of_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
+                        if -quotient_in_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -299,13 +303,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
-                part_of_cost_q6_of_q3_left_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
+                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                sum_in_cost_q6_of_q3_left_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
-                        + part_of_cost_q6_of_q3_left_up_2 * part_of_cost_q6_of_q3_left_up_2
+                        sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3
+                        + sum_in_cost_q6_of_q3_left_up_2 * sum_in_cost_q6_of_q3_left_up_2
                     )
                     * radius_q6
                 )
@@ -345,7 +349,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_left_up_up = reference_a2
             angle_q2_left_down_up = reference_a2
         angle_q3_up = arctan2(sin_q3, cos_q3)
-        part_of_axis_a3_left_up_up = angle_q3_up * RADIAN
+        quotient_in_axis_a3_left_up_up = angle_q3_up * RADIAN
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_left_up_up - angle_q3_up) * RADIAN
@@ -402,19 +406,21 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             wrist_y_from_q1_across = d5 * r31
             wrist_y_from_q1_along = d5 * r32
-            part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
-            part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
+            product_in_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            product_in_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
             r33_times_radius_q6_right_times_d5 = d5 * r33_times_radius_q6
             wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
             wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
                 wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + r33_times_radius_q6_right_times_d5
-                along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                along_q6_of_q3 = 2.0 * product_in_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
+                across_q6_of_q3 = (
+                    2.0 * product_in_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
@@ -423,17 +429,17 @@ def unrolled(k: Constants) -> Unrolled:
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3_down
                         - along_q6_of_q3 * cos_q6_before_q6_of_q3_down
                     )
-                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
+                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if part_of_highest_q6_of_q3 > 1.0
-                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
+                        if quotient_in_highest_q6_of_q3 > 1.0
+                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
                     )
-                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
+                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if -part_of_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
+                        if -quotient_in_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -453,13 +459,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
-                part_of_cost_q6_of_q3_right_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
+                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                sum_in_cost_q6_of_q3_right_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
-                        + part_of_cost_q6_of_q3_right_down_2 * part_of_cost_q6_of_q3_right_down_2
+                        sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3
+                        + sum_in_cost_q6_of_q3_right_down_2 * sum_in_cost_q6_of_q3_right_down_2
                     )
                     * radius_q6
                 )
@@ -498,7 +504,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_right_up_down = reference_a2
             angle_q2_right_down_down = reference_a2
         angle_q3_down = arctan2(sin_q3, cos_q3)
-        part_of_axis_a3_right_up_down = angle_q3_down * RADIAN
+        quotient_in_axis_a3_right_up_down = angle_q3_down * RADIAN
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_up_down = offset_a4 + (angle_with_q4_down - angle_q2_right_up_down - angle_q3_down) * RADIAN
@@ -527,19 +533,21 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             wrist_y_from_q1_across = d5 * r31
             wrist_y_from_q1_along = d5 * r32
-            part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
-            part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
+            product_in_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            product_in_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
             r33_times_radius_q6_right_times_d5 = d5 * r33_times_radius_q6
             wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
             wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
                 wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - r33_times_radius_q6_right_times_d5
-                along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                along_q6_of_q3 = 2.0 * product_in_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
+                across_q6_of_q3 = (
+                    2.0 * product_in_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
@@ -548,17 +556,17 @@ def unrolled(k: Constants) -> Unrolled:
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3_up
                         - along_q6_of_q3 * cos_q6_before_q6_of_q3_up
                     )
-                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
+                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if part_of_highest_q6_of_q3 > 1.0
-                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
+                        if quotient_in_highest_q6_of_q3 > 1.0
+                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
                     )
-                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
+                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if -part_of_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
+                        if -quotient_in_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -577,13 +585,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
-                part_of_cost_q6_of_q3_right_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
+                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                sum_in_cost_q6_of_q3_right_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
-                        + part_of_cost_q6_of_q3_right_up_2 * part_of_cost_q6_of_q3_right_up_2
+                        sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3
+                        + sum_in_cost_q6_of_q3_right_up_2 * sum_in_cost_q6_of_q3_right_up_2
                     )
                     * radius_q6
                 )
@@ -623,7 +631,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_right_up_up = reference_a2
             angle_q2_right_down_up = reference_a2
         angle_q3_up = arctan2(sin_q3, cos_q3)
-        part_of_axis_a3_right_up_up = angle_q3_up * RADIAN
+        quotient_in_axis_a3_right_up_up = angle_q3_up * RADIAN
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_right_up_up - angle_q3_up) * RADIAN
@@ -637,7 +645,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_left,
                 offset_a2 + angle_q2_left_up_down * RADIAN,
-                offset_a3 + part_of_axis_a3_left_up_down,
+                offset_a3 + quotient_in_axis_a3_left_up_down,
                 axis_a4_left_up_down,
                 axis_a5_left_down,
                 axis_a6_left_down,
@@ -647,7 +655,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_right,
                 offset_a2 + angle_q2_right_up_down * RADIAN,
-                offset_a3 + part_of_axis_a3_right_up_down,
+                offset_a3 + quotient_in_axis_a3_right_up_down,
                 axis_a4_right_up_down,
                 axis_a5_right_down,
                 axis_a6_right_down,
@@ -657,7 +665,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_left,
                 offset_a2 + angle_q2_left_down_down * RADIAN,
-                offset_a3 - part_of_axis_a3_left_up_down,
+                offset_a3 - quotient_in_axis_a3_left_up_down,
                 axis_a4_left_down_down,
                 axis_a5_left_down,
                 axis_a6_left_down,
@@ -667,7 +675,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_right,
                 offset_a2 + angle_q2_right_down_down * RADIAN,
-                offset_a3 - part_of_axis_a3_right_up_down,
+                offset_a3 - quotient_in_axis_a3_right_up_down,
                 axis_a4_right_down_down,
                 axis_a5_right_down,
                 axis_a6_right_down,
@@ -677,7 +685,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_left,
                 offset_a2 + angle_q2_left_up_up * RADIAN,
-                offset_a3 + part_of_axis_a3_left_up_up,
+                offset_a3 + quotient_in_axis_a3_left_up_up,
                 axis_a4_left_up_up,
                 axis_a5_left_up,
                 axis_a6_left_up,
@@ -687,7 +695,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_right,
                 offset_a2 + angle_q2_right_up_up * RADIAN,
-                offset_a3 + part_of_axis_a3_right_up_up,
+                offset_a3 + quotient_in_axis_a3_right_up_up,
                 axis_a4_right_up_up,
                 axis_a5_right_up,
                 axis_a6_right_up,
@@ -697,7 +705,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_left,
                 offset_a2 + angle_q2_left_down_up * RADIAN,
-                offset_a3 - part_of_axis_a3_left_up_up,
+                offset_a3 - quotient_in_axis_a3_left_up_up,
                 axis_a4_left_down_up,
                 axis_a5_left_up,
                 axis_a6_left_up,
@@ -707,7 +715,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_right,
                 offset_a2 + angle_q2_right_down_up * RADIAN,
-                offset_a3 - part_of_axis_a3_right_up_up,
+                offset_a3 - quotient_in_axis_a3_right_up_up,
                 axis_a4_right_down_up,
                 axis_a5_right_up,
                 axis_a6_right_up,
@@ -787,7 +795,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6_left_down:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6_left_down:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
@@ -810,17 +818,17 @@ def unrolled(k: Constants) -> Unrolled:
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3
                         - along_q6_of_q3 * cos_q6_before_q6_of_q3
                     )
-                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
+                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if part_of_highest_q6_of_q3 > 1.0
-                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
+                        if quotient_in_highest_q6_of_q3 > 1.0
+                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
                     )
-                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
+                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if -part_of_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
+                        if -quotient_in_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -839,14 +847,11 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
-                part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
+                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
+                sum_in_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
-                    sqrt(
-                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
-                        + part_of_cost_q6_of_q3_2 * part_of_cost_q6_of_q3_2
-                    )
+                    sqrt(sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3 + sum_in_cost_q6_of_q3_2 * sum_in_cost_q6_of_q3_2)
                     * radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)

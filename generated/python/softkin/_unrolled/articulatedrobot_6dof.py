@@ -29,7 +29,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a5, single_a6 = k.single_a5, k.single_a6
     machine_scale_squared_times_plane_2 = 1e-6 * machine_scale * machine_scale
     machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    part_of_angle_q3_front_down = arctan2(d4 / effective_q3 + 0.0, a3 / effective_q3 + 0.0)
+    angle_in_angle_q3_front_down = arctan2(d4 / effective_q3 + 0.0, a3 / effective_q3 + 0.0)
     twice_offset_a5 = 2.0 * offset_a5
     a2_plus_effective_q3_2 = a2 + effective_q3
     a2_minus_effective_q3_2 = a2 - effective_q3
@@ -75,14 +75,14 @@ def unrolled(k: Constants) -> Unrolled:
         # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1 * distance_q1
-            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
+            product_in_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
             d3_times_wrist_y = d3 * wrist_y
-            cos_q1_before_q1_for_q3_front = (part_of_cos_q1_before_q1_for_q3 - d3_times_wrist_y) / divisor_q1
-            part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
+            cos_q1_before_q1_for_q3_front = (product_in_cos_q1_before_q1_for_q3 - d3_times_wrist_y) / divisor_q1
+            product_in_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
             d3_times_wrist_x = d3 * wrist_x
-            sin_q1_before_q1_for_q3_front = (d3_times_wrist_x + part_of_sin_q1_before_q1_for_q3) / divisor_q1
-            cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - part_of_cos_q1_before_q1_for_q3) / divisor_q1
-            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - part_of_sin_q1_before_q1_for_q3) / divisor_q1
+            sin_q1_before_q1_for_q3_front = (d3_times_wrist_x + product_in_sin_q1_before_q1_for_q3) / divisor_q1
+            cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - product_in_cos_q1_before_q1_for_q3) / divisor_q1
+            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - product_in_sin_q1_before_q1_for_q3) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3_front = cos(reference_a1)
@@ -103,7 +103,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_up = reference_a2
         axis_a2_front_down = offset_a2 + angle_q2_down * RADIAN
         angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_swing_q3 + part_of_angle_q3_front_down
+        angle_q3 = angle_in_angle_q3_front_down + angle_of_swing_q3
         axis_a3_front_down = offset_a3 + angle_q3 * RADIAN
         r13_from_q1 = r13 * cos_q1_before_q1_for_q3_front + r23 * sin_q1_before_q1_for_q3_front
         angle_q23 = angle_q2_down + angle_q3
@@ -165,7 +165,7 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
             )
         axis_a2_front_up = offset_a2 + angle_q2_up * RADIAN
-        angle_q3 = part_of_angle_q3_front_down - angle_of_swing_q3
+        angle_q3 = angle_in_angle_q3_front_down - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3 * RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
@@ -249,7 +249,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_up = reference_a2
         axis_a2_back_down = offset_a2 + angle_q2_down * RADIAN
         angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_swing_q3 + part_of_angle_q3_front_down
+        angle_q3 = angle_in_angle_q3_front_down + angle_of_swing_q3
         axis_a3_back_down = offset_a3 + angle_q3 * RADIAN
         r13_from_q1 = r13 * cos_q1_before_q1_for_q3_back + r23 * sin_q1_before_q1_for_q3_back
         angle_q23 = angle_q2_down + angle_q3
@@ -311,7 +311,7 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up) * RADIAN
             )
         axis_a2_back_up = offset_a2 + angle_q2_up * RADIAN
-        angle_q3 = part_of_angle_q3_front_down - angle_of_swing_q3
+        angle_q3 = angle_in_angle_q3_front_down - angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3 * RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
@@ -505,7 +505,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
         else:
             angle_q2 = (ref_a2 - offset_a2) * DEGREE
-        angle_q3 = part_of_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_in_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)
         r13_from_q1 = r13 * cos_q1_before_q1_for_q3 + r23 * sin_q1_before_q1_for_q3
         angle_q23 = angle_q2 + angle_q3
         sin_q23 = sin(angle_q23)

@@ -32,14 +32,16 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_3_by_link_length_2_2 = link_length_3 / link_length_2
     link_length_5_minus_link_length_4_2 = link_length_5 - link_length_4
     link_length_4_plus_link_length_5_2 = link_length_4 + link_length_5
-    part_of_pivot_rear_x_left_left = link_length_1 * link_length_3 / link_length_2
+    quotient_in_pivot_rear_x_left_left = link_length_1 * link_length_3 / link_length_2
     link_length_2_by_link_length_3_2 = link_length_2 / link_length_3
-    part_of_type2_arms_aligned_left_left = (
+    quotient_in_type2_arms_aligned_left_left = (
         assembly_sign * link_length_3 / (link_length_4 * link_length_2 * link_length_2)
     )
-    part_of_along_a2_left = link_length_1 * (link_length_2 + link_length_3) / link_length_2
-    part_of_scaled_pivot_rear_y_3 = (link_length_1 + part_of_pivot_rear_x_left_left) * link_length_2 / link_length_3
-    part_of_scaled_pivot_rear_y_4 = link_length_2 * link_length_5 / link_length_3
+    quotient_in_along_a2_left = link_length_1 * (link_length_2 + link_length_3) / link_length_2
+    quotient_in_scaled_pivot_rear_y_3 = (
+        (link_length_1 + quotient_in_pivot_rear_x_left_left) * link_length_2 / link_length_3
+    )
+    quotient_in_scaled_pivot_rear_y_4 = link_length_2 * link_length_5 / link_length_3
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -105,9 +107,9 @@ def unrolled(k: Constants) -> Unrolled:
             centre_1_x_right = pivot_upper_x_right
             centre_1_y_right = pivot_upper_y_right
         span_rear_x = -link_length_3_by_link_length_2_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - part_of_along_a2_left * sin_a1_left
+        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1_left
         span_rear_y = -link_length_3_by_link_length_2_2 * span_upper_y
-        across_a2 = part_of_along_a2_left * cos_a1_left - span_rear_y
+        across_a2 = quotient_in_along_a2_left * cos_a1_left - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
@@ -126,40 +128,40 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2_left_times_cos_swing_a2 = along_a2 * cos_swing_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
-        part_of_cos_a2 = across_a2 * sin_swing_a2
+        product_in_cos_a2 = across_a2 * sin_swing_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2_left_left = (along_a2_left_times_cos_swing_a2 + part_of_cos_a2) / divisor_a2
-        part_of_sin_a2 = along_a2 * sin_swing_a2
+        cos_a2_left_left = (along_a2_left_times_cos_swing_a2 + product_in_cos_a2) / divisor_a2
+        product_in_sin_a2 = along_a2 * sin_swing_a2
         across_a2_left_times_cos_swing_a2 = across_a2 * cos_swing_a2
-        sin_a2_left_left = (across_a2_left_times_cos_swing_a2 - part_of_sin_a2) / divisor_a2
+        sin_a2_left_left = (across_a2_left_times_cos_swing_a2 - product_in_sin_a2) / divisor_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2_left_right = (along_a2_left_times_cos_swing_a2 - part_of_cos_a2) / divisor_a2
-        sin_a2_left_right = (across_a2_left_times_cos_swing_a2 + part_of_sin_a2) / divisor_a2
+        cos_a2_left_right = (along_a2_left_times_cos_swing_a2 - product_in_cos_a2) / divisor_a2
+        sin_a2_left_right = (across_a2_left_times_cos_swing_a2 + product_in_sin_a2) / divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if effective_a2 > link_length_5_times_shortest_link_2 and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             rod_1_x = x - centre_1_x_left
             rod_1_y = y - centre_1_y_left
-            part_of_pivot_rear_x_left_left_2 = pivot_upper_x_left - part_of_pivot_rear_x_left_left * sin_a1_left
+            sum_in_pivot_rear_x = pivot_upper_x_left - quotient_in_pivot_rear_x_left_left * sin_a1_left
             # rod rear: centre about which it swings
-            pivot_rear_x_left = -part_of_pivot_rear_x_left_left_2 - link_length_5 * cos_a2_left_left
-            part_of_pivot_rear_y = pivot_upper_y_left - part_of_pivot_rear_x_left_left * cos_a1_left
-            pivot_rear_y_left = link_length_5 * sin_a2_left_left - part_of_pivot_rear_y
+            pivot_rear_x_left = -sum_in_pivot_rear_x - link_length_5 * cos_a2_left_left
+            sum_in_pivot_rear_y = pivot_upper_y_left - quotient_in_pivot_rear_x_left_left * cos_a1_left
+            pivot_rear_y_left = link_length_5 * sin_a2_left_left - sum_in_pivot_rear_y
             centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left) * link_length_2_by_link_length_3_2
             centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left) * link_length_2_by_link_length_3_2
-            type2_arms_aligned_left = part_of_type2_arms_aligned_left_left * (
+            type2_arms_aligned_left = quotient_in_type2_arms_aligned_left_left * (
                 (y - centre_2_y_left) * rod_1_x - (x - centre_2_x_left) * rod_1_y
             )
             refusal_left_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
             # rod rear: centre about which it swings
-            pivot_rear_x_right = -part_of_pivot_rear_x_left_left_2 - link_length_5 * cos_a2_left_right
-            pivot_rear_y_right = link_length_5 * sin_a2_left_right - part_of_pivot_rear_y
+            pivot_rear_x_right = -sum_in_pivot_rear_x - link_length_5 * cos_a2_left_right
+            pivot_rear_y_right = link_length_5 * sin_a2_left_right - sum_in_pivot_rear_y
             centre_2_x_right = (
                 -pivot_rear_y_right if swap_xy else -pivot_rear_x_right
             ) * link_length_2_by_link_length_3_2
             centre_2_y_right = (
                 -pivot_rear_x_right if swap_xy else -pivot_rear_y_right
             ) * link_length_2_by_link_length_3_2
-            type2_arms_aligned_right = part_of_type2_arms_aligned_left_left * (
+            type2_arms_aligned_right = quotient_in_type2_arms_aligned_left_left * (
                 (y - centre_2_y_right) * rod_1_x - (x - centre_2_x_right) * rod_1_y
             )
             refusal_left_right = 0 if type2_arms_aligned_right >= min_type2_margin else 3
@@ -167,8 +169,8 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_left = 3
             refusal_left_right = 3
         axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left) * RADIAN
-        along_a2 = span_rear_x - part_of_along_a2_left * sin_a1_right
-        across_a2 = part_of_along_a2_left * cos_a1_right - span_rear_y
+        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1_right
+        across_a2 = quotient_in_along_a2_left * cos_a1_right - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
@@ -187,40 +189,40 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2_right_times_cos_swing_a2 = along_a2 * cos_swing_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
-        part_of_cos_a2 = across_a2 * sin_swing_a2
+        product_in_cos_a2 = across_a2 * sin_swing_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2_right_left = (along_a2_right_times_cos_swing_a2 + part_of_cos_a2) / divisor_a2
-        part_of_sin_a2 = along_a2 * sin_swing_a2
+        cos_a2_right_left = (along_a2_right_times_cos_swing_a2 + product_in_cos_a2) / divisor_a2
+        product_in_sin_a2 = along_a2 * sin_swing_a2
         across_a2_right_times_cos_swing_a2 = across_a2 * cos_swing_a2
-        sin_a2_right_left = (across_a2_right_times_cos_swing_a2 - part_of_sin_a2) / divisor_a2
+        sin_a2_right_left = (across_a2_right_times_cos_swing_a2 - product_in_sin_a2) / divisor_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2_right_right = (along_a2_right_times_cos_swing_a2 - part_of_cos_a2) / divisor_a2
-        sin_a2_right_right = (across_a2_right_times_cos_swing_a2 + part_of_sin_a2) / divisor_a2
+        cos_a2_right_right = (along_a2_right_times_cos_swing_a2 - product_in_cos_a2) / divisor_a2
+        sin_a2_right_right = (across_a2_right_times_cos_swing_a2 + product_in_sin_a2) / divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if effective_a2 > link_length_5_times_shortest_link_2 and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             rod_1_x = x - centre_1_x_right
             rod_1_y = y - centre_1_y_right
-            part_of_pivot_rear_x = pivot_upper_x_right - part_of_pivot_rear_x_left_left * sin_a1_right
+            sum_in_pivot_rear_x = pivot_upper_x_right - quotient_in_pivot_rear_x_left_left * sin_a1_right
             # rod rear: centre about which it swings
-            pivot_rear_x_left = -part_of_pivot_rear_x - link_length_5 * cos_a2_right_left
-            part_of_pivot_rear_y = pivot_upper_y_right - part_of_pivot_rear_x_left_left * cos_a1_right
-            pivot_rear_y_left = link_length_5 * sin_a2_right_left - part_of_pivot_rear_y
+            pivot_rear_x_left = -sum_in_pivot_rear_x - link_length_5 * cos_a2_right_left
+            sum_in_pivot_rear_y = pivot_upper_y_right - quotient_in_pivot_rear_x_left_left * cos_a1_right
+            pivot_rear_y_left = link_length_5 * sin_a2_right_left - sum_in_pivot_rear_y
             centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left) * link_length_2_by_link_length_3_2
             centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left) * link_length_2_by_link_length_3_2
-            type2_arms_aligned_left = part_of_type2_arms_aligned_left_left * (
+            type2_arms_aligned_left = quotient_in_type2_arms_aligned_left_left * (
                 (y - centre_2_y_left) * rod_1_x - (x - centre_2_x_left) * rod_1_y
             )
             refusal_right_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
             # rod rear: centre about which it swings
-            pivot_rear_x_right = -part_of_pivot_rear_x - link_length_5 * cos_a2_right_right
-            pivot_rear_y_right = link_length_5 * sin_a2_right_right - part_of_pivot_rear_y
+            pivot_rear_x_right = -sum_in_pivot_rear_x - link_length_5 * cos_a2_right_right
+            pivot_rear_y_right = link_length_5 * sin_a2_right_right - sum_in_pivot_rear_y
             centre_2_x_right = (
                 -pivot_rear_y_right if swap_xy else -pivot_rear_x_right
             ) * link_length_2_by_link_length_3_2
             centre_2_y_right = (
                 -pivot_rear_x_right if swap_xy else -pivot_rear_y_right
             ) * link_length_2_by_link_length_3_2
-            type2_arms_aligned_right = part_of_type2_arms_aligned_left_left * (
+            type2_arms_aligned_right = quotient_in_type2_arms_aligned_left_left * (
                 (y - centre_2_y_right) * rod_1_x - (x - centre_2_x_right) * rod_1_y
             )
             refusal_right_right = 0 if type2_arms_aligned_right >= min_type2_margin else 3
@@ -282,10 +284,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
         sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         span_rear_x = -link_length_3_by_link_length_2_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - part_of_along_a2_left * sin_a1
+        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
-        across_a2 = part_of_along_a2_left * cos_a1 - (-link_length_3_by_link_length_2_2 * span_upper_y)
+        across_a2 = quotient_in_along_a2_left * cos_a1 - (-link_length_3_by_link_length_2_2 * span_upper_y)
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
@@ -313,21 +315,21 @@ def unrolled(k: Constants) -> Unrolled:
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y_3 * sin_a1 - part_of_scaled_pivot_rear_y_4 * cos_a2
+        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y_3 * sin_a1 - quotient_in_scaled_pivot_rear_y_4 * cos_a2
         sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
         if swap_xy:
             centre_1_x = -link_length_1 * cos_a1
             centre_1_y = pivot_upper_x
-            centre_2_x = -(part_of_scaled_pivot_rear_y_3 * cos_a1 + part_of_scaled_pivot_rear_y_4 * sin_a2)
+            centre_2_x = -(quotient_in_scaled_pivot_rear_y_3 * cos_a1 + quotient_in_scaled_pivot_rear_y_4 * sin_a2)
             centre_2_y = -scaled_pivot_rear_x
         else:
             centre_1_x = pivot_upper_x
             centre_1_y = -link_length_1 * cos_a1
             centre_2_x = -scaled_pivot_rear_x
-            centre_2_y = -(part_of_scaled_pivot_rear_y_3 * cos_a1 + part_of_scaled_pivot_rear_y_4 * sin_a2)
+            centre_2_y = -(quotient_in_scaled_pivot_rear_y_3 * cos_a1 + quotient_in_scaled_pivot_rear_y_4 * sin_a2)
         type2_arms_aligned = (
             (x - centre_1_x) * (y - centre_2_y) - (y - centre_1_y) * (x - centre_2_x)
-        ) * part_of_type2_arms_aligned_left_left
+        ) * quotient_in_type2_arms_aligned_left_left
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None

@@ -25,7 +25,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2, tcp_link_distance = k.single_a2, k.tcp_link_distance
     machine_scale_times_plane_2 = 1e-6 * machine_scale
     inner_arm_times_shortest_link_2 = 1e-9 * inner_arm
-    part_of_span_1_x = displacement - 0.5 * tcp_link_distance
+    sum_in_span_1_x = displacement - 0.5 * tcp_link_distance
     inner_arm_plus_outer_arm_2 = inner_arm + outer_arm
     inner_arm_minus_outer_arm_2 = inner_arm - outer_arm
     assembly_sign_by_outer_arm_squared_2 = assembly_sign / (outer_arm * outer_arm)
@@ -39,7 +39,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return 4 * (refused[Status.UNREACHABLE],)
-        span_1_x = part_of_span_1_x + x  # rod 1: known part of its vector
+        span_1_x = sum_in_span_1_x + x  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + y * y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link_2):
@@ -56,7 +56,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 4 * (refused[Status.UNREACHABLE],)
-        span_2_x = x - part_of_span_1_x  # rod 2: known part of its vector
+        span_2_x = x - sum_in_span_1_x  # rod 2: known part of its vector
         effective_a2 = sqrt(span_2_x * span_2_x + y * y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link_2):
@@ -143,7 +143,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
-        span_1_x = part_of_span_1_x + x  # rod 1: known part of its vector
+        span_1_x = sum_in_span_1_x + x  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + y * y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link_2):
@@ -160,7 +160,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
-        span_2_x = x - part_of_span_1_x  # rod 2: known part of its vector
+        span_2_x = x - sum_in_span_1_x  # rod 2: known part of its vector
         effective_a2 = sqrt(span_2_x * span_2_x + y * y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link_2):

@@ -26,7 +26,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_plane_2 = 1e-6 * machine_scale
     arm_length_1_squared_times_rounding_2 = 1e-12 * arm_length_1 * arm_length_1
     arm_length_2_squared_times_rounding_2 = 1e-12 * arm_length_2 * arm_length_2
-    part_of_type2_arms_aligned_left_right = assembly_sign / (arm_length_1 * arm_length_2)
+    quotient_in_type2_arms_aligned_left_right = assembly_sign / (arm_length_1 * arm_length_2)
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -61,7 +61,7 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
         a1 = span_1_x - root_of_radicand_a1
         rod_1_x_left_times_span_2_y = (span_1_x - a1) * span_2_y
-        type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
+        type2_arms_aligned = quotient_in_type2_arms_aligned_left_right * (
             rod_1_x_left_times_span_2_y - rod_2_x_right_times_span_1_y
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -70,7 +70,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right = a2 + offset_a2
         a2 = span_2_x - root_of_radicand_a2
         rod_2_x_left_times_span_1_y = (span_2_x - a2) * span_1_y
-        type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
+        type2_arms_aligned = quotient_in_type2_arms_aligned_left_right * (
             rod_1_x_left_times_span_2_y - rod_2_x_left_times_span_1_y
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -78,13 +78,13 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left = a2 + offset_a2
         a1 = root_of_radicand_a1 + span_1_x
         rod_1_x_right_times_span_2_y = (span_1_x - a1) * span_2_y
-        type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
+        type2_arms_aligned = quotient_in_type2_arms_aligned_left_right * (
             rod_1_x_right_times_span_2_y - rod_2_x_right_times_span_1_y
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_right = a1 + offset_a1
-        type2_arms_aligned = part_of_type2_arms_aligned_left_right * (
+        type2_arms_aligned = quotient_in_type2_arms_aligned_left_right * (
             rod_1_x_right_times_span_2_y - rod_2_x_left_times_span_1_y
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -119,7 +119,7 @@ def unrolled(k: Constants) -> Unrolled:
         a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         type2_arms_aligned = (
             (span_1_x - a1) * span_2_y - (span_2_x - a2) * span_1_y
-        ) * part_of_type2_arms_aligned_left_right
+        ) * quotient_in_type2_arms_aligned_left_right
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None

@@ -25,7 +25,7 @@ def unrolled(k: Constants) -> Unrolled:
     rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
     machine_scale_squared_times_plane_2 = 1e-6 * machine_scale * machine_scale
     machine_scale_times_free_angle_2 = 1e-11 * machine_scale
-    part_of_angle_q3_front_down = arctan2(d4 / effective_q3_2 + 0.0, a3 / effective_q3_2 + 0.0)
+    angle_in_angle_q3_front_down = arctan2(d4 / effective_q3_2 + 0.0, a3 / effective_q3_2 + 0.0)
     a2_plus_effective_q3_2_2 = a2 + effective_q3_2
     a2_minus_effective_q3_2_2 = a2 - effective_q3_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
@@ -124,28 +124,28 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_front,
                 offset_a2 + angle_q2_front_down * RADIAN,
-                offset_a3 + (angle_of_swing_q3_front_down + part_of_angle_q3_front_down) * RADIAN,
+                offset_a3 + (angle_in_angle_q3_front_down + angle_of_swing_q3_front_down) * RADIAN,
             )
             if refusal_front == 0
             else refused[refusal_front],
             (
                 axis_a1_back,
                 offset_a2 + angle_q2_back_down * RADIAN,
-                offset_a3 + (angle_of_swing_q3_back_down + part_of_angle_q3_front_down) * RADIAN,
+                offset_a3 + (angle_in_angle_q3_front_down + angle_of_swing_q3_back_down) * RADIAN,
             )
             if refusal_back == 0
             else refused[refusal_back],
             (
                 axis_a1_front,
                 offset_a2 + angle_q2_front_up * RADIAN,
-                offset_a3 + (part_of_angle_q3_front_down - angle_of_swing_q3_front_down) * RADIAN,
+                offset_a3 + (angle_in_angle_q3_front_down - angle_of_swing_q3_front_down) * RADIAN,
             )
             if refusal_front == 0
             else refused[refusal_front],
             (
                 axis_a1_back,
                 offset_a2 + angle_q2_back_up * RADIAN,
-                offset_a3 + (part_of_angle_q3_front_down - angle_of_swing_q3_back_down) * RADIAN,
+                offset_a3 + (angle_in_angle_q3_front_down - angle_of_swing_q3_back_down) * RADIAN,
             )
             if refusal_back == 0
             else refused[refusal_back],
@@ -207,12 +207,12 @@ def unrolled(k: Constants) -> Unrolled:
             return (
                 arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
                 angle_q2 * RADIAN,
-                (part_of_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
+                (angle_in_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
             )
         return (
             offset_a1 + arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
             offset_a2 + angle_q2 * RADIAN,
-            offset_a3 + (part_of_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
+            offset_a3 + (angle_in_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
         )
 
     def finish(found: tuple[Reals | int, ...], reference: Reals) -> tuple[Reals | int, ...]:

@@ -27,16 +27,16 @@ def unrolled(k: Constants) -> Unrolled:
     tcp_displacement = k.tcp_displacement
     arm_length_squared_2 = arm_length * arm_length
     arm_length_squared_times_rounding_2 = 1e-12 * arm_length * arm_length
-    part_of_span_1_x_2_2 = sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1)
-    part_of_span_1_x_2 = rail_x_1 - rail_x_1 * tcp_displacement / part_of_span_1_x_2_2
-    part_of_span_1_y_2 = rail_y_1 - rail_y_1 * tcp_displacement / part_of_span_1_x_2_2
-    part_of_span_2_x_2_2 = sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2)
-    part_of_span_2_x_2 = rail_x_2 - rail_x_2 * tcp_displacement / part_of_span_2_x_2_2
-    part_of_span_2_y_2 = rail_y_2 - rail_y_2 * tcp_displacement / part_of_span_2_x_2_2
-    part_of_span_3_x_2_2 = sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3)
-    part_of_span_3_x_2 = rail_x_3 - rail_x_3 * tcp_displacement / part_of_span_3_x_2_2
-    part_of_span_3_y_2 = rail_y_3 - rail_y_3 * tcp_displacement / part_of_span_3_x_2_2
-    part_of_type2_rods_coplanar_above_above_above = assembly_sign / (arm_length * arm_length * arm_length)
+    root_in_span_1_x_2 = sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1)
+    sum_in_span_1_x_2 = rail_x_1 - rail_x_1 * tcp_displacement / root_in_span_1_x_2
+    sum_in_span_1_y_2 = rail_y_1 - rail_y_1 * tcp_displacement / root_in_span_1_x_2
+    root_in_span_2_x_2 = sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2)
+    sum_in_span_2_x_2 = rail_x_2 - rail_x_2 * tcp_displacement / root_in_span_2_x_2
+    sum_in_span_2_y_2 = rail_y_2 - rail_y_2 * tcp_displacement / root_in_span_2_x_2
+    root_in_span_3_x_2 = sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3)
+    sum_in_span_3_x_2 = rail_x_3 - rail_x_3 * tcp_displacement / root_in_span_3_x_2
+    sum_in_span_3_y_2 = rail_y_3 - rail_y_3 * tcp_displacement / root_in_span_3_x_2
+    quotient_in_type2_rods_coplanar_above_above_above = assembly_sign / (arm_length * arm_length * arm_length)
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -44,8 +44,8 @@ def unrolled(k: Constants) -> Unrolled:
     ) -> tuple[Any, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = x - part_of_span_1_x_2  # rod 1: known part of its vector
-        span_1_y = y - part_of_span_1_y_2
+        span_1_x = x - sum_in_span_1_x_2  # rod 1: known part of its vector
+        span_1_y = y - sum_in_span_1_y_2
         # quadratic equation for a1: rod 1
         radicand_a1 = arm_length_squared_2 - span_1_x * span_1_x - span_1_y * span_1_y
         if radicand_a1 > 0.0:
@@ -55,8 +55,8 @@ def unrolled(k: Constants) -> Unrolled:
             if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
                 return 8 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a1 = 0.0
-        span_2_x = x - part_of_span_2_x_2  # rod 2: known part of its vector
-        span_2_y = y - part_of_span_2_y_2
+        span_2_x = x - sum_in_span_2_x_2  # rod 2: known part of its vector
+        span_2_y = y - sum_in_span_2_y_2
         # quadratic equation for a2: rod 2
         radicand_a2 = arm_length_squared_2 - span_2_x * span_2_x - span_2_y * span_2_y
         if radicand_a2 > 0.0:
@@ -66,8 +66,8 @@ def unrolled(k: Constants) -> Unrolled:
             if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
                 return 8 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a2 = 0.0
-        span_3_x = x - part_of_span_3_x_2  # rod 3: known part of its vector
-        span_3_y = y - part_of_span_3_y_2
+        span_3_x = x - sum_in_span_3_x_2  # rod 3: known part of its vector
+        span_3_y = y - sum_in_span_3_y_2
         # quadratic equation for a3: rod 3
         radicand_a3 = arm_length_squared_2 - span_3_x * span_3_x - span_3_y * span_3_y
         if radicand_a3 > 0.0:
@@ -82,8 +82,8 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_y = y - pivot_2_y
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        part_of_type2_rods_coplanar_above_above_above_2 = rod_2_x * rod_3_y - rod_2_y * rod_3_x
-        part_of_type2_rods_coplanar_above_above_above_3 = (z - a1) * part_of_type2_rods_coplanar_above_above_above_2
+        sum_in_type2_rods_coplanar_above_above = rod_2_x * rod_3_y - rod_2_y * rod_3_x
+        product_in_type2_rods_coplanar = (z - a1) * sum_in_type2_rods_coplanar_above_above
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         a3 = root_of_radicand_a3 + z
@@ -94,13 +94,13 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_z_above_times_rod_3_y = rod_2_z * rod_3_y
         rod_2_z_above_times_rod_3_x = rod_2_z * rod_3_x
         rod_2_x_times_rod_3_z_above = rod_2_x * rod_3_z
-        part_of_type2_rods_coplanar_above_above_above_4 = (
+        sum_in_type2_rods_coplanar_above_above_above_2 = (
             rod_1_x * (rod_2_y_times_rod_3_z_above - rod_2_z_above_times_rod_3_y)
             + (rod_2_z_above_times_rod_3_x - rod_2_x_times_rod_3_z_above) * rod_1_y
         )
-        type2_rods_coplanar = part_of_type2_rods_coplanar_above_above_above * (
-            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_above_above_above_4
-        )
+        type2_rods_coplanar = (
+            product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_above_above_above_2
+        ) * quotient_in_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_above = a1 + offset_a1
@@ -110,12 +110,12 @@ def unrolled(k: Constants) -> Unrolled:
         rod_3_z = z - a3
         rod_2_y_times_rod_3_z_below = rod_2_y * rod_3_z
         rod_2_x_times_rod_3_z_below = rod_2_x * rod_3_z
-        part_of_type2_rods_coplanar_above_below = (
+        sum_in_type2_rods_coplanar_above_below = (
             rod_2_z_above_times_rod_3_y - rod_2_y_times_rod_3_z_below
         ) * rod_1_x + rod_1_y * (rod_2_x_times_rod_3_z_below - rod_2_z_above_times_rod_3_x)
-        type2_rods_coplanar = part_of_type2_rods_coplanar_above_above_above * (
-            part_of_type2_rods_coplanar_above_above_above_3 - part_of_type2_rods_coplanar_above_below
-        )
+        type2_rods_coplanar = (
+            product_in_type2_rods_coplanar - sum_in_type2_rods_coplanar_above_below
+        ) * quotient_in_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_below = a3 + offset_a3
@@ -123,46 +123,46 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_z = z - a2
         rod_2_z_below_times_rod_3_y = rod_2_z * rod_3_y
         rod_2_z_below_times_rod_3_x = rod_2_z * rod_3_x
-        part_of_type2_rods_coplanar_below_above = (
+        sum_in_type2_rods_coplanar_below_above = (
             rod_1_x * (rod_2_y_times_rod_3_z_above - rod_2_z_below_times_rod_3_y)
             + (rod_2_z_below_times_rod_3_x - rod_2_x_times_rod_3_z_above) * rod_1_y
         )
-        type2_rods_coplanar = part_of_type2_rods_coplanar_above_above_above * (
-            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_below_above
-        )
+        type2_rods_coplanar = (
+            product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_below_above
+        ) * quotient_in_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_below = a2 + offset_a2
-        part_of_type2_rods_coplanar_below_below = (
+        sum_in_type2_rods_coplanar_below_below = (
             rod_1_x * (rod_2_y_times_rod_3_z_below - rod_2_z_below_times_rod_3_y)
             + (rod_2_z_below_times_rod_3_x - rod_2_x_times_rod_3_z_below) * rod_1_y
         )
-        type2_rods_coplanar = part_of_type2_rods_coplanar_above_above_above * (
-            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_below_below
-        )
+        type2_rods_coplanar = (
+            product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_below_below
+        ) * quotient_in_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         a1 = z - root_of_radicand_a1
-        part_of_type2_rods_coplanar_above_above = (z - a1) * part_of_type2_rods_coplanar_above_above_above_2
+        product_in_type2_rods_coplanar = (z - a1) * sum_in_type2_rods_coplanar_above_above
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_above + part_of_type2_rods_coplanar_above_above_above_4
-        ) * part_of_type2_rods_coplanar_above_above_above
+            product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_above_above_above_2
+        ) * quotient_in_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_below = a1 + offset_a1
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_above - part_of_type2_rods_coplanar_above_below
-        ) * part_of_type2_rods_coplanar_above_above_above
+            product_in_type2_rods_coplanar - sum_in_type2_rods_coplanar_above_below
+        ) * quotient_in_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_above + part_of_type2_rods_coplanar_below_above
-        ) * part_of_type2_rods_coplanar_above_above_above
+            product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_below_above
+        ) * quotient_in_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_above_above + part_of_type2_rods_coplanar_below_below
-        ) * part_of_type2_rods_coplanar_above_above_above
+            product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_below_below
+        ) * quotient_in_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
@@ -196,8 +196,8 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
-        span_1_x = x - part_of_span_1_x_2  # rod 1: known part of its vector
-        span_1_y = y - part_of_span_1_y_2
+        span_1_x = x - sum_in_span_1_x_2  # rod 1: known part of its vector
+        span_1_y = y - sum_in_span_1_y_2
         # quadratic equation for a1: rod 1
         radicand_a1 = arm_length_squared_2 - span_1_x * span_1_x - span_1_y * span_1_y
         if radicand_a1 > 0.0:
@@ -207,8 +207,8 @@ def unrolled(k: Constants) -> Unrolled:
             if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
                 return None
             a1 = z
-        span_2_x = x - part_of_span_2_x_2  # rod 2: known part of its vector
-        span_2_y = y - part_of_span_2_y_2
+        span_2_x = x - sum_in_span_2_x_2  # rod 2: known part of its vector
+        span_2_y = y - sum_in_span_2_y_2
         # quadratic equation for a2: rod 2
         radicand_a2 = arm_length_squared_2 - span_2_x * span_2_x - span_2_y * span_2_y
         if radicand_a2 > 0.0:
@@ -218,8 +218,8 @@ def unrolled(k: Constants) -> Unrolled:
             if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
                 return None
             a2 = z
-        span_3_x = x - part_of_span_3_x_2  # rod 3: known part of its vector
-        span_3_y = y - part_of_span_3_y_2
+        span_3_x = x - sum_in_span_3_x_2  # rod 3: known part of its vector
+        span_3_y = y - sum_in_span_3_y_2
         # quadratic equation for a3: rod 3
         radicand_a3 = arm_length_squared_2 - span_3_x * span_3_x - span_3_y * span_3_y
         if radicand_a3 > 0.0:
@@ -239,7 +239,7 @@ def unrolled(k: Constants) -> Unrolled:
             (z - a1) * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * (y - pivot_1_y)
             + (x - pivot_1_x) * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
-        ) * part_of_type2_rods_coplanar_above_above_above
+        ) * quotient_in_type2_rods_coplanar_above_above_above
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
