@@ -155,7 +155,7 @@ def branch_statements(both: Scanned) -> tuple[Statement, ...]:
         Require(
             sp.Or(SEARCHED, sp.Gt(_sigma(crossing), 0)),
             Status.UNREACHABLE,
-            reason=about_machine(Why.NO_SECOND_CROSSING),
+            reason=about_machine(Why.FIRST_CROSSING_ONLY),
         ),
         Call(program, arguments, names, f"root scan along {mechanism.search.joint.name}"),
         Require(sp.Or(sp.Not(SEARCHED), FOUND), Status.UNREACHABLE, reason=no_root),

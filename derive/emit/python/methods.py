@@ -1,4 +1,4 @@
-"""Which programs become which methods: the arguments they unpack and the shape of what they return."""
+"""Which program becomes which method: the arguments that it unpacks, and the shape of its result."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def methods(kin: Kinematics) -> list[Method]:
 
 
 def shared(kin: Kinematics) -> list[Method]:
-    """The programs that others call: arguments and results are tuples of their names."""
+    """The methods of the programs that others call: argument and result are one tuple each."""
     constants = {o.name for o in kin.setup.outputs}
     found: list[Method] = []
     for program in kin.shared:
@@ -69,17 +69,17 @@ def shared(kin: Kinematics) -> list[Method]:
 
 
 def every_root(kin: Kinematics) -> list[Method]:
-    """What it takes to find all roots of a search: what it is given, and axes of the joints that it finds."""
+    """The methods around a search for all roots: the arguments of the search, and the axes of the joints it finds."""
     if kin.search_given is None or kin.from_joints is None:
         return []
     pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
     joints = Argument("joints", "Reals", tuple(j.symbol.name for j in kin.mechanism.joints))
     given = tuple(o.name for o in kin.search_given.outputs)
     return [
-        Method("search_given", "What the search is given.", kin.search_given, (*pose, *_choice(kin)), "Values", given),
+        Method("search_given", "Arguments of the search.", kin.search_given, (*pose, *_choice(kin)), "Values", given),
         Method(
             "from_joints",
-            "The axes of joints.",
+            "The axis values of joint values.",
             kin.from_joints,
             (joints, *_choice(kin)[1:]),
             "Reals",
@@ -96,7 +96,7 @@ def forward(kin: Kinematics) -> Method:
 
 
 def forwards(kin: Kinematics) -> list[Method]:
-    """Forward kinematics, and from a given start where it iterates."""
+    """Forward kinematics and, where it iterates, forward kinematics from a given start."""
     if kin.forward_from is None:
         return [forward(kin)]
     start = (
@@ -105,7 +105,7 @@ def forwards(kin: Kinematics) -> list[Method]:
             "start_rotation", "Rotation", tuple(tuple(f"start_r{row}{column}" for column in "123") for row in "123")
         ),
     )
-    text = "The same, found from a given start."
+    text = "Position, rotation and the signed margin of every branch, found from a given start."
     result = (POSITION, ROTATION, _branch_margins(kin))
     return [forward(kin), Method("forward_from", text, kin.forward_from, (_axes(kin), *start), "Pose", result)]
 
@@ -113,7 +113,7 @@ def forwards(kin: Kinematics) -> list[Method]:
 def branch(kin: Kinematics) -> Method:
     """Inverse kinematics on one branch."""
     pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
-    text = "The axes of one branch, periods included, limits not."
+    text = "The axes of one branch, on their turns; limits are not tested."
     return Method("branch", text, kin.branch, (*pose, *_choice(kin)), "Reals", _axes(kin).shape, is_explained=True)
 
 
@@ -128,18 +128,19 @@ def end_point_shift(kin: Kinematics) -> list[Method]:
 def _compatible(kin: Kinematics) -> list[Method]:
     if kin.compatible is None:
         return []
-    return [Method("compatible", "Whether a flange that turns can carry this.", kin.compatible, _AXES[:1], "", ())]
+    text = "Whether a flange that turns can carry this mechanism."
+    return [Method("compatible", text, kin.compatible, _AXES[:1], "", ())]
 
 
 def _total_image(kin: Kinematics) -> list[Method]:
     if kin.total_image is None:
         return []
-    text = "The orientations on a flange, and how far the two axes are apart."
+    text = "The orientations of the tool on a flange, and the sine of the angle between the two axes."
     return [Method("total_image", text, kin.total_image, (ROTATION_ARGUMENT, *_AXES), "TotalImage", (*IMAGE, "apart"))]
 
 
 def limits(kin: Kinematics) -> Method:
-    """The test of the limits."""
+    """The test of all limits."""
     return Method("limits", "The test of the limits.", kin.limits, (_axes(kin),), "", (), is_explained=True)
 
 

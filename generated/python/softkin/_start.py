@@ -28,7 +28,7 @@ class IterativeForward(Mechanism):
     def forward(self, axes: Numbers, start: FrameLike | None = None) -> tuple[Frame, Configuration]:
         """The frame at axis values, and their configuration. Axis limits are not tested.
 
-        axes: one value an axis. start: a frame nearby, the one before on a path; without one, the home pose.
+        axes: one value for each axis. start: a frame nearby, as the previous one on a path; None is the home pose.
         Raises BAD_INPUT for invalid numbers, IMPOSSIBLE where no frame is found.
         """
         if start is None:

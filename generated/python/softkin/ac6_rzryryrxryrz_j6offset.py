@@ -44,11 +44,11 @@ A6; without the offset it is always 1.
 
 The wrist byte is the sign of cos A5 for a spherical wrist, and the sign of sin A4 with a lateral offset.
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 8, as many as the inverse has.
-    A search is no proof: of 406 solutions, most of them next to where branches meet, it missed 0.
+    solutions found by a search from many starts: 8, each of which the inverse finds, too.
+    A root scan is no proof: of 406 solutions, most of them close to poses where branches meet, it missed 0.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -967,7 +967,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _search_given(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Values | Status:
-        """What the search is given."""
+        """Arguments of the search."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         sigma_shoulder, sigma_elbow, sigma_wrist, sigma_crossing = signs
@@ -1005,7 +1005,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
 
     def _from_joints(self, joints: Reals, turns: Turns, reference: Reals) -> Reals | Status:
-        """The axes of joints."""
+        """The axis values of joint values."""
         q1, q2, q3, q4, q5, q6 = joints
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
@@ -1238,7 +1238,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         sigma_shoulder, sigma_elbow, sigma_wrist, sigma_crossing = signs
@@ -1295,9 +1295,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 - reach_closed
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # without the offset there is no second crossing
+        # without an offset, only the first branch of the crossing has a solution
         if not (searched or (sigma_crossing > 0)):
-            return Diagnosis(Status.UNREACHABLE, "without the offset there is no second crossing", 0.0)
+            return Diagnosis(
+                Status.UNREACHABLE, "without an offset, only the first branch of the crossing has a solution", 0.0
+            )
         reference_a1 = (ref_a1 - offset_a1) * DEGREE
         reference_a2 = (ref_a2 - offset_a2) * DEGREE
         reference_a6 = (ref_a6 - offset_a6) * DEGREE

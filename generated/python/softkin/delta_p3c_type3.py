@@ -28,10 +28,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 90 additions, 74 multiplications, 21 divisions, 6 square roots, 3 sines
     inverse, all 8 branches open: 713 additions, 592 multiplications, 168 divisions, 48 square roots, 24 sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 8, as many as the inverse has.
+    solutions found by a search from many starts: 8, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -578,7 +578,7 @@ class DeltaP3CType3(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
         turn_a1, turn_a2, turn_a3 = turns
@@ -747,11 +747,13 @@ class DeltaP3CType3(OffsetKinematics):
             + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_coplanar: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -1255,11 +1257,13 @@ class DeltaP3CType3(OffsetKinematics):
             + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_coplanar: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -1387,7 +1391,7 @@ class DeltaP3CType3(OffsetKinematics):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -24,10 +24,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 46 additions, 34 multiplications, 14 divisions, 4 square roots, 2 sines
     inverse, all 4 branches open: 181 additions, 136 multiplications, 56 divisions, 16 square roots, 8 sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 4, as many as the inverse has.
+    solutions found by a search from many starts: 4, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -291,7 +291,7 @@ class P2CType1(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2 = signs
         turn_a1, turn_a2 = turns
@@ -375,11 +375,13 @@ class P2CType1(OffsetKinematics):
         pivot_2_y = -inner_arm * sin_a2
         rod_2_y = y - pivot_2_y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "arms_aligned: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -626,11 +628,13 @@ class P2CType1(OffsetKinematics):
         pivot_2_y = -inner_arm * sin_a2
         rod_2_y = flange_y - pivot_2_y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "arms_aligned: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -699,7 +703,7 @@ class P2CType1(OffsetKinematics):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

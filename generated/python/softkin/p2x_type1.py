@@ -22,10 +22,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 22 additions, 9 multiplications, 0 divisions, 2 square roots, 0 sines
     inverse, all 4 branches open: 85 additions, 36 multiplications, 0 divisions, 8 square roots, 0 sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 2, as many as the inverse has.
+    solutions found by a search from many starts: 2, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -281,7 +281,7 @@ class P2XType1(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2 = signs
         k = self._constants
@@ -316,11 +316,13 @@ class P2XType1(OffsetKinematics):
         a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         rod_2_x = span_2_x - a2
         type2_arms_aligned = quotient_in_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "arms_aligned: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -504,11 +506,13 @@ class P2XType1(OffsetKinematics):
         a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         rod_2_x = span_2_x - a2
         type2_arms_aligned = quotient_in_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "arms_aligned: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -563,7 +567,7 @@ class P2XType1(OffsetKinematics):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -19,10 +19,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     forward: 7 additions, 4 multiplications, 0 divisions, 1 square roots, 0 sines
     inverse: 8 additions, 3 multiplications, 0 divisions, 1 square roots, 0 sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 1, as many as the inverse has.
+    solutions found by a search from many starts: 1, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -194,7 +194,7 @@ class P2XType2(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         k = self._constants
         arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
@@ -212,11 +212,11 @@ class P2XType2(OffsetKinematics):
             missing = 0.5 * (abs(arm_length - y) + abs(arm_length + y)) - arm_length
             return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
         type2_flat = assembly_sign_by_arm_length * y
-        # flat: the other assembly mode, or too near to losing the plate
+        # flat: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_flat >= min_type2_margin):
             missing = min_type2_margin - type2_flat
             return Diagnosis(
-                Status.UNREACHABLE, "flat: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE, "flat: in the other assembly mode, or too close to a type 2 singularity", missing
             )
         middle_a2 = span_1_x + x
         a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
@@ -324,11 +324,11 @@ class P2XType2(OffsetKinematics):
             missing = 0.5 * (abs(arm_length - flange_y) + abs(arm_length + flange_y)) - arm_length
             return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
         type2_flat = assembly_sign_by_arm_length * flange_y
-        # flat: the other assembly mode, or too near to losing the plate
+        # flat: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_flat >= min_type2_margin):
             missing = min_type2_margin - type2_flat
             return Diagnosis(
-                Status.UNREACHABLE, "flat: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE, "flat: in the other assembly mode, or too close to a type 2 singularity", missing
             )
         flange_x = x - point_x  # position of the flange: the point less its offset
         middle_a2 = flange_x + span_1_x
@@ -379,7 +379,7 @@ class P2XType2(OffsetKinematics):
         if not (radicand_a2 >= -shared_product):
             return None
         type2_flat = assembly_sign_by_arm_length * y
-        # flat: the other assembly mode, or too near to losing the plate
+        # flat: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_flat >= min_type2_margin):
             return None
         a2 = span_1_x + x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)

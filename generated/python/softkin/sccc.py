@@ -32,10 +32,10 @@ An open period is chosen nearest to the reference joint by joint; a commanded on
 With a third link, the elbow of the offset interface is that of the line from joint 2 to the point, also where
 the offset is zero.
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 2, as many as the inverse has.
+    solutions found by a search from many starts: 2, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -246,7 +246,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
         (sigma_elbow,) = signs
@@ -643,7 +643,7 @@ class SCCC(OffsetKinematics, TwistChoice):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -25,10 +25,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 42 additions, 22 multiplications, 0 divisions, 3 square roots, 0 sines
     inverse, all 8 branches open: 329 additions, 176 multiplications, 0 divisions, 24 square roots, 0 sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 4, as many as the inverse has.
+    solutions found by a search from many starts: 4, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -443,7 +443,7 @@ class TripodP3Z(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self._constants
@@ -497,11 +497,13 @@ class TripodP3Z(OffsetKinematics):
             + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_coplanar: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -767,11 +769,13 @@ class TripodP3Z(OffsetKinematics):
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * rod_1_y
             + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_coplanar: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -839,7 +843,7 @@ class TripodP3Z(OffsetKinematics):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

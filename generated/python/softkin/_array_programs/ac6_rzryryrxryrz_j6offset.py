@@ -930,7 +930,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         sigma_shoulder, sigma_elbow, sigma_wrist, sigma_crossing = signs
@@ -972,7 +972,7 @@ class ArrayPrograms(Programs):
         reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
         # q3: out of reach
         require(status, k.searched | (absolute(cos_swing_q3_closed) <= 1.0000000000005), Status.UNREACHABLE)
-        # without the offset there is no second crossing
+        # without an offset, only the first branch of the crossing has a solution
         require(status, k.searched | (sigma_crossing > 0), Status.UNREACHABLE)
         # root scan along A6
         found = self.find_root(

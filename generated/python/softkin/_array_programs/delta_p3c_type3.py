@@ -132,7 +132,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
         turn_a1, turn_a2, turn_a3 = turns
@@ -258,7 +258,7 @@ class ArrayPrograms(Programs):
             (effective_a3 > k.inner_arm_3_times_shortest_link) & (absolute(cos_swing_a3) <= 1.0000000000005),
             Status.UNREACHABLE,
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_rods_coplanar >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3), status
 

@@ -115,7 +115,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_t, sigma_w = signs
         turn_a1, turn_a2 = turns
@@ -222,7 +222,7 @@ class ArrayPrograms(Programs):
             (effective_a2 > k.link_length_5_times_shortest_link) & (absolute(cos_swing_a2) <= 1.0000000000005),
             Status.UNREACHABLE,
         )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_arms_aligned >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2), status
 

@@ -70,7 +70,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2 = signs
         k = self.constants
@@ -96,7 +96,7 @@ class ArrayPrograms(Programs):
         require(status, radicand_a1 >= -k.arm_length_1_squared_times_rounding, Status.UNREACHABLE)
         # rod 2 cannot reach
         require(status, radicand_a2 >= -k.arm_length_2_squared_times_rounding, Status.UNREACHABLE)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_arms_aligned >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2), status
 

@@ -27,7 +27,7 @@ class ArrayPrograms(OrientationPrograms):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         status = passed(position, rotation, signs, turns, reference)
         return (), status
 

@@ -80,7 +80,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self.constants
@@ -125,7 +125,7 @@ class ArrayPrograms(Programs):
         require(status, radicand_a2 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
         # rod 3 cannot reach
         require(status, radicand_a3 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_rods_coplanar >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3), status
 

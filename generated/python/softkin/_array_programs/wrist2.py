@@ -63,7 +63,7 @@ class ArrayPrograms(OrientationPrograms):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         (sigma_roll,) = signs
         turn_a, turn_b = turns

@@ -69,7 +69,7 @@ class ArrayPrograms(OrientationPrograms):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
         (sigma_hand,) = signs
         turn_a, turn_b, turn_c = turns

@@ -164,7 +164,7 @@ def unrolled(k: Constants) -> Unrolled:
             + rod_1_y * (rod_2_x_outward * rod_3_z_outward - rod_2_z_outward * rod_3_x_outward)
             + (rod_2_y_outward * rod_3_x_outward - rod_2_x_outward * rod_3_y_outward) * rod_1_z
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
@@ -180,7 +180,7 @@ def unrolled(k: Constants) -> Unrolled:
             + rod_1_y * (rod_2_x_outward * rod_3_z_inward - rod_2_z_outward * rod_3_x_inward)
             + (rod_2_y_outward * rod_3_x_inward - rod_2_x_outward * rod_3_y_inward) * rod_1_z
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -194,7 +194,7 @@ def unrolled(k: Constants) -> Unrolled:
             + rod_1_y * (rod_2_x_inward * rod_3_z_outward - rod_2_z_inward * rod_3_x_outward)
             + (rod_2_y_inward * rod_3_x_outward - rod_2_x_inward * rod_3_y_outward) * rod_1_z
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
         type2_rods_coplanar = -quotient_in_type2_rods_coplanar_outward_outward_outward * (
@@ -202,7 +202,7 @@ def unrolled(k: Constants) -> Unrolled:
             + rod_1_y * (rod_2_x_inward * rod_3_z_inward - rod_2_z_inward * rod_3_x_inward)
             + (rod_2_y_inward * rod_3_x_inward - rod_2_x_inward * rod_3_y_inward) * rod_1_z
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (along_a1_times_cos_swing_a1 + sin_swing_a1_inward_times_z) / divisor_a1
@@ -215,7 +215,7 @@ def unrolled(k: Constants) -> Unrolled:
             + (rod_1_z * rod_3_x_outward - rod_1_x * rod_3_z_outward) * rod_2_y_outward
             + (rod_1_x * rod_3_y_outward - rod_1_y * rod_3_x_outward) * rod_2_z_outward
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         type2_rods_coplanar = -quotient_in_type2_rods_coplanar_outward_outward_outward * (
@@ -223,7 +223,7 @@ def unrolled(k: Constants) -> Unrolled:
             + (rod_1_z * rod_3_x_inward - rod_1_x * rod_3_z_inward) * rod_2_y_outward
             + (rod_1_x * rod_3_y_inward - rod_1_y * rod_3_x_inward) * rod_2_z_outward
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         sum_in_type2_rods_coplanar = rod_1_y * rod_2_z_inward - rod_1_z * rod_2_y_inward
         sum_in_type2_rods_coplanar_inward_inward_outward_2 = rod_1_z * rod_2_x_inward - rod_1_x * rod_2_z_inward
@@ -233,14 +233,14 @@ def unrolled(k: Constants) -> Unrolled:
             + rod_3_y_outward * sum_in_type2_rods_coplanar_inward_inward_outward_2
             + rod_3_z_outward * sum_in_type2_rods_coplanar_inward_inward_outward_3
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = quotient_in_type2_rods_coplanar_outward_outward_outward * (
             rod_3_x_inward * sum_in_type2_rods_coplanar
             + rod_3_y_inward * sum_in_type2_rods_coplanar_inward_inward_outward_2
             + rod_3_z_inward * sum_in_type2_rods_coplanar_inward_inward_outward_3
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
             (axis_a1_outward, axis_a2_outward, axis_a3_outward)
@@ -374,7 +374,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * quotient_in_type2_rods_coplanar_outward_outward_outward
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
         if no_offsets:

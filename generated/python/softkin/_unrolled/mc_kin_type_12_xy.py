@@ -137,7 +137,7 @@ def unrolled(k: Constants) -> Unrolled:
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_left_right = (along_a2_left_times_cos_swing_a2 - product_in_cos_a2) / divisor_a2
         sin_a2_left_right = (across_a2_left_times_cos_swing_a2 + product_in_sin_a2) / divisor_a2
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if effective_a2 > link_length_5_times_shortest_link_2 and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             rod_1_x = x - centre_1_x_left
             rod_1_y = y - centre_1_y_left
@@ -198,7 +198,7 @@ def unrolled(k: Constants) -> Unrolled:
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2_right_right = (along_a2_right_times_cos_swing_a2 - product_in_cos_a2) / divisor_a2
         sin_a2_right_right = (across_a2_right_times_cos_swing_a2 + product_in_sin_a2) / divisor_a2
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if effective_a2 > link_length_5_times_shortest_link_2 and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             rod_1_x = x - centre_1_x_right
             rod_1_y = y - centre_1_y_right
@@ -330,7 +330,7 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = (
             (x - centre_1_x) * (y - centre_2_y) - (y - centre_1_y) * (x - centre_2_x)
         ) * quotient_in_type2_arms_aligned_left_left
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             return None
         if no_offsets:

@@ -64,7 +64,7 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = quotient_in_type2_arms_aligned_left_right * (
             rod_1_x_left_times_span_2_y - rod_2_x_right_times_span_1_y
         )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_left_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_left = a1 + offset_a1
         axis_a2_right = a2 + offset_a2
@@ -73,7 +73,7 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = quotient_in_type2_arms_aligned_left_right * (
             rod_1_x_left_times_span_2_y - rod_2_x_left_times_span_1_y
         )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_left_left = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_left = a2 + offset_a2
         a1 = root_of_radicand_a1 + span_1_x
@@ -81,13 +81,13 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = quotient_in_type2_arms_aligned_left_right * (
             rod_1_x_right_times_span_2_y - rod_2_x_right_times_span_1_y
         )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_right_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_right = a1 + offset_a1
         type2_arms_aligned = quotient_in_type2_arms_aligned_left_right * (
             rod_1_x_right_times_span_2_y - rod_2_x_left_times_span_1_y
         )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_right_left = 0 if type2_arms_aligned >= min_type2_margin else 3
         return (
             (axis_a1_left, axis_a2_right) if refusal_left_right == 0 else refused[refusal_left_right],
@@ -120,7 +120,7 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = (
             (span_1_x - a1) * span_2_y - (span_2_x - a2) * span_1_y
         ) * quotient_in_type2_arms_aligned_left_right
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             return None
         if no_offsets:

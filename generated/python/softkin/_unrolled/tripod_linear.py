@@ -136,7 +136,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * quotient_in_type2_rods_coplanar_below_below_below
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_below = a1 + offset_a1
         axis_a2_below = a2 + offset_a2
@@ -154,7 +154,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * quotient_in_type2_rods_coplanar_below_below_below
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_above = a3 + offset_a3
         a2 = middle_a2 - root_of_radicand_a2
@@ -170,7 +170,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * quotient_in_type2_rods_coplanar_below_below_below
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_above = a2 + offset_a2
         product_in_type2_rods_coplanar_above_above = (rod_2_x_above * rod_3_z_above - rod_2_z_above * rod_3_x_above) * y
@@ -182,7 +182,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * quotient_in_type2_rods_coplanar_below_below_below
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         a1 = -middle_a1 - root_of_radicand_a1
         rod_1_x = span_1_x + a1 * sin_rail_angle
@@ -194,7 +194,7 @@ def unrolled(k: Constants) -> Unrolled:
             + rod_3_y_below * sum_in_type2_rods_coplanar_above_below_below_2
             - product_in_type2_rods_coplanar_below_below
         ) * quotient_in_type2_rods_coplanar_below_below_below
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_above = a1 + offset_a1
         sum_in_type2_rods_coplanar_below_above = rod_1_x * rod_3_z_above - rod_1_z * rod_3_x_above
@@ -203,7 +203,7 @@ def unrolled(k: Constants) -> Unrolled:
             + rod_3_y_above * sum_in_type2_rods_coplanar_above_below_below_2
             - product_in_type2_rods_coplanar_below_above
         ) * quotient_in_type2_rods_coplanar_below_below_below
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         sum_in_type2_rods_coplanar_above_below = rod_1_z * rod_2_x_above - rod_1_x * rod_2_z_above
         type2_rods_coplanar = (
@@ -211,14 +211,14 @@ def unrolled(k: Constants) -> Unrolled:
             + rod_3_y_below * sum_in_type2_rods_coplanar_above_below
             - product_in_type2_rods_coplanar_above_below
         ) * quotient_in_type2_rods_coplanar_below_below_below
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             rod_2_y_above * sum_in_type2_rods_coplanar_below_above
             + rod_3_y_above * sum_in_type2_rods_coplanar_above_below
             - product_in_type2_rods_coplanar_above_above
         ) * quotient_in_type2_rods_coplanar_below_below_below
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
             (axis_a1_below, axis_a2_below, axis_a3_below)
@@ -316,7 +316,7 @@ def unrolled(k: Constants) -> Unrolled:
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * (z - (-a1 * cos_rail_angle))
             + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * (span_1_x + a1 * sin_rail_angle)
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
         # ball joint of rod 1

@@ -101,7 +101,7 @@ def unrolled(k: Constants) -> Unrolled:
         type2_rods_coplanar = (
             product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_above_above_above_2
         ) * quotient_in_type2_rods_coplanar_above_above_above
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_above = a1 + offset_a1
         axis_a2_above = a2 + offset_a2
@@ -116,7 +116,7 @@ def unrolled(k: Constants) -> Unrolled:
         type2_rods_coplanar = (
             product_in_type2_rods_coplanar - sum_in_type2_rods_coplanar_above_below
         ) * quotient_in_type2_rods_coplanar_above_above_above
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_below = a3 + offset_a3
         a2 = z - root_of_radicand_a2
@@ -130,7 +130,7 @@ def unrolled(k: Constants) -> Unrolled:
         type2_rods_coplanar = (
             product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_below_above
         ) * quotient_in_type2_rods_coplanar_above_above_above
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_below = a2 + offset_a2
         sum_in_type2_rods_coplanar_below_below = (
@@ -140,30 +140,30 @@ def unrolled(k: Constants) -> Unrolled:
         type2_rods_coplanar = (
             product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_below_below
         ) * quotient_in_type2_rods_coplanar_above_above_above
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         a1 = z - root_of_radicand_a1
         product_in_type2_rods_coplanar = (z - a1) * sum_in_type2_rods_coplanar_above_above
         type2_rods_coplanar = (
             product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_above_above_above_2
         ) * quotient_in_type2_rods_coplanar_above_above_above
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_below = a1 + offset_a1
         type2_rods_coplanar = (
             product_in_type2_rods_coplanar - sum_in_type2_rods_coplanar_above_below
         ) * quotient_in_type2_rods_coplanar_above_above_above
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_below_above
         ) * quotient_in_type2_rods_coplanar_above_above_above
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_below_below
         ) * quotient_in_type2_rods_coplanar_above_above_above
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
             (axis_a1_above, axis_a2_above, axis_a3_above)
@@ -240,7 +240,7 @@ def unrolled(k: Constants) -> Unrolled:
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * (y - pivot_1_y)
             + (x - pivot_1_x) * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
         ) * quotient_in_type2_rods_coplanar_above_above_above
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
         if no_offsets:

@@ -171,7 +171,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * quotient_in_type2_rods_coplanar_outward_outward_outward
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
@@ -193,7 +193,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * quotient_in_type2_rods_coplanar_outward_outward_outward
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -213,7 +213,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * quotient_in_type2_rods_coplanar_outward_outward_outward
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
         product_in_type2_rods_coplanar_inward_inward = (
@@ -227,7 +227,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * quotient_in_type2_rods_coplanar_outward_outward_outward
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (cos_swing_a1_times_span_1_x + sin_swing_a1_outward_times_span_1_z) / divisor_a1
@@ -241,7 +241,7 @@ def unrolled(k: Constants) -> Unrolled:
             + rod_3_y_outward * sum_in_type2_rods_coplanar_inward_outward_outward_2
             - product_in_type2_rods_coplanar_outward_outward
         ) * quotient_in_type2_rods_coplanar_outward_outward_outward
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         sum_in_type2_rods_coplanar_outward_inward = rod_1_x * rod_3_z_inward - rod_1_z * rod_3_x_inward
@@ -250,7 +250,7 @@ def unrolled(k: Constants) -> Unrolled:
             + rod_3_y_inward * sum_in_type2_rods_coplanar_inward_outward_outward_2
             - product_in_type2_rods_coplanar_outward_inward
         ) * quotient_in_type2_rods_coplanar_outward_outward_outward
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         sum_in_type2_rods_coplanar_inward_outward = rod_1_z * rod_2_x_inward - rod_1_x * rod_2_z_inward
         type2_rods_coplanar = (
@@ -258,14 +258,14 @@ def unrolled(k: Constants) -> Unrolled:
             + rod_3_y_outward * sum_in_type2_rods_coplanar_inward_outward
             - product_in_type2_rods_coplanar_inward_outward
         ) * quotient_in_type2_rods_coplanar_outward_outward_outward
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             rod_2_y_inward * sum_in_type2_rods_coplanar_outward_inward
             + rod_3_y_inward * sum_in_type2_rods_coplanar_inward_outward
             - product_in_type2_rods_coplanar_inward_inward
         ) * quotient_in_type2_rods_coplanar_outward_outward_outward
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
             (axis_a1_outward, axis_a2_outward, axis_a3_outward)
@@ -391,7 +391,7 @@ def unrolled(k: Constants) -> Unrolled:
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * (span_1_z + arm_length_1 * sin_a1)
             + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * (span_1_x + arm_length_1 * cos_a1)
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
         # ball joint of rod 1
