@@ -64,15 +64,9 @@ from derive.kinematics.forward import (
 from derive.kinematics.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics.kinematics import Freedom, Kinematics, Margin
 from derive.kinematics.parameters import machine_parameters, setup_program
-from derive.kinematics.scanned import (
-    DETERMINANT,
-    branch_statements,
-    determinant_margin,
-    from_joints,
-    margin_statements,
-    search_given,
-    solve_both,
-)
+from derive.kinematics.scan.derivations import from_joints, solve_both
+from derive.kinematics.scan.inverse import branch_statements, search_given
+from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements
 from derive.kinematics.shared_names import refuse_shared_names
 from derive.lowering.lower import lowered
 from derive.plate.legs import MARGIN

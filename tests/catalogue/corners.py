@@ -37,7 +37,7 @@ from derive.kinematics.parameters import (
     machine_parameters,
     machine_scale,
 )
-from derive.kinematics.scanned import solve_both
+from derive.kinematics.scan.derivations import solve_both
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
 

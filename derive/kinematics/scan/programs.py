@@ -32,7 +32,7 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.kinematics.differential import jacobian_entries
-from derive.kinematics.trial_slopes import slope_name, with_slopes
+from derive.kinematics.scan.slopes import slope_name, with_slopes
 
 START = real("start")
 LOOKED_FOR = flag("looked_for")
