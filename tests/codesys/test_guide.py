@@ -105,6 +105,7 @@ def test_the_demo_moves_a_group() -> None:
 
 
 def test_every_choice_it_names_exists() -> None:
+    """Every input, profile and status that the guide names exists in the product."""
     declared = {
         line.split()[0] for part in BLOCKS.values() for line in part.declaration.split("\n") if line.startswith("  ")
     }
@@ -118,6 +119,7 @@ def test_every_choice_it_names_exists() -> None:
 
 @pytest.mark.parametrize("page", ["docs/CODESYS.md", "generated/st/README.md", "README.md"])
 def test_links_lead_somewhere(page: str) -> None:
+    """Every link of a page leads to a file that exists, and to a heading that exists in it."""
     path = ROOT / page
     text = path.read_text(encoding="utf-8")
     for target in re.findall(r"\]\(([^)]+)\)", text):
@@ -135,6 +137,7 @@ def _anchor(heading: str) -> str:
 
 
 def test_the_overview_lists_every_block() -> None:
+    """The overview lists every block with its file and the axes that the block declares."""
     row = r"^\| \[`(\w+)`\]\((\S+)\.st\) \| \[picture\]\(pictures/\1\.png\) \| ([^|]+) \| ([^|]+) \|"
     rows = re.findall(row, OVERVIEW, re.MULTILINE)
     assert {f"{path}.st" for _, path, _, _ in rows} == {

@@ -55,6 +55,7 @@ def test_limits_refuse_what_is_beyond_them_and_nothing_else(serial_pairs: tuple[
 
 
 def test_the_number_of_axes(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """NumAxes is the number of joints of the mechanism."""
     for one in serial_pairs:
         assert one.controller.block.get("NumAxes") == len(one.mechanism.joints)
 

@@ -37,6 +37,7 @@ STEPS = range(0, MANY, FEW_OF_THE_GRID)
 
 
 def test_every_statement_runs(mechanism: Mechanism) -> None:
+    """The tests execute every statement of the block of a serial mechanism."""
     serial_pairs = serial_pairs_of(mechanism)
     statements = Statements([file_of(mechanism)], libraries(mechanism))
     with statements.watched():
@@ -60,6 +61,7 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
 
 
 def test_every_statement_of_the_shared_objects_runs() -> None:
+    """The tests execute every statement of the shared functions."""
     kinds = product(test_matrix_functions.ORDERS, (72, 36))
     libraries = [compiled_shared(), *(test_matrix_functions.library(*kind) for kind in kinds)]
     libraries += [test_matrix_functions.misbehaving(name) for name in test_matrix_functions.BROKEN]

@@ -60,6 +60,7 @@ def check(call: Call, clean: tuple[Any, dict[str, Any]], what: object) -> None:
 
 
 def test_garbage_in_one_number(pairs: tuple[Pair, ...]) -> None:
+    """NaN, an infinite or a huge number in one argument is refused without a fault, and outputs stay as they are."""
     for one in (pairs[1], pairs[-3]):
         sample = one.regular[-1]
         for method in methods_of(one.controller):
@@ -72,6 +73,7 @@ def test_garbage_in_one_number(pairs: tuple[Pair, ...]) -> None:
 
 
 def test_garbage_in_every_number(pairs: tuple[Pair, ...]) -> None:
+    """Garbage in all arguments is refused without a fault, and outputs stay as they are."""
     for one in (pairs[1], pairs[-3]):
         sample = one.regular[-1]
         for method in methods_of(one.controller):
@@ -103,6 +105,7 @@ def spoil(value: Any, garbage: float) -> None:
 
 
 def test_garbage_in_axes_as_in_python(pairs: tuple[Pair, ...]) -> None:
+    """Garbage in axis values has the status that Python gives."""
     one = pairs[1]
     sample = one.regular[0]
     for index, garbage in product(range(len(sample.axes)), GARBAGE):

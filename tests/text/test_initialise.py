@@ -75,6 +75,7 @@ def as_integers(parameter: Parameter, given: dict[str, float]) -> dict[str, floa
 
 @pytest.mark.parametrize(("lower", "upper"), [(10.0, 10.0), (10.0, -10.0), (0.0, -10.0), (10.0, 0.0), (0.2, 0.2)])
 def test_limits_are_in_order(mechanism: Mechanism, lower: float, upper: float) -> None:
+    """Initialize refuses a lower limit that is not below the upper one."""
     one = serial_pairs_of(mechanism)[0]
     for key in (*(j.key for j in mechanism.joints), *(q.name for q in mechanism.limited)):
         wrong = {f"lower_{key}": lower, f"upper_{key}": upper}
@@ -102,6 +103,7 @@ def test_a_length_has_no_default(mechanism: Mechanism) -> None:
 
 @pytest.mark.parametrize("size", [36, 80])
 def test_a_matrix_of_another_size_is_refused(mechanism: Mechanism, size: int) -> None:
+    """Initialize refuses a library whose matrix has another size."""
     controller = Controller(compiled(mechanism, matrix_size=size), mechanism)
     assert controller.initialise(serial_pairs_of(mechanism)[0].robot.parameters) == NOT_INITIALIZED
     assert controller.block.call("IsInitialized") is False

@@ -64,6 +64,7 @@ def refused(one: SerialPair) -> Controller:
 
 @pytest.mark.parametrize("made", [fresh, refused])
 def test_no_method_works(pairs: tuple[Pair, ...], made: Callable[[SerialPair], Controller]) -> None:
+    """No method works before Initialize, and outputs stay as they are."""
     one = pairs[-1]
     controller = made(one)
     for method in methods_of(controller):

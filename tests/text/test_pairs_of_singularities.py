@@ -21,6 +21,7 @@ SOME = 6
 
 @pytest.mark.parametrize("paired", PAIRED, ids=lambda m: m.name)
 def test_no_pose_is_lost(paired: Mechanism) -> None:
+    """Where two singularities coincide the block reaches every pose."""
     rng = np.random.default_rng(11)
     for one, corner in places(paired):
         given = {**one.given, "check_limits": 0.0}

@@ -44,6 +44,7 @@ def inside_domains(machine: Machine, axes: Array) -> Array:
 
 
 def test_a_path_is_followed_without_a_jump(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """The block follows a path without a jump of an axis."""
     lengths = []
     for one in serial_pairs:
         line = path(one.machine)

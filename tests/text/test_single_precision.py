@@ -25,6 +25,7 @@ def offered(one: SerialPair) -> bool:
 
 
 def test_a_frame_from_real_is_answered_as_in_python(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """A frame that was rounded to single precision is answered as in Python."""
     for one in (serial_pairs[0], serial_pairs[-1]):
         for sample in one.regular[:3]:
             (position, rotation), own = one.robot.forward(sample.axes)
@@ -37,6 +38,7 @@ def test_a_frame_from_real_is_answered_as_in_python(serial_pairs: tuple[SerialPa
 
 
 def test_beyond_that_it_is_refused_with_the_same_reason(pairs: tuple[Pair, ...]) -> None:
+    """A rotation with a larger error is refused with the reason of Python."""
     one = pairs[0]
     sample = one.regular[0]
     (position, rotation), own = one.robot.forward(sample.axes)

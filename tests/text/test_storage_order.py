@@ -13,6 +13,7 @@ MACHINES = ("nominal", "random 2", "limited")
 
 
 def test_every_method_answers_the_same_by_columns(mechanism: Mechanism) -> None:
+    """Every method gives the same answers for matrices that are stored by columns."""
     for by_rows, by_columns in zip(serial_pairs_of(mechanism), serial_pairs_of(mechanism, "columns"), strict=True):
         if by_rows.machine.label not in MACHINES:
             continue
@@ -25,5 +26,6 @@ def test_every_method_answers_the_same_by_columns(mechanism: Mechanism) -> None:
 
 @pytest.mark.parametrize("order", ["rows", "columns"])
 def test_the_order_is_found(mechanism: Mechanism, order: str) -> None:
+    """Initialize finds the storage order of the library."""
     (found,) = {one.controller.block.matrixOrder for one in serial_pairs_of(mechanism, order)}
     assert found.lower() == order

@@ -68,6 +68,7 @@ class Coupling:
 @pytest.mark.parametrize("wrist", ORIENTATIONS, ids=lambda m: m.name)
 @pytest.mark.parametrize("carrier", CARRIERS)
 def test_blocks_combine_as_in_python(carrier: str, wrist: Mechanism, order: str) -> None:
+    """Two blocks that are combined as SoftMotion combines them answer as the coupled mechanism in Python."""
     first = position_part(EVERYTHING[carrier])
     for second in orientation_parts(wrist):
         coupling = Coupling(first, second, order)

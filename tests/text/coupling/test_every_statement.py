@@ -21,6 +21,7 @@ SIZE_OF_NOTHING = "IF SIZEOF(configuration) < 1 THEN"
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_every_statement_runs(mechanism: Mechanism) -> None:
+    """The tests execute every statement of the block of an orientation kinematics."""
     pairs = orientation_pairs_of(mechanism)
     libraries = [compiled(mechanism), compiled(mechanism, matrix_size=36)]
     if len(pairs[0].robot.CONFIGURATION) > 1:

@@ -27,6 +27,7 @@ def rows(matrix: np.ndarray) -> Rows:
 
 @pytest.mark.parametrize(("carrier", "wrist"), PAIRS, ids=[f"{c}-{w.name}" for c, w in PAIRS])
 def test_a_coupling_answers_as_for_the_repaired_frame(carrier: str, wrist: Mechanism) -> None:
+    """A coupling answers a frame in single precision as it answers the repaired frame."""
     first = position_part(EVERYTHING[carrier])
     second = orientation_parts(wrist)[0]
     try:
@@ -96,6 +97,7 @@ def test_what_a_coupling_asks_is_repaired(wrist: Mechanism) -> None:
 
 @pytest.mark.parametrize("wrist", ORIENTATIONS, ids=lambda m: m.name)
 def test_what_is_no_rotation_is_refused(wrist: Mechanism) -> None:
+    """A matrix that is no rotation is refused by every method that reads it."""
     one = orientation_pairs_of(wrist)[0]
     data, axes = one.robot.DEFAULT_CONFIGURATION, (0.0,) * len(wrist.joints)
     rotation = np.array(tilted(np.random.default_rng(10)))

@@ -172,6 +172,7 @@ METHODS = [(mechanism, method) for mechanism in ORIENTATIONS for method in publi
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_every_method_is_here(mechanism: Mechanism) -> None:
+    """Every public method in the text of a block is compared."""
     methods = compiled(mechanism).objects[mechanism.block_name].methods
     assert public_methods(mechanism) == tuple(m.name for m in methods if m.access != "PRIVATE")
 
@@ -179,6 +180,7 @@ def test_every_method_is_here(mechanism: Mechanism) -> None:
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
 def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str, order: str) -> None:
+    """A method of the block answers as the Python package does, in both storage orders."""
     for pair in orientation_pairs_of(mechanism, order):
         for sample in pair.regular:
             COMPARISONS[method](pair, sample)
@@ -186,11 +188,13 @@ def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str, order:
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_the_number_of_axes(mechanism: Mechanism) -> None:
+    """NumAxes is the number of joints of the mechanism."""
     assert orientation_pairs_of(mechanism)[0].controller.block.get("NumAxes") == len(mechanism.joints)
 
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_the_position_of_a_frame_is_not_read(mechanism: Mechanism) -> None:
+    """The inverse of an orientation kinematics does not read the position of the frame."""
     for pair in orientation_pairs_of(mechanism):
         sample = pair.regular[0]
         (_, rotation), configuration = pair.robot.forward(sample.axes)
@@ -204,6 +208,7 @@ def test_the_position_of_a_frame_is_not_read(mechanism: Mechanism) -> None:
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_a_tool_that_points_the_opposite_way(mechanism: Mechanism) -> None:
+    """A tool that points exactly the opposite way is refused where the twist about it is ignored."""
     pair = orientation_pairs_of(mechanism)[0]
     refuses = mechanism.task.turning is Turning.ABOUT_Z
     data = pair.robot.DEFAULT_CONFIGURATION

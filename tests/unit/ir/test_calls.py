@@ -44,6 +44,7 @@ def caller(name: str = "caller", given: sp.Expr = C, outputs: tuple[sp.Symbol, .
 
 
 def test_it_binds_what_the_shared_program_answers() -> None:
+    """A call binds the outputs of the shared program, or passes on its status."""
     values = {"c": np.array([3.0, 6.0, -3.0, np.nan]), "q": np.array(4.0), "k": np.array(2.0)}
     outputs, status = run(caller(), values)
     assert list(status) == [Status.OK, Status.UNREACHABLE, Status.IMPOSSIBLE, Status.IMPOSSIBLE]
@@ -58,6 +59,7 @@ def test_the_names_inside_are_its_own() -> None:
 
 
 def test_it_reads_arguments_and_constants() -> None:
+    """A call reads its arguments, and the constants of the shared program."""
     program = caller()
     (call, *_) = program.body
     assert isinstance(call, Call) and call.constants == (K,) and call.arguments == (C, Q)
@@ -65,6 +67,7 @@ def test_it_reads_arguments_and_constants() -> None:
 
 
 def test_only_what_is_read_is_bound() -> None:
+    """A call binds only the results that something reads, and stays for its status where nothing reads any."""
     for outputs, bound in (((Y,), (X, Y)), ((), (X,))):
         call = caller(outputs=outputs).body[0]
         assert binds(call) == bound  # the condition reads x
@@ -74,6 +77,7 @@ def test_only_what_is_read_is_bound() -> None:
 
 
 def test_an_alias_is_folded_into_the_arguments() -> None:
+    """An argument that is a name for another name is replaced by that name."""
     call = Call(hypotenuse(), ((A, W), (B, Q)), (X, Y))
     program = normalise("p", (Let(W, C), call), [Output("y", Y)])
     assert [type(s) for s in program.body] == [Call]
@@ -81,6 +85,7 @@ def test_an_alias_is_folded_into_the_arguments() -> None:
 
 
 def test_constants_are_hoisted_out_of_the_shared_program_once() -> None:
+    """A constant of a shared program is hoisted once for all of its callers."""
     programs = [caller("first"), caller("second", given=2 * C)]
     found = shared(programs)
     assert [p.name for p in found] == ["hypotenuse"]
@@ -103,12 +108,14 @@ def test_constants_are_hoisted_out_of_the_shared_program_once() -> None:
 
 
 def test_a_shared_program_comes_before_the_one_that_calls_it() -> None:
+    """Shared programs are listed before the programs that call them."""
     outer = caller("outer")
     top = normalise("top", (Call(outer, ((C, C), (Q, Q)), (X,)),), [Output("x", X)])
     assert [p.name for p in shared([top, outer])] == ["hypotenuse", "outer"]
 
 
 def test_the_verifier_refuses() -> None:
+    """A call with wrong names, arguments or results is refused."""
     good = caller().body[0]
     assert isinstance(good, Call)
     for broken, inputs, word in (

@@ -33,6 +33,7 @@ A, B, N, M, X, Y = flag("a"), flag("b"), count("n"), count("m"), real("x"), real
     ],
 )  # fmt: skip
 def test_every_expression_has_a_type(value: sp.Basic, expected: Type) -> None:
+    """Every expression has the expected type."""
     assert type_of(value) is expected
 
 
@@ -46,6 +47,7 @@ def test_every_expression_has_a_type(value: sp.Basic, expected: Type) -> None:
     ],
 )  # fmt: skip
 def test_mixtures_are_refused(value: sp.Basic) -> None:
+    """An expression that mixes types is refused."""
     with pytest.raises(IllTypedError):
         type_of(value)
 
@@ -76,6 +78,7 @@ NAMES = (flag("is_far"), real("twice"), count("next"))
     ],
 )  # fmt: skip
 def test_values_of_the_type_of_their_names_pass(statement: Statement) -> None:
+    """A statement whose value has the type of its name is accepted."""
     verify(_program(statement))
 
 
@@ -93,18 +96,21 @@ def test_values_of_the_type_of_their_names_pass(statement: Statement) -> None:
     ],
 )  # fmt: skip
 def test_values_of_another_type_are_refused(statement: Statement) -> None:
+    """A statement whose value has another type than its name is refused."""
     with pytest.raises(BrokenProgram):
         verify(_program(statement))
 
 
 def test_a_name_that_is_read_as_another_type_is_refused() -> None:
+    """A name that is read as another type than it was bound is refused."""
     with pytest.raises(BrokenProgram, match="another type"):
         verify(_program(Let(flag("f"), X > 0), Let(real("v"), real("f") + 1)))
     with pytest.raises(BrokenProgram, match="mixes types"):
         verify(_program(outputs=(Output("o", N * X),)))
 
 
-def test_assembling_keeps_types_and_drops_what_else_is_known() -> None:
+def test_normalising_keeps_types_and_drops_what_else_is_known() -> None:
+    """The normal form of a program keeps the types of names, and drops all other assumptions."""
     length = sp.Symbol("length", positive=True)
     program = normalise(
         "p", [Let(A, length > 1), Let(X, Select(A, ToReal(N), length))], [Output("o", X), Output("n", N)]
@@ -115,6 +121,7 @@ def test_assembling_keeps_types_and_drops_what_else_is_known() -> None:
 
 
 def test_programs_run_in_their_types() -> None:
+    """Outputs have the type of their expression: bool, int or float."""
     outputs = [Output("f", A), Output("k", N + 1), Output("v", Select(A, ToReal(N) / 2, X))]
     values, _ = run(
         _program(outputs=tuple(outputs)), {"a": [0, 1], "b": 0, "n": [3.0, 4.0], "m": 0, "x": 0.25, "y": 0.0}

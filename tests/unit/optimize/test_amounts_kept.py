@@ -54,6 +54,7 @@ def test_of_a_direction_that_is_taken_without_its_length() -> None:
 
 
 def test_an_amount_that_reads_nothing_of_it_changes_nothing() -> None:
+    """A direction is not divided where the amount of a reason reads something else."""
     found = plain_directions(refusing(U + R))
     assert "direction_x_q1" in {name.name for name in found.bound()}
     np.testing.assert_allclose(amounts(found), amounts(refusing(U + R)))

@@ -37,6 +37,7 @@ def of(*lets: Let) -> Program:
 
 
 def test_ahead_and_beside_are_known() -> None:
+    """The coordinates of a point in the frame that an angle turns to it are the distance and zero."""
     program = of(Let(real("ahead"), X * C + Y * S - L), Let(real("beside"), X * S - Y * C + L))
     found = values(with_known_projections(program))
     first, second = real("point_from_q1"), real("point_from_q1_2")
@@ -46,6 +47,7 @@ def test_ahead_and_beside_are_known() -> None:
 
 
 def test_a_multiple_of_the_point_too_and_once() -> None:
+    """A multiple of the point is recognised, and the value is written once."""
     program = of(
         Let(real("one"), 2 * X * C + 2 * Y * S + L), Let(real("two"), L - 2 * X * C - 2 * Y * S + 2 * X * C + 2 * Y * S)
     )
@@ -65,6 +67,7 @@ def test_what_stands_beside_is_not_written_out() -> None:
 
 
 def test_another_point_is_not_known() -> None:
+    """An expression of another point stays as it is."""
     for value in (X * C + 2 * Y * S, X * C - Y * S, X * C + Y * S**2, X * C, L * C + B * S):
         program = of(Let(real("other"), value))
         assert with_known_projections(program) == program

@@ -65,6 +65,7 @@ def rotations(count: int) -> dict[str, np.ndarray]:
 @pytest.mark.parametrize("columns", [(2, 0), (2, 1), (0, 1), (1, 0)])
 @pytest.mark.parametrize("row", range(3))
 def test_the_third_column_takes_its_place(row: int, columns: tuple[int, int], sign: int) -> None:
+    """An entry of the cross product of two columns is the entry of the third column."""
     program = crossed(row, *columns, sign)
     found = with_rotation_identities(program)
     (value,) = (let.value for let in found.lets() if let.name == MADE_Y)
@@ -77,6 +78,7 @@ def test_the_third_column_takes_its_place(row: int, columns: tuple[int, int], si
 
 
 def test_what_is_no_such_product_is_left_alone() -> None:
+    """Expressions that only resemble such a cross product stay as they are."""
     program = crossed(0, 2, 0)
     made = [s for s in program.body if isinstance(s, Let) and s.name == MADE_Y][0].value
     dx, dy = sp.Add.make_args(made)

@@ -55,6 +55,7 @@ def _agree(first: Program, second: Program) -> None:
 def test_a_divisor_leaves_a_direction_only_where_it_is_a_length(
     length: sp.Expr, condition: sp.Basic, is_proven: bool
 ) -> None:
+    """A divisor is dropped from a direction only if it is proven to be positive."""
     program = _scaled(length, condition)
     found = plain_directions(program)
     _agree(program, found)
@@ -64,6 +65,7 @@ def test_a_divisor_leaves_a_direction_only_where_it_is_a_length(
 
 @pytest.mark.parametrize("factor", [K, -K, X * K, -Root(K**2), sp.Integer(-1)])
 def test_a_factor_of_any_sign_turns_a_direction(factor: sp.Expr) -> None:
+    """A factor of unknown sign keeps its effect on the angle of a direction."""
     axis = NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
     program = normalise("p", [Let(COS, factor * X), Let(SIN, factor * Y), Let(AXIS, axis)], [Output("axis_q", AXIS)])
     for change in (plain_directions, without_minus, mirrored, lambda p: without_minus(mirrored(p))):
@@ -71,6 +73,7 @@ def test_a_factor_of_any_sign_turns_a_direction(factor: sp.Expr) -> None:
 
 
 def test_a_branch_sign_turns_a_direction() -> None:
+    """A branch sign in front of a direction turns the angle by half a turn on one branch."""
     sigma = Sign(count("sigma_elbow"), ("up", "down"))
     sign, axis = real("sign_elbow"), NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
     lets = [Let(sign, ToReal(sigma.symbol)), Let(COS, sign * X), Let(SIN, sign * Y), Let(AXIS, axis)]

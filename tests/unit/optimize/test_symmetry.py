@@ -1,4 +1,4 @@
-"""Twins: the program before and after, and the same answers."""
+"""Mirrored branches: the program before and after has the same answers, with fewer operations."""
 
 from __future__ import annotations
 
@@ -58,12 +58,14 @@ def same(first: Program, second: Program) -> None:
         np.testing.assert_allclose(found[name], value, rtol=1e-12, atol=1e-11)
 
 
-def test_a_value_is_the_negative_of_its_twin_where_that_is_so() -> None:
+def test_a_value_is_the_negative_of_its_mirror_image_where_that_is_so() -> None:
+    """A value of the mirrored branch is the negative of the other one where the condition of the symmetry holds."""
     found = values(with_mirrored_branches(wrist()))
     assert found["m_up"] == Select(REGULAR, -M_DOWN, A * C_UP + B * S_UP)
 
 
-def test_an_angle_is_half_a_turn_from_its_twin() -> None:
+def test_an_angle_is_half_a_turn_from_its_mirror_image() -> None:
+    """The angle of the mirrored branch is the other angle plus half a turn where the symmetry holds."""
     found = values(with_mirrored_branches(wrist()))
     direction, other = real("direction_of_axis_up"), D + Atan2(M_UP, C_UP) / DEGREE
     assert found[direction.name] == Select(REGULAR, AXIS_DOWN + 180, other)
@@ -72,6 +74,7 @@ def test_an_angle_is_half_a_turn_from_its_twin() -> None:
 
 
 def test_an_angle_mirrored_at_its_shift_needs_no_condition() -> None:
+    """An angle with the opposite sine is mirrored at its shift, on all poses."""
     lets = [
         Let(AXIS_DOWN, NearestPeriod(D + Atan2(X, Y) / DEGREE, N)),
         Let(AXIS_UP, NearestPeriod(D + Atan2(-X, Y) / DEGREE, N)),
@@ -81,7 +84,7 @@ def test_an_angle_mirrored_at_its_shift_needs_no_condition() -> None:
     same(program, with_mirrored_branches(program))
 
 
-def test_another_value_on_the_other_side_is_no_twin() -> None:
+def test_another_value_on_the_other_side_is_no_mirror_image() -> None:
     """The second sides of C differ: then nothing is known of it, and the sum stays as it is."""
     lets = [
         Let(C_DOWN, Select(REGULAR, X / 2, sp.cos(T))),

@@ -39,6 +39,7 @@ BELTS = problem(K * V - L * W - A, L * V + K * W - B, lengths=(V, W))
 @few
 @given(turn=ANGLES, a=NUMBERS, b=NUMBERS, k=LENGTHS, link=LENGTHS)
 def test_the_root(turn: float, a: float, b: float, k: float, link: float) -> None:
+    """The root solves both equations to rounding."""
     for given_problem in (TABLE, BELTS):
         known = {A: a, B: b, K: k, L: link, **trigonometry(turn=turn)}
         values, status = execute(answer(affine_pair, given_problem).statements, known)
@@ -58,4 +59,5 @@ def test_the_root(turn: float, a: float, b: float, k: float, link: float) -> Non
     ],
 )
 def test_not_taken(first: sp.Expr, second: sp.Expr) -> None:
+    """The rule takes no pair of another form."""
     assert answers(affine_pair, problem(first, second, angles=(U,), lengths=(V, W))) == []

@@ -115,6 +115,7 @@ def left(values: Values, found: Values) -> float:
 def test_it_turns_to_where_the_later_step_reaches_within_rounding_and_no_farther(
     angle: float, share: float, beside: float, side: float, phase: float, turn: float, way: float
 ) -> None:
+    """Near a fold the angle turns to the nearest value at which the later step has a solution, within rounding."""
     values = point(angle, side * share * UNIT, beside) | {"sigma_v": side, "free_v": 0.0, "size": 0.0}
     slope_at = angle + phase  # e = sin(v - slope_at + ...) is steep there
     values |= {"p": -np.sin(slope_at), "q": np.cos(slope_at)}
@@ -141,6 +142,7 @@ def test_it_turns_to_where_the_later_step_reaches_within_rounding_and_no_farther
 def test_it_stays_where_the_later_step_reaches(
     angle: float, share: float, beside: float, side: float, slope_at: float, more: float
 ) -> None:
+    """Where the later step has a solution the angle does not change."""
     values = point(angle, side * share * UNIT, beside) | {"sigma_v": side, "free_v": 0.0, "size": 0.0}
     values |= {"p": -np.sin(slope_at), "q": np.cos(slope_at)}
     before = outputs(turning(is_ruled=False), values)

@@ -177,6 +177,7 @@ def solutions(case: Case, derivation: Derivation, given: Mapping[str, np.ndarray
 
 @pytest.mark.parametrize("name", CASES)
 def test_all_solutions(name: str) -> None:
+    """The derivation finds all solutions of the closure, each on the branch of its signs."""
     case = CASES[name]
     derivation, given = case.derivation, samples(case)
     found = solutions(case, derivation, given)
@@ -200,6 +201,7 @@ def _apart(case: Case, first: Mapping[str, float], second: Mapping[str, float]) 
 
 @pytest.mark.parametrize("name", CASES)
 def test_by_these_rules(name: str) -> None:
+    """The driver uses the expected rules in the expected order."""
     assert CASES[name].derivation.rules == CASES[name].rules
 
 
@@ -234,6 +236,7 @@ UNSOLVED = {
 
 @pytest.mark.parametrize("name", UNSOLVED)
 def test_unsolved_says_what_is_left(name: str) -> None:
+    """The error for an unsolved mechanism names the equations and unknowns that are left."""
     case, message = UNSOLVED[name]
     with pytest.raises(Unsolved) as refusal:
         solve(case.problem, case.arguments, lambda angle: ())
@@ -241,6 +244,7 @@ def test_unsolved_says_what_is_left(name: str) -> None:
 
 
 def test_a_step_binds_a_name_once() -> None:
+    """Two values under one name in a derivation raise `BrokenProgram`."""
     record = DerivationRecord()
     record.append((Let(P, X), Let(P, X), Let(Q, P + Y)))
     with pytest.raises(BrokenProgram, match="a step binds p twice, to x and to y"):
@@ -269,6 +273,7 @@ def test_turns_count_once_they_are_chosen() -> None:
 
 
 def test_no_turn_is_chosen_that_nothing_needs() -> None:
+    """The turn of an angle is chosen only where a value needs the angle as a number."""
     case = Case({"x": sp.cos(A1), "y": sp.sin(A1)}, (A1,))
     asked: list[sp.Symbol] = []
 
@@ -289,6 +294,7 @@ for name in ("2R with a tool beside the arm", "2R with absolute angles", "should
 
 
 def test_the_same_text_in_every_process() -> None:
+    """The derivation is the same for two hash seeds of Python."""
     root = Path(__file__).resolve().parents[3]
     texts = set()
     for seed in ("0", "4711"):
