@@ -32,6 +32,7 @@ def closed(program: str) -> str:
 
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda p: p.split("\n")[0])
 def test_its_code_parses(program: str) -> None:
+    """The code in the guide parses, and uses only blocks that exist."""
     (found,) = parse(closed(program), "guide")
     assert isinstance(found, ast.Block)
     used = {v.type.text for s in found.sections for v in s.variables if v.type.text.startswith(("Softkin_", "Kin_"))}

@@ -217,6 +217,7 @@ def test_systems_of_any_shapes_are_solved_together(data: st.DataObject) -> None:
 
 
 def test_slots_that_are_done_keep_their_state() -> None:
+    """Slots of an iteration that are done keep their state while others go on."""
     done, status = np.array([[True], [False]]), np.zeros((2, 3), np.uint8)
     assert not _array.settled(done, status)
     state = _array.advanced(done, (1.0, np.array([1.0, 2.0, 3.0])), (np.array([5.0, 6.0, 7.0]), 8.0))
@@ -227,6 +228,7 @@ def test_slots_that_are_done_keep_their_state() -> None:
 
 @given(value=DEGREES, centre=DEGREES)
 def test_turns_are_chosen_by_slot_and_row(value: float, centre: float) -> None:
+    """The nearest period is chosen for each slot and each row."""
     values, centres = np.array([[value], [value + 400.0]]), np.array([centre, centre - 800.0, 0.0])
     found = _array.nearest_period(values, centres)
     right = [[_scalar.nearest_period(v, c) for c in centres.tolist()] for v in values[:, 0].tolist()]

@@ -57,6 +57,7 @@ def looped(robot: Mechanism, frame: tuple[object, ...], reference: tuple[float, 
 @pytest.mark.parametrize("limit", [None, 120.0, 330.0], ids=["no limits", "limits", "more than a turn"])
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
 def test_inverse_all_is_its_branches_one_by_one(description: Description, limit: float | None) -> None:
+    """`inverse_all` gives in every slot the answer of one branch alone."""
     robot = robot_of(description, limit)
     frames, references = samples(robot, 12 if description.search is not None else 60)
     answers = 0

@@ -149,6 +149,7 @@ ANGLES = {Q: Type.ANGLE, R: Type.ANGLE, real("h"): Type.HEADING}
     ],
 )  # fmt: skip
 def test_angles_are_added_and_asked_for_sines(value: sp.Basic, expected: Type) -> None:
+    """Sums of angles are angles, and their sines are real numbers."""
     assert type_of(value, ANGLES) is expected
 
 
@@ -164,6 +165,7 @@ def test_angles_are_added_and_asked_for_sines(value: sp.Basic, expected: Type) -
     ],
 )  # fmt: skip
 def test_an_angle_is_no_number_before_its_turn_is_chosen(value: sp.Basic) -> None:
+    """An angle that is used as a number before its turn is chosen is refused."""
     with pytest.raises(IllTypedError):
         type_of(value, ANGLES)
 
@@ -178,6 +180,7 @@ def test_an_angle_is_no_number_before_its_turn_is_chosen(value: sp.Basic) -> Non
     ],
 )  # fmt: skip
 def test_a_name_that_is_bound_to_an_angle_is_one(statement: Statement) -> None:
+    """A name that is bound to an angle is an angle."""
     angle = Let(Q, DIRECTION)
     with pytest.raises(BrokenProgram):
         verify(_program(angle, statement))
@@ -185,6 +188,7 @@ def test_a_name_that_is_bound_to_an_angle_is_one(statement: Statement) -> None:
 
 
 def test_a_loop_may_turn_and_a_call_answers_with_angles() -> None:
+    """The state of an iteration and the result of a call may be angles."""
     turning = _loop(start=(DIRECTION, sp.false, sp.Integer(0)), following=(real("s") + X, X > 0, count("k")))
     verify(_program(turning, Let(real("c"), sp.cos(real("s")))))
     told = Program("told", (X, Y), (), (Output("angle", DIRECTION),))
@@ -195,6 +199,7 @@ def test_a_loop_may_turn_and_a_call_answers_with_angles() -> None:
 
 
 def test_wrap_is_the_angle_of_a_direction() -> None:
+    """`wrap` gives the angle in (-pi, pi]."""
     angles = np.array([-3.5 * np.pi, -np.pi, -3.0, -1e-9, 0.0, 1.0, np.pi, np.pi + 0.5, 9.0, 40.0])
     values, _ = run(
         _program(outputs=(Output("w", Wrap(X)),)), {n: angles if n == "x" else np.zeros(10) for n in "abnmxy"}
