@@ -46,6 +46,7 @@ def generated(folder: Path, capsys: pytest.CaptureFixture[str], *more: str) -> t
 
 
 def test_what_did_not_change_is_kept_and_what_did_is_derived(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Only changed mechanisms are derived again, and the files are the same."""
     first, derived, _ = generated(folder, capsys)
     assert len(derived) == len(FILES)
     assert generated(folder, capsys) == (first, [], "")
@@ -83,6 +84,7 @@ def swap(path: Path) -> None:
 
 @pytest.mark.parametrize("damage", [damage_a_byte, cut_off, empty, swap])
 def test_a_damaged_entry_is_noticed(tmp_path: Path, damage: Callable[[Path], None]) -> None:
+    """A damaged entry of the cache is not read."""
     cache = Cache(tmp_path / "cache")
     for name in ("one", "two"):
         cache.write(key_of(name), {"name": name, "text": "x" * 100})
@@ -93,6 +95,7 @@ def test_a_damaged_entry_is_noticed(tmp_path: Path, damage: Callable[[Path], Non
 
 
 def test_a_damaged_entry_is_derived_anew_and_said(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A mechanism with a damaged entry is derived again, with a message."""
     (folder / FILES[1]).unlink()
     first, derived, _ = generated(folder, capsys)
     entries = list(Path(f"{folder.parent / 'generated'}.cache").iterdir())
@@ -119,6 +122,7 @@ def test_sources_that_change_during_a_run_leave_nothing_behind(
 def test_check_and_fresh_never_look(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """`check` and `--fresh` do not read the cache."""
     generated(folder, capsys)
 
     def refuse(*_: object) -> None:
@@ -160,6 +164,7 @@ FOUNDATIONS = ("derive/solver/solve.py", "derive/mechanisms/_shared.py", "templa
 
 @pytest.mark.parametrize("name", FOUNDATIONS)
 def test_everything_stands_on_sources_and_templates(project: Path, name: str) -> None:
+    """A change of a source or a template invalidates all entries."""
     before = foundation(None, project)
     assert foundation(None, project) == before
     (project / name).write_text("x = 2\n")
@@ -169,6 +174,7 @@ def test_everything_stands_on_sources_and_templates(project: Path, name: str) ->
 
 
 def test_a_description_is_no_foundation(project: Path) -> None:
+    """A change of one description does not invalidate the entries of others."""
     before = foundation(None, project)
     (project / "derive" / "mechanisms" / "kin_a.py").write_text("x = 2\n")
     assert foundation(None, project) == before
@@ -176,6 +182,7 @@ def test_a_description_is_no_foundation(project: Path) -> None:
 
 @pytest.mark.parametrize("what", ["profile", "library", "interpreter", "platform"])
 def test_everything_stands_on_what_runs_it(project: Path, monkeypatch: pytest.MonkeyPatch, what: str) -> None:
+    """A change of Python, of a library or of the platform invalidates all entries."""
     before = foundation(None, project)
     if what == "library":
         monkeypatch.setattr(caching, "_libraries", lambda: ("sympy 0",))
@@ -187,6 +194,7 @@ def test_everything_stands_on_what_runs_it(project: Path, monkeypatch: pytest.Mo
 
 
 def test_libraries_are_those_of_libraries_too() -> None:
+    """The key of the cache includes the libraries that libraries use."""
     found = {line.split()[0] for line in caching._libraries()}
     assert found >= {"sympy", "mpmath", "casadi", "numpy", "jinja2", "markupsafe", "matplotlib", "pillow"}
 
@@ -205,10 +213,12 @@ def test_a_description_counts_by_what_it_evaluates_to() -> None:
 
 
 def test_keys_tell_their_parts_apart() -> None:
+    """The key depends on how its text is divided into parts."""
     assert key_of("ab", "c") != key_of("a", "bc")
 
 
 def test_the_entries_last_used_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of too many entries those that were used last are kept."""
     monkeypatch.setattr(caching, "_KEPT", 2)
     cache = Cache(tmp_path)
     for age, name in enumerate(("new", "old", "oldest")):
@@ -226,6 +236,7 @@ class Terminal(StringIO):
 
 
 def test_a_terminal_shows_a_bar_and_the_time_left() -> None:
+    """On a terminal the progress is a bar with the time left."""
     seconds = iter((0.0, 5.0, 10.0, 15.0))
     stream = Terminal()
     progress = Progress(4, stream, lambda: next(seconds))
@@ -242,6 +253,7 @@ def test_a_terminal_shows_a_bar_and_the_time_left() -> None:
 
 
 def test_a_file_gets_lines_alone() -> None:
+    """In a file the progress consists of plain lines."""
     stream = StringIO()
     progress = Progress(2, stream)
     progress.step("first", took_time=False)

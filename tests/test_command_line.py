@@ -111,6 +111,7 @@ def refusal(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
 
 @pytest.mark.parametrize("what", BROKEN)
 def test_a_broken_file_is_one_clear_message(folder: Path, capsys: pytest.CaptureFixture[str], what: str) -> None:
+    """A broken description is refused with one message that names file and fault."""
     old, new, expected = BROKEN[what]
     text = SCARA.read_text()
     assert text.count(old) == 1
@@ -125,12 +126,14 @@ def test_a_broken_file_is_one_clear_message(folder: Path, capsys: pytest.Capture
 
 
 def test_two_files_with_one_name(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two descriptions with the same name are refused."""
     (folder / "twin.py").write_text((folder / "right.py").read_text())
     message = refusal(capsys, "generate", "--mechanisms", folder, "--output", folder.parent / "out")
     assert "twin.py: the name 'Kin_Right' is taken by" in message
 
 
 def test_no_traceback_and_exit_status_1(folder: Path) -> None:
+    """An error ends the command with status 1 and without a traceback."""
     (folder / "broken.py").write_text("from derive.mechanism import nothing\n")
     command = [sys.executable, "-m", "derive", "generate", "--mechanisms", str(folder), "--output", str(folder / "out")]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
@@ -141,6 +144,7 @@ def test_no_traceback_and_exit_status_1(folder: Path) -> None:
 
 
 def test_generate_replaces_orphans_and_check_finds_them(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Generating removes files that no mechanism gives, and checking reports them."""
     output = folder.parent / "generated"
     options = ("--mechanisms", str(folder), "--output", str(output))
     assert main(["generate", *options]) == 0
@@ -159,12 +163,14 @@ def test_generate_replaces_orphans_and_check_finds_them(folder: Path, capsys: py
 
 
 def test_a_folder_with_other_files_is_never_replaced(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A folder with files that were not generated is refused as output."""
     message = refusal(capsys, "generate", "--mechanisms", folder, "--output", folder.parent)
     assert "holds 'mechanisms', which was not generated: it is not replaced" in message
     assert folder.exists()
 
 
 def test_only_never_shrinks_the_output_of_the_project(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`--only` needs an output folder of its own, and a known name."""
     assert "--only needs --output" in refusal(capsys, "generate", "--only", "Kin_PCC")
     assert "no mechanism is called 'Kin_No'" in refusal(
         capsys, "generate", "--only", "Kin_No", "--output", tmp_path / "out"
@@ -172,6 +178,7 @@ def test_only_never_shrinks_the_output_of_the_project(tmp_path: Path, capsys: py
 
 
 def test_only_writes_the_chosen_mechanisms(folder: Path, tmp_path: Path) -> None:
+    """`--only` writes the files of the chosen mechanisms alone."""
     text = (folder / "right.py").read_text()
     (folder / "other.py").write_text(text.replace("Kin_Right", "Kin_Other"))
     output = tmp_path / "out"
@@ -182,6 +189,7 @@ def test_only_writes_the_chosen_mechanisms(folder: Path, tmp_path: Path) -> None
 
 
 def test_an_alias_is_a_mechanism_of_its_own(folder: Path) -> None:
+    """An alias becomes a mechanism with its own name."""
     path = folder / "right.py"
     path.write_text(path.read_text().replace("    source=", '    aliases=("Kin_Also_Right",),\n    source='))
     (_, first), (_, second) = catalogue(folder)
@@ -192,11 +200,13 @@ def test_an_alias_is_a_mechanism_of_its_own(folder: Path) -> None:
 
 
 def test_what_was_derived_travels_between_processes_unchanged() -> None:
+    """What one process derives is pickled to another one without change."""
     built = derive_one(load(SCARA))
     assert pickle.loads(pickle.dumps(built)) == built
 
 
 def test_by_products_are_no_orphans(tmp_path: Path) -> None:
+    """Files that Python tools write are not reported as orphans."""
     for name in ("a.py", "softkin.egg-info/PKG-INFO", "__pycache__/a.pyc", "build/lib/a.py"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("")
@@ -204,4 +214,5 @@ def test_by_products_are_no_orphans(tmp_path: Path) -> None:
 
 
 def test_the_project_generates_into_its_own_folder() -> None:
+    """The default output is the folder `generated` of the project."""
     assert OUTPUT == ROOT / "generated"

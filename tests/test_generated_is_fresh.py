@@ -46,17 +46,20 @@ def generation(tmp_path_factory: pytest.TempPathFactory) -> Generation:
 
 
 def test_generated_is_fresh(generation: Generation) -> None:
+    """The committed files are byte for byte those that the sources generate."""
     assert any(name.startswith("python") for name in generation.files)
     assert any(name.startswith("st") for name in generation.files)
     assert list(differences(OUTPUT, generation.files)) == []
 
 
 def test_every_mechanism_was_witnessed(generation: Generation) -> None:
+    """Every mechanism was checked by the witness."""
     assert list(generation.evidence) == [mechanism.name for _, mechanism in catalogue()]
 
 
 @pytest.mark.parametrize("entry", catalogue(), ids=lambda e: e[1].name)
 def test_every_mechanism_agrees(entry: Entry, generation: Generation) -> None:
+    """The errors that the witness measured are at rounding level, and it found every solution."""
     evidence = generation.evidence[entry[1].name]
     found = evidence.inverted
     if found is None:

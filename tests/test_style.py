@@ -25,11 +25,13 @@ ROOM = 16
 
 @pytest.mark.parametrize("tool", TOOLS)
 def test_clean(tool: str) -> None:
+    """The tool finds nothing to complain about."""
     done = subprocess.run([sys.executable, *TOOLS[tool]], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_no_generated_line_is_wider_than_a_page() -> None:
+    """No line of generated Python is longer than 120 columns."""
     wide = [
         f"{path.name}:{number}"
         for path in sorted((ROOT / "generated/python").rglob("*.py"))
@@ -45,6 +47,7 @@ def rooms() -> list[Path]:
 
 
 def test_the_map_names_every_folder() -> None:
+    """ARCHITECTURE.md has a row for every folder of the compiler."""
     map_ = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
     missing = [room.name for room in rooms() if f"`{room.name}/`" not in map_]
     assert not missing, f"ARCHITECTURE.md has no row for {missing}"
@@ -52,6 +55,7 @@ def test_the_map_names_every_folder() -> None:
 
 @pytest.mark.parametrize("room", [room.relative_to(ROOT) for room in rooms() if room.name != "mechanisms"], ids=str)
 def test_a_folder_holds_one_idea(room: Path) -> None:
+    """No folder holds more modules than a reader can survey."""
     assert len(list((ROOT / room).glob("*.py"))) <= ROOM
 
 

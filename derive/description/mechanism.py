@@ -3,7 +3,7 @@
 A description states equations and their meaning, and nothing that was solved by hand. Quantities stand
 in SymPy expressions directly: `Rz(A1) * Tx(link)`, `branch("elbow", sin(A2), right=+1, left=-1)`.
 Inside expressions angles are in radians; `TURN` is one revolution, for couplings given per revolution.
-Joints and dimensions have files of their own; descriptions import everything from here.
+Joints, dimensions and branches have files of their own; descriptions import everything from here.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from enum import Enum
 
 import sympy as sp
 
+from derive.description.branches import Assembly, Branch, assembly, branch, crossing
 from derive.description.dimensions import (
     Constraint,
     Parameter,
@@ -31,6 +32,7 @@ from derive.description.dimensions import (
     sign,
     signed_length,
 )
+from derive.description.errors import DescriptionError
 from derive.description.joints import (
     Interval,
     Joint,
@@ -107,10 +109,6 @@ __all__ = [
 ]
 
 
-class DescriptionError(Exception):
-    """A mechanism description that cannot be right; the message says what and where."""
-
-
 class Vendor(Enum):
     """The vendor of the geometry, which decides the name of the function block."""
 
@@ -121,50 +119,11 @@ class Vendor(Enum):
 
 
 @dataclass(frozen=True)
-class Branch:
-    """Two solutions told apart by the sign of an indicator: byte 1 is names[0], byte 2 names[1]."""
-
-    name: str
-    indicator: sp.Expr
-    names: tuple[str, str]
-    signs: tuple[int, int]
-    margin: str
-    """The name of the singularity at which its two solutions meet."""
-
-    @property
-    def is_crossing(self) -> bool:
-        """Whether it tells the roots of a scan apart: its indicator is the slope of the residual at the root."""
-        return bool(self.indicator is sp.nan)
-
-
-@dataclass(frozen=True)
 class Search:
     """A joint that is scanned for roots where no subproblem determines it, because a parameter is not zero."""
 
     joint: Joint
     where: Parameter
-
-
-@dataclass(frozen=True)
-class Assembly:
-    """The two ways to assemble a closed loop, told apart by the sign of an indicator in joints and position.
-
-    The assembly mode is a parameter of the machine, `<name>_<second>`: forward kinematics gets axes alone.
-    """
-
-    name: str
-    indicator: sp.Expr
-    names: tuple[str, str]
-    signs: tuple[int, int]
-    margin: str
-    handedness: sp.Expr = sp.Integer(1)
-    """An expression of parameters. Where it is negative (legs numbered the other way round) the indicator changes its
-    sign."""
-
-    @property
-    def parameter(self) -> str:
-        """The flag that chooses the second way."""
-        return f"{self.name}_{self.names[1]}"
 
 
 @dataclass(frozen=True)
@@ -323,30 +282,9 @@ class Mechanism:
         return tuple(turning[n] for n in self.periods) if self.periods is not None else tuple(turning.values())
 
 
-def branch(name: str, indicator: object, *, margin: str | None = None, **names: int) -> Branch:
-    """A branch by its indicator: `branch("elbow", sin(A2), right=+1, left=-1)`; the first name is byte 1."""
-    first, second = _two_names(f"branch {name!r}", names)
-    return Branch(name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin or name)
-
-
-def crossing(name: str, **names: int) -> Branch:
-    """A branch that tells the roots of a scan apart: whether the residual rises or falls with the joint at the root."""
-    return branch(name, sp.nan, margin=None, **names)
-
-
 def search(joint: Joint, *, where: Parameter) -> Search:
     """Scan a joint for roots where the parameter is not zero; where it is zero, the closure has a closed form."""
     return Search(joint, where)
-
-
-def assembly(name: str, indicator: object, *, margin: str, handedness: object = 1, **names: int) -> Assembly:
-    """Two assembly modes: `assembly("tcp", Y - KNEE_Y, margin="arms_aligned", below=-1, above=+1)`; the first is the
-    default.
-    """
-    first, second = _two_names(f"assembly {name!r}", names)
-    return Assembly(
-        name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin, sp.sympify(handedness)
-    )
 
 
 def rod(
@@ -371,13 +309,6 @@ def on_plate(x: object, y: object, z: object) -> tuple[sp.Expr, ...]:
 def bound(value: object, largest: object, meaning: str) -> Bound:
     """|value| must not exceed `largest`."""
     return Bound(sp.sympify(value), sp.sympify(largest), meaning)
-
-
-def _two_names(what: str, names: dict[str, int]) -> tuple[tuple[str, int], tuple[str, int]]:
-    if len(names) != 2 or sorted(names.values()) != [-1, 1]:
-        raise DescriptionError(f"{what} needs two names with the signs +1 and -1, not {names}")
-    first, second = names.items()
-    return first, second
 
 
 def limited(name: str, value: object, meaning: str, *, angle: bool) -> Limited:

@@ -1,1 +1,1 @@
-"""Languages: a printer spells expressions, a template arranges text, neither computes."""
+"""Output languages: a printer writes expressions, a template arranges text, and neither computes."""

@@ -1,7 +1,7 @@
-"""Expressions as text: one walk for every language, which differ in spelling only.
+"""Expressions as text: every language walks over an expression in the same way, and differs in spelling only.
 
-Both languages evaluate in the same order, so that their results agree to the last digit wherever their
-elementary functions do.
+So all languages evaluate in the same order, and their results agree to the last digit wherever their elementary
+functions do.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ FUNCTION_KEYS: dict[type[sp.Basic], str] = {
     NearestPeriod: "nearest_period",
     NearestOnArc: "nearest_on_arc",
 }
-"""The neutral name of every primitive: the rows of a language's table."""
+"""The neutral name of every primitive, by which a language looks up its own."""
 
 
 class ExpressionPrinter(ABC):
-    """Spell an expression in a language. Subclasses spell names, numbers, calls and logical words."""
+    """Writes an expression in a language. Subclasses spell names, numbers, calls and logical words."""
 
     @abstractmethod
     def name(self, symbol: sp.Symbol) -> str:
-        """A symbol's spelling."""
+        """The spelling of a symbol."""
 
     @abstractmethod
     def number(self, value: float) -> str:
@@ -66,7 +66,7 @@ class ExpressionPrinter(ABC):
         return operator
 
     def value(self, name: sp.Symbol, value: sp.Basic) -> str:
-        """What is bound to a name, as its type is written: a whole number without a point."""
+        """A value as the type of its name is written: a whole number without a decimal point."""
         return self.whole(value) if is_count(name) else self.print(value)
 
     def whole(self, expression: sp.Basic) -> str:
@@ -74,7 +74,7 @@ class ExpressionPrinter(ABC):
         return _Whole(self).print(expression)
 
     def factor(self, expression: sp.Basic) -> str:
-        """A whole number as a real one: of a language that converts it by itself, the number."""
+        """A whole number as a factor of real numbers, converted where the language does not do this by itself."""
         return _Whole(self)._text(expression, ATOM)
 
     def print(self, expression: sp.Basic) -> str:
@@ -117,7 +117,7 @@ class ExpressionPrinter(ABC):
         return self.call(key, [self._text(a, _OR) for a in node.args]), ATOM
 
     def _joined(self, node: sp.Basic, word: str, context: int) -> str:
-        # Comparisons are parenthesised in both languages: a reader need not know their precedence.
+        # Comparisons stand in parentheses, so that a reader need not know their precedence.
         parts = [self._text(a, _OR) if a.is_Symbol else f"({self._text(a, _OR)})" for a in sp.ordered(node.args)]
         return f" {self.logic(word)} ".join(parts)
 
@@ -157,13 +157,13 @@ class ExpressionPrinter(ABC):
 
 
 def _plain(value: float) -> float:
-    """The number with fifteen digits, where the others are rounding: 1e-22, not 9.999999999999999e-23."""
+    """The number with fifteen digits where the remaining ones are rounding: 1e-22, not 9.999999999999999e-23."""
     short = float(f"{value:.15g}")
     return short if abs(short - value) <= abs(value) * 2.3e-16 else value
 
 
 class _Whole(ExpressionPrinter):
-    """Whole numbers in a language, and what is chosen among them by any condition."""
+    """Writes whole numbers in a language, and choices among them."""
 
     def __init__(self, language: ExpressionPrinter) -> None:
         self.language = language
@@ -185,13 +185,13 @@ class _Whole(ExpressionPrinter):
 
 
 def _is_whole(node: sp.Basic) -> bool:
-    """Whether names make it a whole number."""
+    """Whether an expression is a whole number because all names in it are."""
     return bool(node.free_symbols) and all(map(is_count, node.free_symbols)) and not node.has(ToReal)
 
 
 @cache
 def _terms(node: sp.Add) -> tuple[sp.Expr, ...]:
-    """The terms of a sum as they are written; among equals as SymPy orders them."""
+    """The terms of a sum in the order in which they are written; those that rank alike stay in the order of SymPy."""
     return tuple(sorted(node.as_ordered_terms(), key=_term_order))
 
 
@@ -207,14 +207,14 @@ def _term_order(term: sp.Expr) -> tuple[bool, int]:
 
 @cache
 def _factor_order(factor: sp.Expr) -> tuple[bool, str]:
-    """Sines and cosines last, as one writes them by hand."""
+    """The sort key of a factor: sines and cosines come last, as in a textbook."""
     name = str(factor)
     return name.startswith(("sin_", "cos_", "Sin", "Cos")), name
 
 
 @cache
 def _fraction(node: sp.Expr) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
-    """The factors above and below the line, integer powers written out."""
+    """The factors of numerator and denominator, with integer powers written out."""
     above: list[sp.Expr] = []
     below: list[sp.Expr] = []
     for factor in sorted(sp.Mul.make_args(node), key=_factor_order):

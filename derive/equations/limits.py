@@ -11,7 +11,7 @@ from derive.description.mechanism import Joint, Limited, Mechanism
 from derive.equations.axes import joint_lets
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.constants import DEGREE
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.program import Let, Program, Require, Statement, Status
 from derive.ir.reason import OtherTurn, Reason, Unit, Why, about, about_joint
 from derive.ir.symbols import (
@@ -40,7 +40,7 @@ def limits_program(mechanism: Mechanism) -> Program:
         )
         body += [*lets, Let(name, value, quantity.meaning)]
         body += _inside(quantity.name, name, reason, f"limits of {quantity.meaning}")
-    return assemble("limits", body, [])
+    return normalise("limits", body, [])
 
 
 def _inside(key: str, value: sp.Symbol, reason: Reason, note: str) -> tuple[Require, Require]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.equations.problem import Slope
+from derive.equations.problem import StepDeterminant
 from derive.ir.program import Statement
 
 
@@ -17,5 +17,5 @@ class Forward:
     statements: tuple[Statement, ...]
     position: tuple[sp.Expr, ...]
     rotation: tuple[sp.Expr, ...]
-    slope: Slope | None = None
-    """The slope of the step with two solutions: its sign is the assembly mode."""
+    determinant: StepDeterminant | None = None
+    """The determinant of the step with two solutions: its sign is the assembly mode."""

@@ -53,8 +53,10 @@ class Legs:
 
 
 @dataclass(frozen=True)
-class Slope:
-    """The derivative of the equation of a two-root step by its unknown, with its scale: its sign is the branch."""
+class StepDeterminant:
+    """The determinant of the equations of a two-root step by its unknowns (of one equation: its derivative), with its
+    scale. Its sign is the branch.
+    """
 
     step: sp.Symbol
     """The unknown for which the step solves."""
@@ -78,8 +80,10 @@ def sign_of(step: sp.Symbol) -> sp.Symbol:
 
 
 @dataclass(frozen=True)
-class Measure:
-    """The value that must not vanish for `angle` to be determined, with the scale that it is divided by."""
+class Conditioning:
+    """The conditioning of a step: the value that must not vanish for `angle` to be determined, and the scale by which
+    it is divided.
+    """
 
     angle: sp.Symbol
     value: sp.Expr
@@ -95,15 +99,15 @@ class Measure:
 
 @dataclass(frozen=True)
 class Binding:
-    """The answer of a subproblem: statements that bind unknowns, and the slope and measure that vanish in its
-    singularities.
+    """The answer of a subproblem: statements that bind unknowns, and the determinant and the conditioning of the step,
+    which vanish in its singularities.
     """
 
     rule: str
     unknowns: tuple[sp.Symbol, ...]
     statements: tuple[Statement, ...]
-    slope: Slope | None = None
-    measure: Measure | None = None
+    determinant: StepDeterminant | None = None
+    conditioning: Conditioning | None = None
     new_equations: tuple[Equation, ...] = ()
     residual: sp.Expr | None = None
     """An expression that vanishes if the equations used agree with each other: a squared length."""
@@ -115,9 +119,9 @@ class Binding:
 
     @property
     def rank(self) -> tuple[bool, bool, bool, int]:
-        """Smaller is better: cosine and sine both known, no measure, one root, few operations."""
+        """Smaller is better: cosine and sine known, an angle that is always determined, one root, few operations."""
         size = sum(int(sp.count_ops(s.value)) for s in self.statements if isinstance(s, Let))
-        return (self.cosine_alone, self.measure is not None, self.slope is not None, size)
+        return (self.cosine_alone, self.conditioning is not None, self.determinant is not None, size)
 
 
 @dataclass(frozen=True)
@@ -159,7 +163,7 @@ class Problem:
     parameters: tuple[sp.Symbol, ...] = ()
     """The names that are made of parameters alone."""
     fixed: tuple[sp.Symbol, ...] = ()
-    """The same once no other equation is left: a slope that is made of them becomes a condition on the machine."""
+    """The same once no other equation is left: a determinant made of them becomes a condition on the machine."""
     definitions: Mapping[sp.Symbol, sp.Expr] | None = None
     """The polynomials that known names stand for, to test whether an expression is zero."""
 
@@ -194,15 +198,15 @@ class Problem:
         reduced = self.reduce(expression)
         return bool(reduced.is_nonzero or reduced.xreplace({DEGREE: sp.pi / 180}).is_nonzero)
 
-    def determines(self, slope: sp.Expr) -> bool:
-        """Whether equations with this slope have one solution: it is never zero, or parameters alone decide that."""
-        return self.is_never_zero(slope) or bool(self.conditions(slope))
+    def determines(self, determinant: sp.Expr) -> bool:
+        """Whether equations with this determinant have one solution: it is never zero, or parameters alone decide."""
+        return self.is_never_zero(determinant) or bool(self.conditions(determinant))
 
-    def conditions(self, slope: sp.Expr) -> tuple[sp.Expr, ...]:
-        """What a machine must have other than zero, where equations are taken whose slope is made of parameters."""
-        if not self.fixed or self.is_never_zero(slope):
+    def conditions(self, determinant: sp.Expr) -> tuple[sp.Expr, ...]:
+        """What a machine must have other than zero, where the determinant of equations is made of parameters alone."""
+        if not self.fixed or self.is_never_zero(determinant):
             return ()
-        reduced = self.reduce(slope)
+        reduced = self.reduce(determinant)
         return (reduced,) if reduced != 0 and reduced.free_symbols <= {*self.fixed, DEGREE} else ()
 
     def is_positive(self, value: sp.Expr) -> bool:

@@ -18,7 +18,7 @@ from derive.ir.constants import (
     EXACT_ROTATION,
     ROTATION,
 )
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -66,7 +66,7 @@ def rotation_program() -> Program:
         *lets,
         *chosen,
     )
-    return assemble(
+    return normalise(
         "rotation", body, [Output(r.name, let.name) for r, let in zip(ROTATION_ENTRIES, chosen, strict=True)]
     )
 

@@ -8,9 +8,9 @@ import sympy as sp
 DEGREE = sp.Symbol("DEGREE", positive=True)
 """One degree in radians: a named constant of every language."""
 FREE_ANGLE = sp.Float("1e-11")
-"""A scaled measure at or below this leaves its angle free, and a branch byte reads 3."""
+"""Conditioning over its scale at or below this leaves the angle of a step free, and a branch byte reads 3."""
 KNOWN_ANGLE = sp.Float("0.1")
-"""A scaled measure above this gives its angle to 1e-15, so that hardly anything can be made of moving it."""
+"""Conditioning over its scale above this gives the angle of a step to 1e-15: there is hardly a reason to move it."""
 OUT_OF_REACH = sp.Float("1e-9")
 """What is beyond its bound by more than this share is not reached by moving an angle that is known."""
 BOUNDARY = sp.Float("1e-12")

@@ -44,7 +44,7 @@ from derive.ir.symbols import (
 from derive.ir.verify import BrokenProgram, verify
 
 
-def assemble(name: str, statements: Iterable[Statement], outputs: Sequence[Output]) -> Program:
+def normalise(name: str, statements: Iterable[Statement], outputs: Sequence[Output]) -> Program:
     """A verified program from statements in any order: symbols without assumptions, aliases folded, ordered, inputs
     found.
     """

@@ -154,8 +154,8 @@ class FindRoot:
 
     A trial is a function of `TRIED`, with the two-root step on the wanted side (`SIDE` = 1) or the other (-1), and the
     angle of the step with the number `FREED` set to `FREED_ANGLE` (-1: no step). Its outputs are the residual with its
-    slope, the guard, which is negative where there is no solution, with its slope, then cosine and sine of the angle of
-    every step with a measure. `finish` has the same arguments; its first output tells whether the root is on the wanted
+    slope, the guard, which is negative where there is no solution, with its slope, then cosine and sine of every angle
+    that may be free. `finish` has the same arguments; its first output tells whether the root is on the wanted
     branch. `roots` says how roots are found. Where there is none, or `wanted` is false, the names are bound to false
     and zeros.
     """

@@ -63,8 +63,8 @@ class Why(Enum):
     BEYOND_PLATE_CONE = "{}: its joint on the plate bends beyond its cone"
     BEYOND_LARGEST_ANGLE = "{}: beyond its largest angle"
     TOO_LARGE = "{}: too large"
-    NEAR_TYPE_2 = "{}: the other assembly mode, or too near to losing the plate"
-    NO_SECOND_CROSSING = "without the offset there is no second crossing"
+    NEAR_TYPE_2 = "{}: in the other assembly mode, or too close to a type 2 singularity"
+    FIRST_CROSSING_ONLY = "without an offset, only the first branch of the crossing has a solution"
     NO_ROOT = "{}: the search along it finds no root of this branch"
     BELOW = "{}: below its lower limit"
     ABOVE = "{}: above its upper limit"
@@ -116,7 +116,7 @@ class Reason:
     subject: Subject
     why: Why
     amount: sp.Expr | None = None
-    """How much is missing where the condition does not hold; None where that has no measure."""
+    """How much is missing where the condition does not hold; None where that is no quantity."""
     unit: Unit = Unit.NONE
     turns: tuple[OtherTurn, ...] = ()
     """The axes that may be inside on another turn, where a limit refuses: the first that is gives the reason."""

@@ -118,9 +118,9 @@ def _vanishing(cells: Cells) -> At:
     return _places(cells.take(is_root), cells.low[is_root])
 
 
-def _vanishes(said: Reals) -> Flags:
+def _vanishes(results: Reals) -> Flags:
     """Whether a trial is at a root by its value alone. Where the guard vanishes, the value has half of its digits."""
-    value, guard = np.abs(said[:, VALUE]), said[:, GUARD]
+    value, guard = np.abs(results[:, VALUE]), results[:, GUARD]
     return np.asarray((value <= VANISHING) & (guard >= 0.0) | (value <= NEXT) & (np.abs(guard) <= VANISHING))
 
 
@@ -128,8 +128,8 @@ def _start(trial: Trial, start: Reals) -> At:
     """The starts that are roots themselves, as on a path that stands still."""
     rows = np.arange(len(start))
     place = At(rows, start, np.ones(len(rows), dtype=int), np.full(len(rows), -1), np.zeros(len(rows)))
-    said = trial(place)
-    is_root = _vanishes(said)
+    results = trial(place)
+    is_root = _vanishes(results)
     return At(rows[is_root], start[is_root], place.side[is_root], place.freed[is_root], place.angle[is_root])
 
 

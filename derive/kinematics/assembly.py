@@ -1,4 +1,6 @@
-"""Assembly modes: which sign of the forward slope belongs to which mode, and the poses that the inverse must refuse."""
+"""Assembly modes: which sign of the determinant of forward kinematics belongs to which mode, and the poses that the
+inverse must refuse.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ from derive.equations.pose_at_axes import (
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Select,
     angle_of_sine,
@@ -45,28 +47,28 @@ class Assembled:
 
     forward: Forward
     margin: sp.Expr | None
-    """The slope over its scale, in the names of the forward derivation; None where forward has one solution."""
+    """The determinant over its scale, in the names of the forward derivation; None where forward has one solution."""
 
 
 def assembled(mechanism: Mechanism, forward: Forward) -> Assembled:
     """Bind the assembly sign to the parameter of the machine, as the indicator of the description tells."""
-    if mechanism.assembly is None or forward.slope is None:
+    if mechanism.assembly is None or forward.determinant is None:
         return Assembled(forward, None)
     first = mechanism.assembly.signs[0] * _orientation(mechanism, forward)
     chosen: sp.Expr = first * (1 - 2 * real(mechanism.assembly.parameter))
     if mechanism.assembly.handedness != 1:
         chosen = Select(sp.Gt(with_fixed_names(mechanism, mechanism.assembly.handedness), 0), chosen, -chosen)
     sign = Let(ASSEMBLY_SIGN, chosen, "assembly mode of this machine: the sign of the determinant of its rods")
-    margin = forward.slope.value / forward.slope.scale
+    margin = forward.determinant.value / forward.determinant.scale
     return Assembled(replace(forward, statements=(sign, *forward.statements)), margin)
 
 
 def _orientation(mechanism: Mechanism, forward: Forward) -> int:
-    """+1 where the sign of the slope is that of the indicator, -1 where it is the opposite."""
+    """+1 where the sign of the determinant is that of the indicator, -1 where it is the opposite."""
     assert mechanism.assembly is not None
     described = mechanism.assembly.indicator * mechanism.assembly.handedness
     lets, (indicator,) = named_trigonometry(mechanism, [with_fixed_names(mechanism, described)])
-    program = assemble("assembly", (*forward.statements, *lets), [Output("indicator", indicator)])
+    program = normalise("assembly", (*forward.statements, *lets), [Output("indicator", indicator)])
     machine = sample_machine(mechanism, 31)
     samples = {**machine, **sample_axes(mechanism, machine, _SAMPLES, 32)}
     found: set[int] = set()

@@ -1,4 +1,4 @@
-"""Branch assignment: a branch belongs to the two-root step whose slope has the sign of the branch's indicator."""
+"""Branch assignment: a branch belongs to the two-root step whose determinant has the sign of the branch's indicator."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from derive.equations.closure import all_angles, with_fixed_names
 from derive.equations.pose_at_axes import (
     Forward,
 )
-from derive.equations.problem import Slope
+from derive.equations.problem import StepDeterminant
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     ToReal,
 )
@@ -43,12 +43,12 @@ _SAMPLES = 64
 
 @dataclass(frozen=True)
 class Assignment:
-    """A branch, the slope of the step that decides it, and whether both have the same sign (+1) or
+    """A branch, the determinant of the step that decides it, and whether both have the same sign (+1) or
     opposite signs (-1).
     """
 
     branch: Branch
-    slope: Slope
+    determinant: StepDeterminant
     orientation: int
 
     @property
@@ -62,8 +62,8 @@ class Assignment:
         return real(f"sign_{self.branch.name}")
 
     def margin(self, mechanism: Mechanism) -> sp.Expr:
-        """The slope over its scale, with the sign of the branch: positive is byte 1."""
-        value = sp.cancel(self.orientation * self.slope.value / self.slope.scale)
+        """The determinant over its scale, with the sign of the branch: positive is byte 1."""
+        value = sp.cancel(self.orientation * self.determinant.value / self.determinant.scale)
         return reduce_units(value, all_angles(mechanism)) if value.is_polynomial() else value
 
 
@@ -75,20 +75,22 @@ def assign(
     optional_zero: compare on a machine without its optional lengths. The steps of the offset problem correspond to the
     branches of the machine only where the point is the flange itself.
     """
-    slopes = inverse.derivation.slopes
-    if not slopes and not mechanism.branches:
+    determinants = inverse.derivation.determinants
+    if not determinants and not mechanism.branches:
         return ()
     signs, indicators = _signs(mechanism, inverse, forward, optional_zero)
     found: list[Assignment] = []
     for branch, indicator in zip(mechanism.branches, indicators, strict=True):
-        steps = [(s, o) for s, row in zip(slopes, signs, strict=True) for o in (1, -1) if np.all(o * row == indicator)]
+        steps = [
+            (s, o) for s, row in zip(determinants, signs, strict=True) for o in (1, -1) if np.all(o * row == indicator)
+        ]
         if len(steps) != 1:
             raise DescriptionError(f"branch {branch.name!r}: its indicator agrees with {len(steps)} steps, not one")
-        first = next((a.branch.name for a in found if a.slope == steps[0][0]), None)
+        first = next((a.branch.name for a in found if a.determinant == steps[0][0]), None)
         if first is not None:
             raise DescriptionError(f"branches {first!r} and {branch.name!r} name the same two solutions")
         found.append(Assignment(branch, *steps[0]))
-    unnamed = [s for s in slopes if s not in [a.slope for a in found]]
+    unnamed = [s for s in determinants if s not in [a.determinant for a in found]]
     if unnamed:
         names = ", ".join(s.step.name for s in unnamed)
         raise DescriptionError(f"no branch names the two solutions for {names}")
@@ -119,10 +121,10 @@ def _signs(
     lets, indicators = named_trigonometry(
         mechanism, [with_fixed_names(mechanism, b.indicator) * b.signs[0] for b in mechanism.branches]
     )
-    slopes = [s.value for s in inverse.derivation.slopes]
-    named = [Let(real(f"sign_{k}"), v) for k, v in enumerate([*slopes, *indicators])]
+    determinants = [s.value for s in inverse.derivation.determinants]
+    named = [Let(real(f"sign_{k}"), v) for k, v in enumerate([*determinants, *indicators])]
     statements = (*derivation_at_axes(mechanism, inverse, forward), *lets, *named)
-    program = assemble("signs", statements, [Output(n.name.name, n.name) for n in named])
+    program = normalise("signs", statements, [Output(n.name.name, n.name) for n in named])
     machine = sample_machine(mechanism, 21, optional_zero)
     samples = {**machine, **sample_axes(mechanism, machine, _SAMPLES, 22)}
     samples.update({f"point_{c}": np.asarray(0.0) for c in "xyz"})
@@ -133,12 +135,12 @@ def _signs(
             "no sampled pose is possible: a quantity that must be positive never is, or the loop never closes"
         )
     rows = [np.sign(np.broadcast_to(values[n.name.name], (_SAMPLES,))[good]) for n in named]
-    return rows[: len(slopes)], rows[len(slopes) :]
+    return rows[: len(determinants)], rows[len(determinants) :]
 
 
 def with_branch_signs(statements: Sequence[Statement], assignments: Sequence[Assignment]) -> tuple[Statement, ...]:
     """The derivation with the sign of every step replaced by that of its branch, converted to a real number here."""
-    table = {a.slope.sigma: a.orientation * a.factor for a in assignments}
+    table = {a.determinant.sigma: a.orientation * a.factor for a in assignments}
     named = ((a, f"{a.branch.name}: +1 {a.branch.names[0]}, -1 {a.branch.names[1]}") for a in assignments)
     signs = (Let(a.factor, ToReal(a.sigma), note) for a, note in named)
     return (*signs, *(rewritten(s, lambda e: e.xreplace(table)) for s in statements))

@@ -23,7 +23,7 @@ from derive.equations.pose_at_axes import (
 from derive.equations.windows import windows
 from derive.geometry.frames import Motion
 from derive.geometry.pose import pose_of
-from derive.ir.passes import assemble, hoist
+from derive.ir.passes import hoist, normalise
 from derive.ir.program import (
     Let,
     Output,
@@ -65,15 +65,9 @@ from derive.kinematics.forward import (
 from derive.kinematics.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics.kinematics import Freedom, Kinematics, Margin
 from derive.kinematics.parameters import machine_parameters, setup_program
-from derive.kinematics.scanned import (
-    DETERMINANT,
-    branch_statements,
-    determinant_margin,
-    from_joints,
-    margin_statements,
-    search_given,
-    solve_both,
-)
+from derive.kinematics.scan.derivations import from_joints, solve_both
+from derive.kinematics.scan.inverse import branch_statements, search_given
+from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements
 from derive.kinematics.shared_names import refuse_shared_names
 from derive.lowering.lower import lowered
 from derive.plate.legs import MARGIN
@@ -103,8 +97,8 @@ def build(mechanism: Mechanism) -> Kinematics:
     at_axes = derivation_at_axes(mechanism, inverse, forward)
     margins = margin_lets(mechanism, assignments)
     jacobian = jacobian_program(mechanism, forward)
-    slopes, measures = assignments, inverse.derivation.measures
-    factors = [*(factor_of(mechanism, a) for a in slopes), *(factor_of(mechanism, m) for m in measures)]
+    determinants, conditionings = assignments, inverse.derivation.conditionings
+    factors = [*(factor_of(mechanism, a) for a in determinants), *(factor_of(mechanism, m) for m in conditionings)]
     if mechanism.assembly is not None and closed.margin is not None:
         factors.append(Factor(mechanism.assembly.margin, closed.margin))
     singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian)
@@ -133,7 +127,7 @@ def build(mechanism: Mechanism) -> Kinematics:
 def _platform(mechanism: Mechanism) -> Kinematics:
     """The programs of a platform that moves with its whole pose: forward kinematics iterates, det A is the margin."""
     inverse = solve_pose(mechanism)
-    if inverse.derivation.slopes or mechanism.branches:
+    if inverse.derivation.determinants or mechanism.branches:
         raise DescriptionError("a platform that moves freely has no branches: its closure must determine every joint")
     statements = inverse.derivation.statements
     search = search_program(mechanism)
@@ -168,7 +162,7 @@ def _scanned(mechanism: Mechanism) -> Kinematics:
         search_given(both),
         from_joints(mechanism),
         limits_program(mechanism),
-        assemble(
+        normalise(
             "singularity", (*both.forward.statements, *determinant, margin), [Output(DETERMINANT.name, margin.name)]
         ),
         jacobian_program(mechanism, both.forward),
@@ -248,7 +242,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
         from_joints=finished.get("from_joints"),
         twist=finished.get("twist"),
         compatible=finished.get("compatible"),
-        carried=finished.get("carried"),
+        end_point_shift=finished.get("end_point_shift"),
         total_image=finished.get("total_image"),
     )
 
@@ -305,22 +299,22 @@ def _offset_configuration(
     margins = margin_lets(mechanism, assignments)
     outputs = [Output(m.name.name, m.name) for m in margins]
     known = derivation_at_axes(mechanism, inverse, at_point(forward))
-    draft = assemble("offset_configuration", (*known, *margins), outputs)
+    draft = normalise("offset_configuration", (*known, *margins), outputs)
     points = [s for s in draft.inputs if s in OFFSET]
-    return assemble("offset_configuration", (*finite(points), *draft.body), draft.outputs)
+    return normalise("offset_configuration", (*finite(points), *draft.body), draft.outputs)
 
 
 def _projection_program(mechanism: Mechanism) -> Program:
     """The rotation nearest to the commanded one that the flange can take; of a direction, with any twist about it."""
     if mechanism.task.turning in (Turning.DIRECTION, Turning.FULL):
         own = [Output(r.name, r) for r in ROTATION_ENTRIES]
-        return assemble("projection", (), own)
+        return normalise("projection", (), own)
     assert mechanism.chain is not None
     cos_heading, sin_heading = real("cos_heading"), real("sin_heading")
     turned = sp.Matrix([[cos_heading, -sin_heading, 0], [sin_heading, cos_heading, 0], [0, 0, 1]])
     rotation = turned * flange_rotation(mechanism.chain)
     outputs = [Output(r.name, v) for r, v in zip(ROTATION_ENTRIES, rotation, strict=True)]
-    return assemble("projection", heading_lets(mechanism), outputs)
+    return normalise("projection", heading_lets(mechanism), outputs)
 
 
 def _turns_in_a_coupling(mechanism: Mechanism) -> bool:
@@ -356,4 +350,4 @@ def _image_program(mechanism: Mechanism) -> Program:
     outputs = [Output(f"zero_{r.name}", v) for r, v in zip(ROTATION_ENTRIES, zero, strict=True)]
     outputs += [Output(f"rot_{c}", v) for c, v in zip("xyz", axis, strict=True)]
     outputs += [Output(f"u_{c}", v) for c, v in zip("xyz", moving, strict=True)]
-    return assemble("image", (), outputs)
+    return normalise("image", (), outputs)

@@ -24,7 +24,7 @@ from derive.geometry.frames import Factor, Motion
 from derive.ir.constants import (
     HELD,
 )
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
 )
@@ -91,7 +91,7 @@ def end_point_of(mechanism: Mechanism) -> EndPoint:
 
 def coupling_programs(mechanism: Mechanism) -> tuple[Program, ...]:
     """The programs that a coupling calls of an orientation kinematics: see `Kinematics`."""
-    found = (_compatible(mechanism), _carried(mechanism))
+    found = (_compatible(mechanism), _end_point_shift(mechanism))
     return found if _MET[mechanism.task.turning] else (*found, _total_image(mechanism))
 
 
@@ -109,7 +109,7 @@ def _compatible(mechanism: Mechanism) -> Program:
     for name, value, note in (("wrist_offset", parts.wrist, _BETWEEN), ("unmet_offset", _size(unmet), _UNMET)):
         if value != 0:
             body += [Let(real(name), value, note), _unnoticed(name)]
-    return assemble("compatible", body, [])
+    return normalise("compatible", body, [])
 
 
 def _unnoticed(name: str) -> Require:
@@ -119,7 +119,7 @@ def _unnoticed(name: str) -> Require:
     )
 
 
-def _carried(mechanism: Mechanism) -> Program:
+def _end_point_shift(mechanism: Mechanism) -> Program:
     parts, met = end_point_of(mechanism), _MET[mechanism.task.turning]
     tool = sp.Matrix([s if k in met else 0 for k, s in enumerate(parts.tool)])
     place = _ROTATION * tool
@@ -127,7 +127,7 @@ def _carried(mechanism: Mechanism) -> Program:
     if any(parts.flange):
         place += sp.Matrix(BASE_AXIS) * _ALONG
         body += [*finite((*FLANGE_AXIS, *BASE_AXIS)), *_along(parts)]
-    return assemble("carried", body, [Output(c, v) for c, v in zip(COORDINATE_NAMES, place, strict=True)])
+    return normalise("end_point_shift", body, [Output(c, v) for c, v in zip(COORDINATE_NAMES, place, strict=True)])
 
 
 def _total_image(mechanism: Mechanism) -> Program:
@@ -144,7 +144,7 @@ def _total_image(mechanism: Mechanism) -> Program:
         rot, u, apart = _ROTATION * axis, own.T * axis, _size(list(axis.cross(sp.Matrix(FLANGE_AXIS))))
     outputs += [Output(f"rot_{c}", v) for c, v in zip(COORDINATE_NAMES, rot, strict=True)]
     outputs += [Output(f"u_{c}", v) for c, v in zip(COORDINATE_NAMES, u, strict=True)]
-    return assemble("total_image", finite(read), [*outputs, Output("apart", apart)])
+    return normalise("total_image", finite(read), [*outputs, Output("apart", apart)])
 
 
 def _along(parts: EndPoint) -> tuple[Let, ...]:

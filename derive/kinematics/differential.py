@@ -20,7 +20,7 @@ from derive.equations.named_pose import named_pose
 from derive.equations.pose_at_axes import (
     Forward,
 )
-from derive.equations.problem import Measure
+from derive.equations.problem import Conditioning
 from derive.equations.trigonometry import named_trigonometry
 from derive.geometry.frames import Chain, Motion
 from derive.geometry.pose import Screw, pose_of
@@ -28,7 +28,7 @@ from derive.ir.constants import (
     FREE_ANGLE,
 )
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Select,
 )
@@ -75,15 +75,15 @@ def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
     """The Jacobian: a row per quantity of the task, a column per axis; rotary axes per radian."""
     if mechanism.is_platform:
         solved, twists = platform_jacobian(mechanism, _motor_matrix(mechanism))
-        return assemble("jacobian", (*forward.statements, *solved), _entries_of(twists, len(mechanism.joints)))
+        return normalise("jacobian", (*forward.statements, *solved), _entries_of(twists, len(mechanism.joints)))
     statements, values = jacobian_entries(mechanism)
-    return assemble("jacobian", (*forward.statements, *statements), _entries_of(values, len(mechanism.joints)))
+    return normalise("jacobian", (*forward.statements, *statements), _entries_of(values, len(mechanism.joints)))
 
 
 def twist_program(mechanism: Mechanism, forward: Forward) -> Program:
     """All six rows of the twist at the end of a chain, whatever its task: a coupling needs them."""
     lets, values = _per_motor(mechanism, _by_screws(mechanism, _ROWS[:6]))
-    return assemble("twist", (*forward.statements, *lets), _entries_of(values, len(mechanism.joints)))
+    return normalise("twist", (*forward.statements, *lets), _entries_of(values, len(mechanism.joints)))
 
 
 def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
@@ -192,7 +192,7 @@ def _motor_matrix(mechanism: Mechanism) -> sp.Matrix:
 
 @dataclass(frozen=True)
 class Factor:
-    """A candidate for a margin: a slope or a measure over its scale, at axis values."""
+    """A candidate for a margin: the determinant or the conditioning of a step over its scale, at axis values."""
 
     name: str
     value: sp.Expr
@@ -212,11 +212,11 @@ class Factor:
         return Let(length, self.value), Let(margin, told, "0 where nothing determines the axis, else 1 or -1")
 
 
-def factor_of(mechanism: Mechanism, found: Assignment | Measure) -> Factor:
-    """The slope of a branch, or a measure, over its scale."""
+def factor_of(mechanism: Mechanism, found: Assignment | Conditioning) -> Factor:
+    """The determinant of a branch, or the conditioning of a step, over its scale."""
     has_unit = not has_length(mechanism)
     if isinstance(found, Assignment):
-        return Factor(found.branch.margin, found.margin(mechanism), has_unit and found.slope.scale.has(SCALE))
+        return Factor(found.branch.margin, found.margin(mechanism), has_unit and found.determinant.scale.has(SCALE))
     return Factor(found.name, found.value / found.scale, has_unit and found.scale.has(SCALE), is_signed=False)
 
 
@@ -229,12 +229,12 @@ def singularity_program(
     told = {f.name: Output(f.name, f.lets[-1].name) for f in factors}
     outputs = [lengths.get(f.name, told[f.name]) for f in factors]
     if not mechanism.joints:
-        return assemble("singularity", statements, []), ()
-    draft = assemble("singularity", (*statements, *lets), outputs)
+        return normalise("singularity", statements, []), ()
+    draft = normalise("singularity", (*statements, *lets), outputs)
     exponents = _exponents(mechanism, draft, jacobian)
     kept = [(f.name, e) for f, e in zip(factors, exponents, strict=True) if e != 0]
     shown = [o for name, _ in kept for o in (told[name], *([lengths[name]] if name in lengths else []))]
-    program = assemble("singularity", (*statements, *lets), shown)
+    program = normalise("singularity", (*statements, *lets), shown)
     of_length = {name: output.name for name, output in lengths.items()}
     return program, tuple(Margin(n, e, "type 1" if e > 0 else "type 2", of_length.get(n)) for n, e in kept)
 
@@ -264,8 +264,8 @@ def _exponents(mechanism: Mechanism, margins: Program, jacobian: Program) -> lis
 
 
 def _independent(logs: Sequence[NDArray[np.float64]]) -> list[int]:
-    """The margins that are no product of earlier ones: the measure of a two-root step is the absolute value of its
-    slope.
+    """The margins that are no product of earlier ones: the conditioning of a two-root step is the absolute value of its
+    determinant.
     """
     own: list[int] = []
     for k in range(len(logs)):

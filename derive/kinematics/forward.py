@@ -30,7 +30,7 @@ from derive.ir.constants import (
     BOUNDARY,
     LIMIT,
 )
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Select,
 )
@@ -74,10 +74,10 @@ def pose_at_axes(mechanism: Mechanism) -> Forward:
     joints = angles_of(mechanism)
     trigonometric = tuple(Let(f(a), g(a)) for a in joints for f, g in ((cosine, sp.cos), (sine, sp.sin)))
     derivation = _solve_for_position(mechanism)
-    slope = derivation.slopes[0] if derivation.slopes else None
+    determinant = derivation.determinants[0] if derivation.determinants else None
     known = (*checks, *fixed_lets(mechanism), *trigonometric, *_in_assembly_mode(derivation, mechanism))
     position_values = tuple(real(c) if c in mechanism.task.position else sp.Integer(0) for c in COORDINATE_NAMES)
-    return Forward(known, position_values, tuple(sp.eye(3)), slope)
+    return Forward(known, position_values, tuple(sp.eye(3)), determinant)
 
 
 def _frame_by_frame(mechanism: Mechanism, checks: tuple[Statement, ...]) -> Forward:
@@ -101,16 +101,16 @@ def _solve_for_position(mechanism: Mechanism) -> Derivation:
         signs=signs_of(mechanism),
     )
     derivation = solve(problem, (), lambda angle: ())
-    if len(derivation.slopes) > 1 or bool(derivation.slopes) != (mechanism.assembly is not None):
+    if len(derivation.determinants) > 1 or bool(derivation.determinants) != (mechanism.assembly is not None):
         raise DescriptionError(
-            f"forward kinematics has {len(derivation.slopes)} two-root steps: one assembly names one"
+            f"forward kinematics has {len(derivation.determinants)} two-root steps: one assembly names one"
         )
     return derivation
 
 
 def _in_assembly_mode(derivation: Derivation, mechanism: Mechanism) -> tuple[Statement, ...]:
     """The derivation in the assembly mode of the machine; where the loop does not close it is IMPOSSIBLE."""
-    sides = {s.sigma: ASSEMBLY_SIGN for s in derivation.slopes}
+    sides = {s.sigma: ASSEMBLY_SIGN for s in derivation.determinants}
     chosen = (rewritten(s, lambda e: e.xreplace(sides)) for s in derivation.statements)
     return tuple(replace(s, otherwise=Status.IMPOSSIBLE) if isinstance(s, Require) else s for s in chosen)
 
@@ -157,12 +157,12 @@ def forward_program(mechanism: Mechanism, forward: Forward, margins: tuple[Let, 
     outputs = [Output(c, v) for c, v in zip(COORDINATE_NAMES, forward.position, strict=True)]
     outputs += _rotation_outputs(forward)
     outputs += [Output(m.name.name, m.name) for m in margins]
-    return assemble("forward", (*forward.statements, *margins), outputs)
+    return normalise("forward", (*forward.statements, *margins), outputs)
 
 
 def orientation_program(forward: Forward) -> Program:
     """The rotation alone."""
-    return assemble("orientation", forward.statements, _rotation_outputs(forward))
+    return normalise("orientation", forward.statements, _rotation_outputs(forward))
 
 
 def _rotation_outputs(forward: Forward) -> list[Output]:
@@ -170,7 +170,7 @@ def _rotation_outputs(forward: Forward) -> list[Output]:
 
 
 def derivation_at_axes(mechanism: Mechanism, inverse: Inverse, forward: Forward) -> tuple[Statement, ...]:
-    """The names of the inverse derivation at given axis values, for slopes and measures.
+    """The names of the inverse derivation at given axis values, for the determinants and the conditioning of its steps.
 
     Sines and cosines that the inverse solves for are those of the given joints; all other names keep their definitions.
     """
@@ -185,7 +185,7 @@ def derivation_at_axes(mechanism: Mechanism, inverse: Inverse, forward: Forward)
     ]
     present = {s.name for s in forward.statements if isinstance(s, Let)}
     lets = tuple(s for n, s in trigonometric.items() if n not in present)
-    lets += tuple(Let(s.sigma, Select(sp.Ge(s.value, 0), 1, -1)) for s in inverse.derivation.slopes)
+    lets += tuple(Let(s.sigma, Select(sp.Ge(s.value, 0), 1, -1)) for s in inverse.derivation.determinants)
     fixed = tuple(let for let in fixed_lets(mechanism) if let.name not in own)
     return (*forward.statements, *fixed, *lets, *kept)
 

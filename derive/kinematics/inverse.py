@@ -32,7 +32,7 @@ from derive.ir.constants import (
     FREE_ANGLE,
     PLANE,
 )
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Atan2,
     Root,
@@ -195,10 +195,10 @@ def inverse_program(
     )
     outputs = [Output(j.axis.name, j.axis) for j in mechanism.joints]
     body = (*inverse.naming, *in_plane, *statements, *last, *axes)
-    draft = assemble(name, body, outputs)
+    draft = normalise(name, body, outputs)
     groups = (POSITION, OFFSET, tuple(j.reference for j in mechanism.joints))
     checks = tuple(check for group in groups for check in finite([s for s in group if s in draft.inputs]))
-    return shorter(assemble(name, (*checks, *draft.body), draft.outputs))
+    return shorter(normalise(name, (*checks, *draft.body), draft.outputs))
 
 
 def of_angle(let: Let, joint: Joint, resolved: set[sp.Symbol]) -> Let:

@@ -106,7 +106,7 @@ class Kinematics:
     frame of the flange, base_axis_* in that of the machine; both are zero for a flange that turns freely:
 
     compatible       flange_axis_* → no outputs; its conditions say which offsets a flange that turns allows
-    carried          flange_axis_*, base_axis_*, r11…r33 commanded (those it reads) → x y z from the flange to the end
+    end_point_shift  flange_axis_*, base_axis_*, r11…r33 commanded (those it reads) → x y z from the flange to the end
                      point
     total_image      r11…r33 one orientation of the flange, flange_axis_*, base_axis_* → the image of both together, as
                      in `image`, if the flange keeps its orientation or turns about the same axis: it does where
@@ -138,7 +138,7 @@ class Kinematics:
     from_joints: Program | None = None
     twist: Program | None = None
     compatible: Program | None = None
-    carried: Program | None = None
+    end_point_shift: Program | None = None
     total_image: Program | None = None
     evidence: Evidence | None = None
     self_test: SelfTest | None = None

@@ -104,7 +104,7 @@ def hoisted(
         if named is not None:
             names[node] = replace(named, name=free.fresh(named.name.name, named.name), order=order)
             continue
-        proposal = said(Value(node, 1), called, readers.get(node, "constant"))
+        proposal = said(Value(node, 1), called, readers.get(node, ""))
         names[node] = Named(free.fresh(proposal), 1, "", order)
     own = {node: named for node, named in names.items() if node not in elsewhere}
     outputs = tuple(Output(named.name.name, named.name) for named in own.values())

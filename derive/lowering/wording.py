@@ -1,4 +1,4 @@
-"""What a value without a name is called: `a2_plus_a3`, `x_by_reach`, `part_of_axis_a1`."""
+"""What a value without a name is called: `a2_plus_a3`, `x_by_reach`, `product_in_axis_a1`."""
 
 from __future__ import annotations
 
@@ -24,17 +24,32 @@ _WORDS = {
 _MULTIPLES = {sp.Integer(2): "twice", sp.Rational(1, 2): "half"}
 _READABLE = re.compile(r"(?=.{1,40}$)[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _FUNCTIONS = {sp.sin: "sin", sp.cos: "cos", sp.Abs: "size", Root: "root", Atan2: "angle", ToReal: "real"}
+_OPERATIONS = {**_FUNCTIONS, SUM: "sum", PRODUCT: "product"}
+_OPERATION_IN = re.compile(r"\A(sin|cos|size|root|angle|real|sum|product|quotient|value)_in_")
+"""What a name begins with that was made of an operation: it is not repeated."""
 
 Called = Callable[[Node], sp.Expr | None]
 """The name of a node, with a minus sign where it is that of the negative."""
 
 
 def said(value: Value, called: Called, reader: str) -> str:
-    """A value in words, or as a part of what reads it where that cannot be said. called: the names of nodes."""
+    """A value in words; where they would be too many, its operation and the name of the first value that reads it.
+
+    called: the names of nodes; reader: the name of the value that reads it, "" where none has a name.
+    """
     text = _words(value, called)
     if text is not None and _READABLE.match(text):
         return text
-    return f"part_of_{reader.removeprefix('part_of_')}" if reader else "part"
+    return (
+        f"{_operation(value.node)}_in_{_OPERATION_IN.sub('', reader)}" if reader else f"shared_{_operation(value.node)}"
+    )
+
+
+def _operation(node: Node) -> str:
+    """What computes a value: a sum, a product, a quotient, a function that has a name; else it is a value."""
+    if node.head is PRODUCT and node.divisors:
+        return "quotient"
+    return _OPERATIONS.get(node.head, "value")
 
 
 def _words(value: Value, called: Called) -> str | None:

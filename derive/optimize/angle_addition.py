@@ -21,7 +21,7 @@ from derive.ir.constants import (
     DEGREE,
 )
 from derive.ir.names import Names
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Atan2,
     Select,
@@ -205,4 +205,4 @@ def _with_angles(
             lets.append(replace(statement, value=sines[statement.name]))
         elif not (isinstance(statement, Let) and known.get(statement.value) == statement.name):
             lets.append(rewritten(statement, lambda e: e.xreplace(known)))
-    return assemble(program.name, lets, program.outputs)
+    return normalise(program.name, lets, program.outputs)

@@ -20,7 +20,7 @@ from derive.ir.constants import (
     DEGREE,
 )
 from derive.ir.names import Names
-from derive.ir.passes import assemble, is_read_once
+from derive.ir.passes import is_read_once, normalise
 from derive.ir.primitives import (
     Atan2,
     NearestPeriod,
@@ -98,7 +98,7 @@ def _with_sums(program: Program, sums: Mapping[Pair, _Amount]) -> Program:
             changed = replace(changed, note=_joined(notes[whole[1]], changed.note))
         body.append(changed)
     lets = [Let(name, Atan2(*pair)) for pair, name in angles.items()]
-    return assemble(program.name, (*lets, *body), program.outputs) if sums else program
+    return normalise(program.name, (*lets, *body), program.outputs) if sums else program
 
 
 def _angle_name(pair: Pair, whole: Pair) -> str:
@@ -234,7 +234,7 @@ def _without_division(
             value = _times(s.value, length) if s.name in names else s.value
             s = replace(s, name=called.get(s.name, s.name), value=value)
         body.append(rewritten(s, lambda e: e.xreplace(called)))
-    changed = assemble(program.name, body, [Output(o.name, o.value.xreplace(called)) for o in program.outputs])
+    changed = normalise(program.name, body, [Output(o.name, o.value.xreplace(called)) for o in program.outputs])
     return _with_parts(changed, set(called.values()))
 
 
@@ -248,7 +248,7 @@ def _with_parts(program: Program, names: set[sp.Symbol]) -> Program:
             if is_read_once(program, source.name):
                 s = replace(s, value=Select(condition, source.value, otherwise), note=_joined(source.note, s.note))
         body.append(s)
-    return assemble(program.name, body, program.outputs)
+    return normalise(program.name, body, program.outputs)
 
 
 def _joined(*notes: str) -> str:

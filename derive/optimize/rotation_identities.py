@@ -18,7 +18,7 @@ from derive.ir.constants import (
     FREE_ANGLE,
     KNOWN_ANGLE,
 )
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Select,
 )
@@ -47,7 +47,7 @@ def with_rotation_identities(program: Program) -> Program:
             found = _third(statement.value, values, rotations)
             if found is not None:
                 body[place] = replace(statement, value=found)
-    return assemble(program.name, body, program.outputs)
+    return normalise(program.name, body, program.outputs)
 
 
 def _rotations(values: Mapping[sp.Symbol, sp.Expr]) -> Iterator[_Entries]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.ir.passes import assemble, is_read_once
+from derive.ir.passes import is_read_once, normalise
 from derive.ir.primitives import (
     Root,
 )
@@ -69,7 +69,7 @@ def _turned_back(program: Program) -> Program:
     body = list(program.body)
     for turned in _turns(program.lets()):
         body = [turned.undone_in(s) for s in body]
-    return assemble(program.name, body, program.outputs)
+    return normalise(program.name, body, program.outputs)
 
 
 def _turns(lets: Iterable[Let]) -> Iterable[_Turned]:
@@ -96,5 +96,5 @@ def _without_signs(program: Program) -> Program:
         if source is not None and is_read_once(program, source.name):
             changed = Let(let.name, sp.expand(-source.value), let.note or source.note)
             body = [changed if s == let else s for s in program.body if s != source]
-            return _without_signs(assemble(program.name, body, program.outputs))
+            return _without_signs(normalise(program.name, body, program.outputs))
     return program

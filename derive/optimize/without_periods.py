@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     NearestPeriod,
     Wrap,
@@ -47,7 +47,7 @@ def angles_modulo_turns(program: Program) -> frozenset[sp.Symbol]:
 def specialised(program: Program, values: Mapping[sp.Symbol, sp.Expr]) -> Program:
     """The program with some inputs given: choices that this decides disappear."""
     body = [rewritten(s, lambda e: e.xreplace(dict(values))) for s in program.body]
-    return assemble(program.name, body, [Output(o.name, o.value.xreplace(dict(values))) for o in program.outputs])
+    return normalise(program.name, body, [Output(o.name, o.value.xreplace(dict(values))) for o in program.outputs])
 
 
 def without_chosen_turns(program: Program) -> Program:
@@ -56,7 +56,7 @@ def without_chosen_turns(program: Program) -> Program:
     """
     counted = turns_that_count(program)
     body = [_in_any_turn(s, counted) for s in _of_good_input(program)]
-    return assemble(program.name, body, program.outputs)
+    return normalise(program.name, body, program.outputs)
 
 
 def turns_that_count(program: Program) -> frozenset[sp.Symbol]:

@@ -26,7 +26,7 @@ from derive.ir.constants import (
     CONVERGED,
     FREE_ANGLE,
 )
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -122,7 +122,7 @@ def search_program(mechanism: Mechanism) -> Program:
         *joint_lets(mechanism),
         Require(positive, Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_MIRROR)),
     )
-    search = assemble(SEARCH, (*checks, *_newton(mechanism)), outputs)
+    search = normalise(SEARCH, (*checks, *_newton(mechanism)), outputs)
     return replace(
         search, summary="The pose of the platform at its axis values, the rows of A there, and their determinant"
     )

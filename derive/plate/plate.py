@@ -20,7 +20,7 @@ from derive.ir.constants import (
     SHORTEST_LINK,
     SINGULAR,
 )
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -190,4 +190,4 @@ def _driven(rod: Rod) -> sp.Matrix:
 
 def platform_singularity(statements: Sequence[Statement]) -> Program:
     """The margin at a pose that forward kinematics has found."""
-    return assemble("singularity", statements, [Output(MARGIN, DETERMINANT)])
+    return normalise("singularity", statements, [Output(MARGIN, DETERMINANT)])

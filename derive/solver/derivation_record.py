@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.equations.problem import Binding, Measure, Slope
+from derive.equations.problem import Binding, Conditioning, StepDeterminant
 from derive.ir.program import (
     Let,
     Statement,
@@ -28,8 +28,8 @@ class DerivationRecord:
         self._statements: list[Statement] = []
         self._by_value: dict[sp.Expr, sp.Symbol] = {}
         self._names: set[str] = set()
-        self._slopes: list[Slope] = []
-        self._measures: list[Measure] = []
+        self._determinants: list[StepDeterminant] = []
+        self._conditionings: list[Conditioning] = []
         self._residuals: list[sp.Expr] = []
 
     @property
@@ -38,14 +38,14 @@ class DerivationRecord:
         return tuple(self._statements)
 
     @property
-    def slopes(self) -> tuple[Slope, ...]:
+    def determinants(self) -> tuple[StepDeterminant, ...]:
         """The two-root steps so far."""
-        return tuple(self._slopes)
+        return tuple(self._determinants)
 
     @property
-    def measures(self) -> tuple[Measure, ...]:
+    def conditionings(self) -> tuple[Conditioning, ...]:
         """The partial steps so far."""
-        return tuple(self._measures)
+        return tuple(self._conditionings)
 
     @property
     def residuals(self) -> tuple[sp.Expr, ...]:
@@ -57,17 +57,17 @@ class DerivationRecord:
         names = self._write(binding.statements, keep={f(u) for u in binding.unknowns for f in (sine, cosine)})
         binding = replace(
             binding,
-            slope=None if binding.slope is None else _renamed(binding.slope, names),
-            measure=None
-            if binding.measure is None
-            else replace(binding.measure, value=binding.measure.value.xreplace(names)),
+            determinant=None if binding.determinant is None else _renamed(binding.determinant, names),
+            conditioning=None
+            if binding.conditioning is None
+            else replace(binding.conditioning, value=binding.conditioning.value.xreplace(names)),
             residual=None if binding.residual is None else binding.residual.xreplace(names),
             new_equations=tuple(
                 replace(e, expression=e.expression.xreplace(names), lets=()) for e in binding.new_equations
             ),
         )
-        self._slopes += [binding.slope] if binding.slope is not None else []
-        self._measures += [binding.measure] if binding.measure is not None else []
+        self._determinants += [binding.determinant] if binding.determinant is not None else []
+        self._conditionings += [binding.conditioning] if binding.conditioning is not None else []
         self._residuals += [binding.residual] if binding.residual is not None else []
         return binding
 
@@ -113,7 +113,11 @@ class DerivationRecord:
         return proposal if name == proposal.name else called(name, proposal)
 
 
-def _renamed(slope: Slope, names: Mapping[sp.Symbol, sp.Expr]) -> Slope:
-    reach = None if slope.reach is None else (slope.reach[0].xreplace(names), slope.reach[1].xreplace(names))
-    legs = None if slope.legs is None else slope.legs.renamed(names)
-    return replace(slope, value=slope.value.xreplace(names), reach=reach, legs=legs)
+def _renamed(determinant: StepDeterminant, names: Mapping[sp.Symbol, sp.Expr]) -> StepDeterminant:
+    reach = (
+        None
+        if determinant.reach is None
+        else (determinant.reach[0].xreplace(names), determinant.reach[1].xreplace(names))
+    )
+    legs = None if determinant.legs is None else determinant.legs.renamed(names)
+    return replace(determinant, value=determinant.value.xreplace(names), reach=reach, legs=legs)

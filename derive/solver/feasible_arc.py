@@ -1,11 +1,11 @@
 """Feasible arc: a free angle is moved onto the arc on which the later steps have solutions.
 
-Where the measure of a step vanishes its angle u is free, and where the measure is tiny u is known only to a few digits.
-A later two-root step needs |e| <= h with e = level + along cos u + across sin u. (The second harmonic of e in u
-vanishes with the measure, and is taken as constant.) So cos(u - centre) lies between two bounds, and u on one of two
-arcs, one on each side of the centre. u moves to the nearest point of the arc on its side, if the change of the pose,
-measure times the angle moved, is no more than rounding. Where e is within its bound, or far beyond it although u is
-well known, u stays.
+Where the conditioning of a step vanishes its angle u is free, and where it is tiny u is known only to a few digits. A
+later two-root step needs |e| <= h with e = level + along cos u + across sin u. (The second harmonic of e in u vanishes
+with the conditioning, and is taken as constant.) So cos(u - centre) lies between two bounds, and u on one of two arcs,
+one on each side of the centre. u moves to the nearest point of the arc on its side, if the change of the pose, which is
+the conditioning times the angle moved, is no more than rounding. Where e is within its bound, or far beyond it although
+u is well known, u stays.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
-from derive.equations.problem import Measure, Slope
+from derive.equations.problem import Conditioning, StepDeterminant
 from derive.ir.constants import (
     FREE_ANGLE,
     KNOWN_ANGLE,
@@ -75,15 +75,15 @@ class _Condition:
 
 
 def within_reach(
-    statements: Sequence[Statement], slopes: Sequence[Slope], measures: Sequence[Measure]
+    statements: Sequence[Statement], determinants: Sequence[StepDeterminant], conditionings: Sequence[Conditioning]
 ) -> tuple[Statement, ...]:
     """The derivation with every angle that can be free moved to where the later steps have solutions."""
     found = list(statements)
-    for measure in measures:
-        for slope in slopes:
-            condition = _condition(found, measure, slope)
+    for conditioning in conditionings:
+        for determinant in determinants:
+            condition = _condition(found, conditioning, determinant)
             if condition is not None:
-                found = _in_order(_moved(found, measure, condition))
+                found = _in_order(_moved(found, conditioning, condition))
     return tuple(found)
 
 
@@ -107,24 +107,26 @@ def _in_order(statements: Sequence[Statement]) -> list[Statement]:
     return ordered
 
 
-def _condition(statements: Sequence[Statement], measure: Measure, slope: Slope) -> _Condition | None:
-    """The condition of a later step on the angle of a step with a measure; None where it has none."""
-    angle = measure.angle
-    if slope.reach is None:
+def _condition(
+    statements: Sequence[Statement], conditioning: Conditioning, determinant: StepDeterminant
+) -> _Condition | None:
+    """The condition of a later step on an angle that may be free; None where it has none."""
+    angle = conditioning.angle
+    if determinant.reach is None:
         return None
     dependent = _dependent(statements, angle)
-    size, value = (sp.expand(_squares(v, dependent)) for v in slope.reach)
+    size, value = (sp.expand(_squares(v, dependent)) for v in determinant.reach)
     moved = sorted(value.free_symbols & dependent.keys(), key=lambda s: s.name)
     if not moved or size.free_symbols & dependent.keys():
         return None
     parts = tuple(p for name in moved for p in [_part(name, dependent[name], angle)] if p is not None)
     if len(parts) < len(moved):
         return None  # the later step does not depend on the angle by its first harmonic alone
-    gone = _vanishing(statements, measure)
+    gone = _vanishing(statements, conditioning)
     if all(p.along.xreplace(gone) == 0 and p.across.xreplace(gone) == 0 for p in parts):
         return None  # where the angle is free these values do not depend on it
     chain = tuple(_chain(statements, moved, dependent))
-    return _Condition(slope.step, f"{angle.name}_of_{slope.step.name}", size, value, parts, chain)
+    return _Condition(determinant.step, f"{angle.name}_of_{determinant.step.name}", size, value, parts, chain)
 
 
 def _chain(
@@ -139,9 +141,9 @@ def _chain(
     return found
 
 
-def _vanishing(statements: Sequence[Statement], measure: Measure) -> dict[sp.Symbol, sp.Expr]:
-    """The components of the vector whose length the measure is: they are zero where it is."""
-    values = [s.value for s in statements if isinstance(s, Let) and s.name == measure.value]
+def _vanishing(statements: Sequence[Statement], conditioning: Conditioning) -> dict[sp.Symbol, sp.Expr]:
+    """The components of the vector whose length the conditioning is: they are zero where it is."""
+    values = [s.value for s in statements if isinstance(s, Let) and s.name == conditioning.value]
     terms = [t for value in values if isinstance(value, Root) for t in sp.Add.make_args(value.args[0])]
     return {t.base: sp.Integer(0) for t in terms if isinstance(t, sp.Pow) and t.exp == 2}
 
@@ -170,41 +172,43 @@ def _part(name: sp.Symbol, value: sp.Expr, angle: sp.Symbol) -> _Part | None:
     return _Part(name, fixed, along, across)
 
 
-def _moved(statements: Sequence[Statement], measure: Measure, condition: _Condition) -> list[Statement]:
+def _moved(statements: Sequence[Statement], conditioning: Conditioning, condition: _Condition) -> list[Statement]:
     """The statements with the angle moved onto the arc, behind where it was bound."""
-    names = {f(measure.angle): real(f"{f(measure.angle).name}_before_{condition.word}") for f in (cosine, sine)}
+    names = {
+        f(conditioning.angle): real(f"{f(conditioning.angle).name}_before_{condition.word}") for f in (cosine, sine)
+    }
     found: list[Statement] = []
     for s in statements:
         if not (isinstance(s, Let) and s.name in names):
             found.append(s)
             continue
         found.append(replace(s, name=names[s.name]))
-        if s.name == sine(measure.angle):  # the second of the two
-            found += [rewritten(m, lambda e: e.xreplace(names)) for m in _motion(measure, condition)]
-            found += _bound(measure, condition, names)
+        if s.name == sine(conditioning.angle):  # the second of the two
+            found += [rewritten(m, lambda e: e.xreplace(names)) for m in _motion(conditioning, condition)]
+            found += _bound(conditioning, condition, names)
     return found
 
 
-def _motion(measure: Measure, condition: _Condition) -> tuple[Let, ...]:
+def _motion(conditioning: Conditioning, condition: _Condition) -> tuple[Let, ...]:
     """The angle on the arc, computed from where it was."""
     word = condition.word
     value, size = (real(f"{name}_{word}") for name in ("value", "size"))
-    lets, total, slopes = _parts(condition)
+    lets, total, derivatives = _parts(condition)
     return (
         *lets,
         Let(value, total, WITHIN_ITS_BOUND.format(condition.step)),
         Let(size, sp.Abs(condition.size)),
-        *nearest_on_arc(word, value, size, slopes, (cosine(measure.angle), sine(measure.angle))),
+        *nearest_on_arc(word, value, size, derivatives, (cosine(conditioning.angle), sine(conditioning.angle))),
     )
 
 
 def nearest_on_arc(
-    word: str, value: sp.Expr, size: sp.Expr, slopes: tuple[sp.Expr, sp.Expr], angle: tuple[sp.Expr, sp.Expr]
+    word: str, value: sp.Expr, size: sp.Expr, derivatives: tuple[sp.Expr, sp.Expr], angle: tuple[sp.Expr, sp.Expr]
 ) -> tuple[Let, ...]:
     """`moved_<word>`: the u nearest to where it was, on its side of the centre, at which |value| <= size.
 
-    slopes: the derivatives of the value by cos u and sin u. angle: the cosine and sine of u where it was; `value` is
-    its value there.
+    derivatives: those of the value by cos u and sin u. angle: the cosine and sine of u where it was; `value` is its
+    value there.
     """
     cos_u, sin_u = angle
     along, across, swing, level = (real(f"{name}_{word}") for name in ("along", "across", "swing", "level"))
@@ -215,8 +219,8 @@ def nearest_on_arc(
     turns = sp.Gt(swing, ROUNDING * size)
     one = sp.Integer(1)
     return (
-        Let(along, slopes[0]),
-        Let(across, slopes[1]),
+        Let(along, derivatives[0]),
+        Let(across, derivatives[1]),
         Let(swing, Root(along**2 + across**2)),
         Let(level, value - along * cos_u - across * sin_u),
         Let(divisor, Select(turns, swing, one)),
@@ -240,27 +244,27 @@ def _parts(condition: _Condition) -> tuple[tuple[Let, ...], sp.Expr, tuple[sp.Ex
         names = {w: real(f"{part.name.name}_{w}") for w in ("fixed", "along", "across")}
         lets += [Let(n, getattr(part, w)) for w, n in names.items()]
         fixed[part.name] = names["fixed"]
-    slopes = [
+    derivatives = [
         sp.Add(
             *[sp.diff(condition.value, p.name).xreplace(fixed) * real(f"{p.name.name}_{w}") for p in condition.parts]
         )
         for w in ("along", "across")
     ]
-    return tuple(lets), condition.value.xreplace(before), (slopes[0], slopes[1])
+    return tuple(lets), condition.value.xreplace(before), (derivatives[0], derivatives[1])
 
 
 def _cosine_of(value: sp.Expr) -> sp.Expr:
     return Select(sp.Gt(value, 1), sp.Integer(1), Select(sp.Lt(value, -1), sp.Integer(-1), value))
 
 
-def _bound(measure: Measure, condition: _Condition, names: dict[sp.Symbol, sp.Symbol]) -> list[Let]:
+def _bound(conditioning: Conditioning, condition: _Condition, names: dict[sp.Symbol, sp.Symbol]) -> list[Let]:
     """Cosine and sine behind the motion, which is made where it is needed and costs no more than rounding."""
-    word, before = condition.word, [names[f(measure.angle)] for f in (cosine, sine)]
+    word, before = condition.word, [names[f(conditioning.angle)] for f in (cosine, sine)]
     value, size, moved, costs = (real(f"{name}_{word}") for name in ("value", "size", "moved", "cost"))
     stays = flag(f"stays_{word}")
     after = [sp.cos(moved), sp.sin(moved)]
-    names_after = [real(f"{f(measure.angle).name}_after_{word}") for f in (cosine, sine)]
-    share = measure.value / measure.scale
+    names_after = [real(f"{f(conditioning.angle).name}_after_{word}") for f in (cosine, sine)]
+    share = conditioning.value / conditioning.scale
     chord = Root(sp.Add(*[(a - b) ** 2 for a, b in zip(names_after, before, strict=True)]))
     beyond = sp.And(sp.Gt(share, KNOWN_ANGLE), sp.Gt(sp.Abs(value), (1 + OUT_OF_REACH) * size))
     reached = sp.Le(sp.Abs(value), size)
@@ -271,7 +275,7 @@ def _bound(measure: Measure, condition: _Condition, names: dict[sp.Symbol, sp.Sy
         Let(stays, dear),
         *(
             Let(
-                f(measure.angle),
+                f(conditioning.angle),
                 Select(reached, b, Select(beyond, b, Select(stays, b, a))),
                 f"moved so that {condition.step.name} has a solution",
             )

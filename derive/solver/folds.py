@@ -20,13 +20,13 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.algebra.normal_form import is_compound, linear_coefficients
-from derive.equations.problem import Legs, Measure, Slope
+from derive.equations.problem import Conditioning, Legs, StepDeterminant
 from derive.ir.constants import (
     FOLD,
     FREE_ANGLE,
     ROUNDING,
 )
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -83,18 +83,21 @@ class _Later:
 
 
 def beyond_folds(
-    statements: Sequence[Statement], slopes: Sequence[Slope], measures: Sequence[Measure], scale: sp.Expr
+    statements: Sequence[Statement],
+    determinants: Sequence[StepDeterminant],
+    conditionings: Sequence[Conditioning],
+    scale: sp.Expr,
 ) -> tuple[Statement, ...]:
     """The derivation with the angle of every two-root step near its fold turned to where later steps have solutions."""
     found = list(statements)
-    for slope in slopes:
-        if slope.legs is None:
+    for determinant in determinants:
+        if determinant.legs is None:
             continue
-        found = [_through_legs(s, slope.step, slope.legs) for s in found]
-        for step in slopes:
-            later = _later(found, slope, step, scale)
+        found = [_through_legs(s, determinant.step, determinant.legs) for s in found]
+        for step in determinants:
+            later = _later(found, determinant, step, scale)
             if later is not None:
-                found = _moved(found, later, sweep_of(later.chain, later.value, later.angle, measures))
+                found = _moved(found, later, sweep_of(later.chain, later.value, later.angle, conditionings))
     return tuple(found)
 
 
@@ -114,12 +117,14 @@ def _through_legs(statement: Statement, angle: sp.Symbol, legs: Legs) -> Stateme
     return statement
 
 
-def _later(statements: Sequence[Statement], slope: Slope, step: Slope, scale: sp.Expr) -> _Later | None:
+def _later(
+    statements: Sequence[Statement], determinant: StepDeterminant, step: StepDeterminant, scale: sp.Expr
+) -> _Later | None:
     """The condition of a later step on a two-root step; None where it does not depend on it."""
-    if slope.legs is None or step.reach is None or step is slope:
+    if determinant.legs is None or step.reach is None or step is determinant:
         return None
-    angle = slope.step
-    own = {slope.legs.root, cosine(angle), sine(angle)}
+    angle = determinant.step
+    own = {determinant.legs.root, cosine(angle), sine(angle)}
     dependent: dict[sp.Symbol, Let] = {}
     for s in statements:
         if isinstance(s, Let) and s.name not in own and s.value.free_symbols & (dependent.keys() | own):
@@ -133,9 +138,11 @@ def _later(statements: Sequence[Statement], slope: Slope, step: Slope, scale: sp
         if let.name in wanted:
             wanted |= let.value.free_symbols
             chain.insert(0, let)
-    if slope.legs.beside == 0 and not any(let.value.free_symbols & {cosine(angle), sine(angle)} for let in chain):
+    if determinant.legs.beside == 0 and not any(let.value.free_symbols & {cosine(angle), sine(angle)} for let in chain):
         return None  # the distance ahead is the whole distance, whatever the angle
-    return _Later(step.step, f"{angle.name}_for_{step.step.name}", angle, slope.legs, size, value, tuple(chain), scale)
+    return _Later(
+        step.step, f"{angle.name}_for_{step.step.name}", angle, determinant.legs, size, value, tuple(chain), scale
+    )
 
 
 def _moved(statements: Sequence[Statement], later: _Later, sweep: Sweep | None) -> list[Statement]:
@@ -157,7 +164,7 @@ def _motion(later: _Later, sweep: Sweep | None) -> tuple[Let, ...]:
     """The angle behind the turn, computed from where it was."""
     lets, names, rates = _rates(later)
     value, size, rate, excess, divisor, turn = map(later.name, ("value", "size", "rate", "excess", "divisor", "turn"))
-    slope = sp.Add(*[sp.diff(later.value, n) * r for n, r in rates.items() if n in later.value.free_symbols])
+    derivative = sp.Add(*[sp.diff(later.value, n) * r for n, r in rates.items() if n in later.value.free_symbols])
     is_steep = sp.Gt(sp.Abs(rate), ROUNDING * size)
     flat = sp.Integer(0 if sweep is None else 1)  # a turn of one radian, which is far enough for the angle to follow
     follows = () if sweep is None else (*swept(sweep, later.angle, names, rates, later.word), *_swept(later))
@@ -165,7 +172,7 @@ def _motion(later: _Later, sweep: Sweep | None) -> tuple[Let, ...]:
         *lets,
         Let(value, later.value.xreplace(names), WITHIN_ITS_BOUND.format(later.step)),
         Let(size, sp.Abs(later.size)),
-        Let(rate, slope.xreplace(names), f"its derivative by {later.angle.name}"),
+        Let(rate, derivative.xreplace(names), f"its derivative by {later.angle.name}"),
         Let(excess, Select(sp.Gt(value, 0), value - size, value + size)),
         Let(divisor, Select(is_steep, rate, sp.Integer(1))),
         Let(turn, Select(is_steep, -excess / divisor, flat), f"turn of {later.angle.name} to first order"),
@@ -285,4 +292,4 @@ def far_from_folds(program: Program) -> Program:
     for s in program.body:
         body.append(rewritten(s, lambda e: e.xreplace(conditions)))
         body += [Require(c, Status.OK, "near a fold") for c in conditions if c.lhs in binds(s)]
-    return assemble(program.name, body, program.outputs) if conditions else program
+    return normalise(program.name, body, program.outputs) if conditions else program

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.equations.positions import positions
-from derive.equations.problem import Binding, Equation, Measure, Problem, Slope
+from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
 from derive.equations.rotations import conditions, rotations
 from derive.ir.program import Statement
 from derive.solver.derivation_record import DerivationRecord
@@ -57,11 +57,13 @@ class Unsolved(Exception):
 
 @dataclass(frozen=True)
 class Derivation:
-    """The solution as statements, with the slopes of its two-root steps and the measures that must not vanish."""
+    """The solution as statements, with the determinants of its two-root steps, and the conditioning of every step
+    whose angle may be free.
+    """
 
     statements: tuple[Statement, ...]
-    slopes: tuple[Slope, ...]
-    measures: tuple[Measure, ...]
+    determinants: tuple[StepDeterminant, ...]
+    conditionings: tuple[Conditioning, ...]
     rules: tuple[str, ...]
     sums: tuple[Sum, ...] = ()
     residuals: tuple[sp.Expr, ...] = ()
@@ -100,12 +102,12 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         problem = _without(problem, binding, record)
     statements = record.statements
     if not problem.is_overdetermined:
-        unfolded = beyond_folds(statements, record.slopes, record.measures, problem.scale)
-        statements = within_reach(unfolded, record.slopes, record.measures)
+        unfolded = beyond_folds(statements, record.determinants, record.conditionings, problem.scale)
+        statements = within_reach(unfolded, record.determinants, record.conditionings)
     return Derivation(
         statements,
-        record.slopes,
-        record.measures,
+        record.determinants,
+        record.conditionings,
         tuple(rules),
         sums,
         tuple(left),

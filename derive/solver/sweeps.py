@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients, reduce_units
-from derive.equations.problem import Measure
+from derive.equations.problem import Conditioning
 from derive.ir.constants import (
     BOUNDARY,
     FREE_ANGLE,
@@ -62,21 +62,23 @@ class Sweep:
     """The coefficients of cos u and sin u in the value of the later step."""
 
 
-def sweep_of(chain: Sequence[Let], value: sp.Expr, first: sp.Symbol, measures: Sequence[Measure]) -> Sweep | None:
-    """The step with a measure by which a value depends on an earlier angle; None where there is none."""
+def sweep_of(
+    chain: Sequence[Let], value: sp.Expr, first: sp.Symbol, conditionings: Sequence[Conditioning]
+) -> Sweep | None:
+    """The step whose angle may be free by which a value depends on an earlier angle; None where there is none."""
     lets = {let.name: let for let in chain}
-    for measure in measures:
-        bound = lets.get(cosine(measure.angle)), lets.get(sine(measure.angle))
-        if measure.value not in lets or bound[0] is None or bound[1] is None:
+    for conditioning in conditionings:
+        bound = lets.get(cosine(conditioning.angle)), lets.get(sine(conditioning.angle))
+        if conditioning.value not in lets or bound[0] is None or bound[1] is None:
             continue
         parts = tuple(sp.fraction(b.value.args[1])[0] for b in bound if b is not None and isinstance(b.value, Select))
         if len(parts) != 2 or not all(p in lets for p in parts):
             continue
         rows = [linear_coefficients(_through(p, lets, first), (cosine(first), sine(first))) for p in parts]
-        harmonic = _harmonic(value, lets, measure.angle)
+        harmonic = _harmonic(value, lets, conditioning.angle)
         if harmonic is not None and all(r is not None and r[1] == 0 for r in rows):
             x, y = ((r[0][0], r[0][1]) for r in rows if r is not None)
-            return Sweep(measure.angle, measure.value, (parts[0], parts[1]), x, y, harmonic)
+            return Sweep(conditioning.angle, conditioning.value, (parts[0], parts[1]), x, y, harmonic)
     return None
 
 
@@ -121,12 +123,12 @@ def swept(
     order.
     """
     before = (names[cosine(sweep.angle)], names[sine(sweep.angle)])
-    slopes = (sweep.harmonic[0].xreplace(dict(names)), sweep.harmonic[1].xreplace(dict(names)))
+    derivatives = (sweep.harmonic[0].xreplace(dict(names)), sweep.harmonic[1].xreplace(dict(names)))
     target = f"{sweep.angle.name}_{word}"
     moved, mirrored = real(f"moved_{target}"), real(f"mirrored_{target}")
     return (
         _follows(sweep, names, rates, word),
-        *nearest_on_arc(target, real(f"value_{word}"), (1 - INSIDE) * real(f"size_{word}"), slopes, before),
+        *nearest_on_arc(target, real(f"value_{word}"), (1 - INSIDE) * real(f"size_{word}"), derivatives, before),
         *_followed(sweep, moved, (names[cosine(first)], names[sine(first)]), WAYS[0], word),
         Let(mirrored, 2 * real(f"centre_{target}") - moved, "mirror image on the other arc"),
         *_followed(sweep, mirrored, (names[cosine(first)], names[sine(first)]), WAYS[1], word),

@@ -1,8 +1,9 @@
 """Corners: poses where two or three singular factors vanish together, and poses beside them at every decade of
 distance.
 
-The factors are the slopes and measures of the inverse derivation, by which it divides or of which it takes roots. Here
-they are functions of axis values whose zeros Newton's method finds. They do not decide whether an answer is right.
+The factors are the determinants and the conditioning of the steps of the inverse, by which it divides or of which it
+takes roots. Here they are functions of axis values whose zeros Newton's method finds. They do not decide whether an
+answer is right.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from derive.ir.constants import (
     DEGREE,
 )
 from derive.ir.interpret import evaluate
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.program import (
     Output,
     Program,
@@ -35,7 +36,7 @@ from derive.kinematics.inverse import solve_pose
 from derive.kinematics.parameters import (
     machine_scale,
 )
-from derive.kinematics.scanned import solve_both
+from derive.kinematics.scan.derivations import solve_both
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
 
@@ -76,12 +77,14 @@ class Corner:
 
 @cache
 def factor_program(mechanism: Mechanism) -> Program:
-    """Every slope and measure of the inverse over its scale, at axis values."""
+    """The determinant and the conditioning of every step of the inverse, over their scales, at axis values."""
     forward = assembled(mechanism, pose_at_axes(mechanism)).forward
     inverse = solve_both(mechanism).closed if mechanism.search is not None else solve_pose(mechanism)
-    slopes = [Output(s.sigma.name.removeprefix("sigma_"), s.value / s.scale) for s in inverse.derivation.slopes]
-    measures = [Output(m.name, m.value / m.scale) for m in inverse.derivation.measures]
-    return assemble("factors", derivation_at_axes(mechanism, inverse, forward), [*slopes, *measures])
+    determinants = [
+        Output(s.sigma.name.removeprefix("sigma_"), s.value / s.scale) for s in inverse.derivation.determinants
+    ]
+    conditionings = [Output(m.name, m.value / m.scale) for m in inverse.derivation.conditionings]
+    return normalise("factors", derivation_at_axes(mechanism, inverse, forward), [*determinants, *conditionings])
 
 
 @cache

@@ -34,6 +34,7 @@ def mixed(machine: Machine, rng: Generator) -> tuple[Array, Array, Array, Array]
 
 
 def test_mixed_rows_are_the_scalar_calls(machines: tuple[Machine, ...]) -> None:
+    """A batch with good and bad rows gives the axes and statuses of single calls."""
     for number, machine in enumerate(machines):
         positions, rotations, configurations, references = mixed(machine, np.random.default_rng(number))
         found, statuses = machine.robot.inverse_batch(positions, rotations, configurations, references)
@@ -84,6 +85,7 @@ def test_a_batch_is_its_parts(machines: tuple[Machine, ...]) -> None:
 
 
 def test_no_rows(machines: tuple[Machine, ...]) -> None:
+    """A batch without rows gives arrays without rows."""
     robot = machines[0].robot
     width, size = len(robot.AXES), len(robot.CONFIGURATION)
     shapes = [part.shape for part in robot.forward_batch(np.zeros((0, width)))]
@@ -95,6 +97,7 @@ def test_no_rows(machines: tuple[Machine, ...]) -> None:
 
 
 def test_one_row_may_stand_for_all(machines: tuple[Machine, ...]) -> None:
+    """One configuration and one reference may stand for all rows."""
     for machine in machines[:2]:
         axes = machine.draw(30, np.random.default_rng(2))
         positions, rotations = machine.closure.poses(axes)
@@ -133,6 +136,7 @@ def test_one_configuration_may_leave_branches_open_in_many_rows(
 
 
 def test_inputs_are_left_alone(machines: tuple[Machine, ...]) -> None:
+    """A batch does not change its input arrays."""
     machine = machines[1]
     axes = machine.draw(30, np.random.default_rng(3))
     positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
@@ -174,6 +178,7 @@ def wrong_calls(robot: softkin.Mechanism) -> list[tuple[object, ...]]:
 
 
 def test_wrong_shapes_and_types(machines: tuple[Machine, ...]) -> None:
+    """A batch with a wrong shape or type raises BAD_INPUT."""
     robot = machines[0].robot
     for arguments in wrong_calls(robot):
         assert refusal(robot.inverse_batch, *arguments) is Status.BAD_INPUT
@@ -184,6 +189,7 @@ def test_wrong_shapes_and_types(machines: tuple[Machine, ...]) -> None:
 
 
 def test_several_threads_may_share_a_robot(machines: tuple[Machine, ...]) -> None:
+    """Several threads may call one mechanism at the same time."""
     from concurrent.futures import ThreadPoolExecutor
 
     machine = machines[1]
@@ -196,6 +202,7 @@ def test_several_threads_may_share_a_robot(machines: tuple[Machine, ...]) -> Non
 
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_any_number_of_rows(machines: tuple[Machine, ...], count: int) -> None:
+    """A batch may have any number of rows, also around the size of a chunk."""
     machine = machines[1]
     axes = machine.draw(count, np.random.default_rng(5))
     forward = machine.robot.forward_batch(axes)

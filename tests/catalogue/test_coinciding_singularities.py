@@ -108,6 +108,7 @@ def check(one: Machine, axes: Array, references: Array) -> None:
 
 @pytest.mark.parametrize("around", ["own", "zero", "anywhere"])
 def test_every_pose_of_the_grid(one: Machine, around: str) -> None:
+    """Every pose with joints at right angles is solved, with references at the pose and elsewhere."""
     axes = grid(one)
     assert len(axes) == (4096 if one.closure.angles.sum() == 6 else len({*map(tuple, axes.tolist())}))
     anywhere = np.random.default_rng(1).uniform(-180.0, 180.0, axes.shape)
@@ -115,6 +116,7 @@ def test_every_pose_of_the_grid(one: Machine, around: str) -> None:
 
 
 def test_singularities_that_coincide(one: Machine) -> None:
+    """Poses at which singularities coincide are solved."""
     axes = np.concatenate(list(coinciding(one)))
     near = np.abs(one.closure.indicators(one.closure.joints(axes))) < CLOSEST * one.largest
     assert near.any(axis=0).all()  # every branch, and several at once

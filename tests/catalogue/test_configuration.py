@@ -82,6 +82,7 @@ def test_a_named_turn_is_where_the_axis_is_put(machines: tuple[Machine, ...]) ->
 
 
 def test_negative_bytes_may_be_given_unsigned(machines: tuple[Machine, ...]) -> None:
+    """A period byte from 128 to 255 is read as its negative number."""
     for machine in machines[:2]:
         axes = machine.draw(20, np.random.default_rng(4))
         robot = machine.changed(check_limits=False)
@@ -109,6 +110,7 @@ def test_where_branches_coincide_the_byte_is_3(machines: tuple[Machine, ...]) ->
 
 
 def test_wrong_bytes_are_refused(machines: tuple[Machine, ...]) -> None:
+    """Bytes without a meaning raise BAD_INPUT."""
     for machine in machines[:2]:
         robot = machine.robot
         axes = machine.draw(5, np.random.default_rng(6))

@@ -79,6 +79,7 @@ def check_both_ends(machine: Machine, axes: Array, key: str, value: float) -> No
 
 
 def test_every_axis_has_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """Both limits of every axis refuse poses beyond them."""
     for machine in fitting(machines):
         axes = one_pose(machine, 1)
         for i, joint in enumerate(mechanism.joints):
@@ -99,6 +100,7 @@ def test_quantities_that_no_axis_sees_have_limits(mechanism: Mechanism, machines
 
 
 def test_forward_does_not_test_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """Forward kinematics answers beyond the limits, too."""
     for machine in fitting(machines):
         axes = machine.draw(20, np.random.default_rng(3))
         limits = {

@@ -63,6 +63,7 @@ def drawn(machine: Machine, seed: int) -> tuple[Array, Array]:
 
 
 def test_who_offers_it(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """Exactly the mechanisms that can command a point beside the flange offer the offset interface."""
     for machine in machines:
         expected = mechanism.name not in WITHOUT and mechanism.task.turning not in (Turning.DIRECTION, Turning.FULL)
         assert hasattr(machine.robot, "inverse_offset") == expected
@@ -70,6 +71,7 @@ def test_who_offers_it(mechanism: Mechanism, machines: tuple[Machine, ...]) -> N
 
 
 def test_round_trip_with_the_reference_at_the_same_axes(machines: tuple[Machine, ...]) -> None:
+    """The inverse of a point beside the flange leads back to the axes."""
     for machine in offered(machines):
         axes, offsets = drawn(machine, 1)
         for values, offset, point in zip(axes, offsets, points(machine, axes, offsets), strict=True):
@@ -117,6 +119,7 @@ def _answers(machine: Machine, places: Array, offsets: Array, configuration: tup
 
 
 def test_zero_offset_is_the_inverse(machines: tuple[Machine, ...]) -> None:
+    """With a zero offset the offset interface answers as the inverse."""
     for machine in offered(machines):
         axes = machine.draw(40, np.random.default_rng(4))
         frames = machine.closure.poses(axes)
@@ -165,6 +168,7 @@ def on_the_axis(machine: Machine, values: Array, joint: int) -> tuple[Array, Arr
 
 
 def test_garbage(machines: tuple[Machine, ...]) -> None:
+    """Garbage in the arguments of the offset interface is refused."""
     for machine in offered(machines)[:1]:
         robot = machine.robot
         axes = machine.draw(1, np.random.default_rng(6))[0]

@@ -52,12 +52,14 @@ def test_import_is_cheap_and_needs_no_numpy() -> None:
 
 
 def test_the_catalogue_is_the_descriptions() -> None:
+    """The package has a class for every description."""
     assert set(softkin.catalogue()) == {m.name for _, m in catalogue()}
     assert "Kin_Scara4_ZCCC" in softkin.catalogue()
     assert len(softkin.catalogue()) == 43
 
 
 def test_everything_that_is_offered_is_there() -> None:
+    """Every public name of the package exists and has a docstring."""
     for name in softkin.__all__:
         assert getattr(softkin, name).__doc__
     classes = {c.__name__: c for c in softkin.catalogue().values()}
@@ -69,6 +71,7 @@ def test_everything_that_is_offered_is_there() -> None:
 
 
 def test_an_alias_is_a_class_of_its_own_with_the_same_kinematics() -> None:
+    """An alias is a class with its own name and the same kinematics."""
     given = {"link_length_1": 300.0, "link_length_2": 250.0, "link_length_3": 80.0}
     alias, original = (softkin.catalogue()[n](**given) for n in ("Kin_Scara4_ZCCC", "Kin_Scara3_ZCCC"))
     assert type(alias) is not type(original)
@@ -78,6 +81,7 @@ def test_an_alias_is_a_class_of_its_own_with_the_same_kinematics() -> None:
 
 
 def test_the_example_of_the_documentation() -> None:
+    """The example of the documentation runs, and leads back to its axes."""
     robot = softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0, pitch_zc=20.0)
     frame, configuration = robot.forward((10.0, 20.0, 5.0, 30.0))
     axes = robot.inverse(frame, configuration, reference=(0, 0, 0, 0))
@@ -90,6 +94,7 @@ def test_the_example_of_the_documentation() -> None:
 
 
 def test_axes_are_those_of_the_description(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """The class lists the axes of the description."""
     robot = machines[0].robot
     assert mechanism.name == robot.NAME
     described = [
@@ -113,6 +118,7 @@ def test_configuration_bytes_are_those_of_the_description(mechanism: Mechanism, 
 
 
 def test_parameters_are_those_of_the_description(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """The class lists the parameters of the description, then offsets and limits."""
     expected = [p.name for p in mechanism.parameters]
     expected += [f"offset_{j.key}" for j in mechanism.joints]
     keys = [j.key for j in mechanism.joints] + [q.name for q in mechanism.limited]
@@ -124,6 +130,7 @@ def test_parameters_are_those_of_the_description(mechanism: Mechanism, machines:
 
 
 def test_every_public_thing_is_documented(machines: tuple[Machine, ...]) -> None:
+    """Every public method and attribute has a docstring."""
     robot_class = type(machines[0].robot)
     public = [n for n in dir(robot_class) if not n.startswith("_")]
     methods = [getattr(robot_class, n) for n in public if callable(getattr(robot_class, n))]

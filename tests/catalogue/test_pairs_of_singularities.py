@@ -26,6 +26,7 @@ def paired(request: pytest.FixtureRequest) -> Mechanism:
 
 @pytest.mark.parametrize("candidate", CANDIDATES, ids=lambda m: m.name)
 def test_every_mechanism_with_pairs_is_here(candidate: Mechanism) -> None:
+    """Every mechanism with more than one singularity is tested."""
     assert (candidate in PAIRED) == (len(factor_program(candidate).outputs) > 1)
 
 
@@ -38,6 +39,7 @@ def test_corners_are_found(paired: Mechanism) -> None:
 
 
 def test_no_pose_is_lost(paired: Mechanism) -> None:
+    """Where two singularities coincide every pose is reached."""
     rng = np.random.default_rng(8)
     for one, corner in places(paired):
         robot, axes = one.changed(check_limits=False), poses(one, corner)
@@ -57,6 +59,7 @@ def test_no_pose_is_lost(paired: Mechanism) -> None:
 
 
 def test_one_pose_at_a_time(paired: Mechanism) -> None:
+    """Where two singularities coincide single calls reach every pose, from its own reference and from another one."""
     for one, corner in places(paired):
         robot = one.changed(check_limits=False)
         axes = poses(one, corner)[::37]

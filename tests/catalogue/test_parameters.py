@@ -23,6 +23,7 @@ def refused(machine: Machine, name: str, **given: object) -> None:
 
 
 def test_every_number_must_be_one(machines: tuple[Machine, ...]) -> None:
+    """A parameter that is no number of reasonable size is refused."""
     for parameter in machines[1].robot.PARAMETERS:
         for value in (nan, inf, -inf, 1e300, -1e300, "5", None, [5.0], 5j):
             refused(machines[1], parameter.name, **{parameter.name: value})
@@ -67,6 +68,7 @@ def test_ranges_of_the_vendor() -> None:
 
 
 def test_lengths_must_be_given_and_nothing_else_need_be(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """Lengths have no default, and all other parameters have one."""
     robot_class = type(machines[0].robot)
     lengths = {p.name: p.nominal for p in mechanism.parameters if p.default is None}
     assert {p.name for p in mechanism.parameters if p.role is Role.LENGTH} <= set(lengths)
@@ -82,6 +84,7 @@ def test_lengths_must_be_given_and_nothing_else_need_be(mechanism: Mechanism, ma
 
 
 def test_defaults_are_the_ones_it_says(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """The default of a parameter is the one that the class lists."""
     robot = machines[0].robot
     for parameter in robot.PARAMETERS:
         expected = machines[0].given.get(parameter.name, parameter.default)
@@ -93,6 +96,7 @@ def test_defaults_are_the_ones_it_says(mechanism: Mechanism, machines: tuple[Mac
 
 
 def test_limits_must_be_in_order(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """A lower limit that is not below the upper one is refused."""
     names = [j.key for j in mechanism.joints] + [q.name for q in mechanism.limited]
     for name in names:
         lower, upper = f"lower_{name}", f"upper_{name}"
@@ -104,6 +108,7 @@ def test_limits_must_be_in_order(mechanism: Mechanism, machines: tuple[Machine, 
 
 
 def test_signs_and_flags(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """A direction is 1 or -1, a flag is true or false, and other values are refused."""
     kinds = {p.name: p.kind for p in machines[0].robot.PARAMETERS}
     for name, kind in kinds.items():
         good = {"sign": (1, -1, 1.0), "flag": (True, False, 0, 1, 1.0)}.get(kind, ())
@@ -116,6 +121,7 @@ def test_signs_and_flags(mechanism: Mechanism, machines: tuple[Machine, ...]) ->
 
 @pytest.mark.serial
 def test_a_coupling_is_given_once(machines: tuple[Machine, ...]) -> None:
+    """The pitch and the gear coupling of an axis cannot both be given."""
     for machine in machines:
         for constraint in machine.mechanism.constraints:
             names = sorted(s.name for s in constraint.condition.free_symbols)
@@ -126,6 +132,7 @@ def test_a_coupling_is_given_once(machines: tuple[Machine, ...]) -> None:
 
 
 def test_a_robot_does_not_change(machines: tuple[Machine, ...]) -> None:
+    """The parameters of a mechanism cannot be changed."""
     robot = machines[1].robot
     with pytest.raises(TypeError):
         robot.parameters["check_limits"] = 0.0  # type: ignore[index]

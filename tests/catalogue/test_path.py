@@ -63,6 +63,7 @@ def test_many_turns(machines: tuple[Machine, ...]) -> None:
 
 
 def test_an_automatic_branch_stays_on_a_regular_way(machines: tuple[Machine, ...]) -> None:
+    """On a regular path an automatic choice stays on its branch."""
     for machine in machines:
         axes = tour(machine, 1200, turns=-1)
         for k, found in follow(machine.robot, machine, axes, (0,) * machine.robot.BRANCHES):

@@ -53,6 +53,7 @@ def possible(chosen: Machine, axes: Array) -> Array:
 
 
 def test_forward_answers_where_there_is_a_pose(grid: tuple[Machine, Array]) -> None:
+    """At right angles forward kinematics answers wherever there is a pose."""
     chosen, axes = grid
     positions, rotations, _, statuses = chosen.robot.forward_batch(axes)
     inside = possible(chosen, axes)
@@ -87,6 +88,7 @@ def test_every_pose_goes_round(grid: tuple[Machine, Array]) -> None:
 
 
 def test_every_pose_is_solved_on_every_slot(grid: tuple[Machine, Array]) -> None:
+    """At right angles every slot that answers reaches the pose, and at least one slot answers."""
     chosen, axes = grid
     axes = axes[possible(chosen, axes)]
     frames = chosen.closure.poses(axes)

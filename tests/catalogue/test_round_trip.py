@@ -52,6 +52,7 @@ def test_open_periods_are_found_by_the_reference(machines: tuple[Machine, ...]) 
 
 
 def test_every_slot_satisfies_the_closure(machines: tuple[Machine, ...]) -> None:
+    """The axes of every slot satisfy the closure equations at the commanded frame."""
     for machine in machines:
         axes = machine.draw(POSES, np.random.default_rng(4))
         frames = machine.closure.poses(axes)
@@ -70,6 +71,7 @@ def test_every_slot_satisfies_the_closure(machines: tuple[Machine, ...]) -> None
 
 
 def test_inverse_all_holds_every_branch_in_its_slot(machines: tuple[Machine, ...]) -> None:
+    """`inverse_all` has in each slot the answer of the inverse for its bytes."""
     for machine in machines:
         robot = machine.changed(check_limits=False)  # near the end of an axis the other branch may be beyond it
         axes = machine.draw(20, np.random.default_rng(5))
@@ -87,6 +89,7 @@ def test_inverse_all_holds_every_branch_in_its_slot(machines: tuple[Machine, ...
 
 
 def test_a_scalar_inverse_is_the_batch_inverse(machines: tuple[Machine, ...]) -> None:
+    """Single calls and batches of the inverse agree."""
     for machine in machines:
         axes = machine.draw(50, np.random.default_rng(6))
         positions, rotations = machine.closure.poses(axes)

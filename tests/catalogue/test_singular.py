@@ -53,6 +53,7 @@ def test_every_margin_vanishes_somewhere(machines: tuple[Machine, ...]) -> None:
 
 @pytest.mark.parametrize("around", ["axes", "zero", "anywhere"])
 def test_a_singular_pose_is_an_answer(machines: tuple[Machine, ...], around: str) -> None:
+    """At a singular pose the inverse answers, and reaches the frame."""
     for machine in machines:
         robot = machine.changed(check_limits=False)
         axes = machine.draw(12, np.random.default_rng(2))
@@ -81,6 +82,7 @@ def test_a_singular_pose_is_an_answer(machines: tuple[Machine, ...], around: str
 
 
 def test_regular_poses_are_met_to_rounding(machines: tuple[Machine, ...]) -> None:
+    """At regular poses the inverse reaches the frame to rounding."""
     for machine in machines:
         axes = machine.draw(2000, np.random.default_rng(4))
         frames = machine.closure.poses(axes)
@@ -119,6 +121,7 @@ def scaled_indicator(machine: Machine, locus: Locus, axes: Array) -> Array:
 def test_garbage_is_singular_and_nothing_else_without_margins(
     mechanism: Mechanism, machines: tuple[Machine, ...]
 ) -> None:
+    """Garbage in axis values is singular, with margins NaN; a mechanism without singularities has no margins."""
     robot = machines[1].robot
     for value in (float("nan"), float("inf"), 1e300):
         axes = [value] * len(mechanism.joints)

@@ -28,6 +28,7 @@ def compare(machine: Machine, position: Array, rotation: Array) -> int:
 
 
 def test_the_slots_are_the_roots_of_the_closure(machines: tuple[Machine, ...]) -> None:
+    """The slots hold exactly the roots of the closure that root finding from many starts finds."""
     counts = set()
     for machine in machines:
         axes = machine.draw(POSES, np.random.default_rng(31))

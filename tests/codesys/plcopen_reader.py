@@ -1,4 +1,4 @@
-"""PLCopenXML read back: what CODESYS takes from a file, where it looks for it."""
+"""A reader of PLCopenXML that takes from a file what CODESYS takes, at the same places."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What in a Python 3 source is not Python 2.7: by the tree, whose nodes must be those that 2.7 had."""
+"""The parts of a Python 3 source that are not Python 2.7: nodes of the syntax tree that 2.7 did not have."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _NEWER_FIELDS = ("returns", "annotation", "cause", "kwonlyargs", "posonlyargs", 
 
 
 def beyond_python27(source: str) -> list[str]:
-    """What Python 2.7 would refuse or read differently, with the line; nothing where the source is both."""
+    """The places, with lines, that Python 2.7 would refuse or read differently; none for a source that is both."""
     tree = ast.parse(source)
     found = [_problem(node) for node in ast.walk(tree)]
     found += [

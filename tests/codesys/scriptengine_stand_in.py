@@ -24,7 +24,7 @@ Severity = Enum("Severity", {"FatalError": 1, "Error": 2, "Warning": 4, "Informa
 
 
 class Refused(Exception):
-    """What the ScriptEngine would not do."""
+    """The error of a call that the ScriptEngine would refuse."""
 
 
 class Document:
@@ -38,7 +38,7 @@ class Document:
 
 
 class Tree:
-    """What projects and objects have in common."""
+    """The calls that projects and objects have in common."""
 
     def __init__(self) -> None:
         self._children: list[Node] = []
@@ -101,7 +101,7 @@ class Dut(Node):
 
 
 class Code(Dut):
-    """What has a declaration and an implementation."""
+    """An object with a declaration and an implementation."""
 
     def __init__(self, name: str, kind: str) -> None:
         super().__init__(name, kind)

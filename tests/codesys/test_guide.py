@@ -32,6 +32,7 @@ def closed(program: str) -> str:
 
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda p: p.split("\n")[0])
 def test_its_code_parses(program: str) -> None:
+    """The code in the guide parses, and uses only blocks that exist."""
     (found,) = parse(closed(program), "guide")
     assert isinstance(found, ast.Block)
     used = {v.type.text for s in found.sections for v in s.variables if v.type.text.startswith(("Softkin_", "Kin_"))}
@@ -105,6 +106,7 @@ def test_the_demo_moves_a_group() -> None:
 
 
 def test_every_choice_it_names_exists() -> None:
+    """Every input, profile and status that the guide names exists in the product."""
     declared = {
         line.split()[0] for part in BLOCKS.values() for line in part.declaration.split("\n") if line.startswith("  ")
     }
@@ -118,6 +120,7 @@ def test_every_choice_it_names_exists() -> None:
 
 @pytest.mark.parametrize("page", ["docs/CODESYS.md", "generated/st/README.md", "README.md"])
 def test_links_lead_somewhere(page: str) -> None:
+    """Every link of a page leads to a file that exists, and to a heading that exists in it."""
     path = ROOT / page
     text = path.read_text(encoding="utf-8")
     for target in re.findall(r"\]\(([^)]+)\)", text):
@@ -135,6 +138,7 @@ def _anchor(heading: str) -> str:
 
 
 def test_the_overview_lists_every_block() -> None:
+    """The overview lists every block with its file and the axes that the block declares."""
     row = r"^\| \[`(\w+)`\]\((\S+)\.st\) \| \[picture\]\(pictures/\1\.png\) \| ([^|]+) \| ([^|]+) \|"
     rows = re.findall(row, OVERVIEW, re.MULTILINE)
     assert {f"{path}.st" for _, path, _, _ in rows} == {

@@ -47,6 +47,7 @@ def imported(tmp_path_factory: pytest.TempPathFactory) -> tuple[Project, str]:
 
 
 def test_a_library_with_every_object(imported: tuple[Project, str]) -> None:
+    """The script makes a library that holds every object with its text, and compiles it."""
     project, printed = imported
     assert project.is_saved and Path(project.path).exists()
     assert vars(project.information) == {"title": "Softkin", "company": "Softkin", "version": "0.1.0.0"}
@@ -60,6 +61,7 @@ def test_a_library_with_every_object(imported: tuple[Project, str]) -> None:
 
 
 def test_descriptions_find_their_pictures(imported: tuple[Project, str]) -> None:
+    """The script adds to the library exactly the pictures that descriptions refer to."""
     project, _ = imported
     referred = [name for text in FILES.values() for name in re.findall(r"^\.\. image:: @\((.+)\)$", text, re.MULTILINE)]
     assert sorted(referred) == sorted(project.external_files)
@@ -89,6 +91,7 @@ def _panes(nodes: list[Node]) -> dict[tuple[str, str], tuple[str, str]]:
 
 
 def test_references_are_placeholders_for_the_newest_library(imported: tuple[Project, str]) -> None:
+    """The libraries of the manufacturer are referred to by placeholders for their newest version."""
     (manager,) = (one for one in imported[0].get_children() if isinstance(one, LibraryManager))
     assert {t: (one.title, one.version) for t, one in manager.placeholders.items()} == {
         t: (t, (4, 20, 0, 0)) for t in TITLES
@@ -96,6 +99,7 @@ def test_references_are_placeholders_for_the_newest_library(imported: tuple[Proj
 
 
 def test_folders_by_family(imported: tuple[Project, str]) -> None:
+    """The objects of the library are in folders by family of mechanisms."""
     (top,) = (one for one in imported[0].get_children() if isinstance(one, Folder))
     assert top.get_name() == "Softkin"
     inside = {folder.get_name(): {one.get_name() for one in folder.get_children()} for folder in top.get_children()}
@@ -118,6 +122,7 @@ def _copy(tmp_path: Path, old: str = "", new: str = "") -> Path:
 
 
 def test_what_does_not_compile_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Errors of the compiler are printed, and the script returns 1."""
     script = _copy(tmp_path, "IsInitialized := initialized;", "IsInitialized := initialised;")
     engine = Engine(TITLES)
     assert execute(engine, str(tmp_path / "a.library"), script=script) == 1
@@ -128,6 +133,7 @@ def test_what_does_not_compile_is_told(tmp_path: Path, capsys: pytest.CaptureFix
 
 
 def test_a_dialog_asks_for_the_path(tmp_path: Path) -> None:
+    """Without an argument the script asks for the path of the library in a dialog."""
     target = tmp_path / "asked.library"
     assert execute(Engine(TITLES, str(target)), script=_copy(tmp_path)) == 0
     assert target.exists()
@@ -151,6 +157,7 @@ REFUSALS: dict[str, tuple[Callable[[], Engine], tuple[str, ...], str]] = {
 
 @pytest.mark.parametrize("case", REFUSALS)
 def test_refusals_are_one_line(case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A wrong argument or environment is refused with one line, before a library is made."""
     engine, arguments, message = REFUSALS[case]
     (tmp_path / "there.library").touch()
     assert execute(engine(), *(a.format(tmp_path) for a in arguments)) == 1
@@ -160,6 +167,7 @@ def test_refusals_are_one_line(case: str, tmp_path: Path, capsys: pytest.Capture
 
 
 def test_away_from_its_files_it_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A copy of the script without the files beside it says what is missing."""
     script = tmp_path / SCRIPT.name
     shutil.copy(SCRIPT, script)
     assert execute(Engine(TITLES), str(tmp_path / "a.library"), script=script) == 1
@@ -167,6 +175,7 @@ def test_away_from_its_files_it_says_so(tmp_path: Path, capsys: pytest.CaptureFi
 
 
 def test_it_is_python_2_7() -> None:
+    """The script is valid in Python 2.7, which CODESYS executes."""
     assert beyond_python27(SCRIPT.read_text(encoding="utf-8")) == []
 
 
@@ -180,4 +189,5 @@ def test_it_is_python_2_7() -> None:
     ],
 )  # fmt: skip
 def test_what_is_newer_is_seen(newer: str) -> None:
+    """The check for Python 2.7 finds syntax that is newer."""
     assert beyond_python27(newer) != []

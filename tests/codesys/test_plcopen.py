@@ -41,6 +41,7 @@ def errors(text: str) -> list[str]:
 
 
 def test_there_is_a_file_for_every_mechanism_and_one_for_all() -> None:
+    """There is a PLCopenXML file for every mechanism, and one with all of them."""
     found = {str(p.relative_to(ROOT)) for p in ROOT.rglob("*.xml")}
     assert found == {f"{unit}.xml" for unit in UNITS} | {"softkin.xml"}
     assert len(UNITS) >= 30
@@ -48,10 +49,12 @@ def test_there_is_a_file_for_every_mechanism_and_one_for_all() -> None:
 
 @pytest.mark.parametrize("name", [*UNITS, "softkin"])
 def test_valid(name: str) -> None:
+    """The file is valid by the schema of PLCopen."""
     assert errors((ROOT / f"{name}.xml").read_text(encoding="utf-8")) == []
 
 
 def test_the_schema_sees_what_is_wrong() -> None:
+    """The schema refuses a wrong keyword, a wrong element, and a missing attribute."""
     text = EVERYTHING.read_text(encoding="utf-8")
     for old, new in (('pouType="function"', 'pouType="routine"'), ("localVars", "lokalVars"), (' upper="3"', "")):
         assert errors(text.replace(old, new))
@@ -77,6 +80,7 @@ def test_what_is_read_back_compiles() -> None:
 
 
 def test_folders_are_those_of_the_files() -> None:
+    """The folders in the file are those in which the `.st` files are."""
     wanted: dict[str, list[str]] = {}
     for name, text in FILES.items():
         wanted.setdefault(name.split("/")[0], []).extend(p.path for p in parts_of(text) if "." not in p.path)
@@ -85,6 +89,7 @@ def test_folders_are_those_of_the_files() -> None:
 
 @pytest.mark.parametrize("unit", UNITS)
 def test_a_mechanism_comes_with_just_what_it_needs(unit: str) -> None:
+    """The file of a mechanism has the objects that its code names, directly or indirectly, and no others."""
     root = parse(ROOT / f"{unit}.xml")
     read = wholes(root)
     everything = {p.path for parts in map(parts_of, FILES.values()) for p in parts if "." not in p.path}
@@ -107,12 +112,14 @@ def _code(text: str) -> str:
 
 @pytest.mark.parametrize("unit", ["gantry/Softkin_Gantry2", "parallel/Kin_Hexapod", "polar/Kin_Crane"])
 def test_a_mechanism_alone_compiles(unit: str) -> None:
+    """The objects in the file of a mechanism compile without any other file."""
     read = wholes(parse(ROOT / f"{unit}.xml"))
     library = compile_st({name: whole.text() for name, whole in read.items()})
     assert unit.split("/")[1] in library.objects
 
 
 def test_an_object_has_one_identifier_everywhere() -> None:
+    """An object has the same identifier in every file, and no two objects share one."""
     everything = identifiers(parse(EVERYTHING))
     assert len(set(everything.values())) == len(everything) > 600
     assert everything == listed(parse(EVERYTHING))
@@ -155,6 +162,7 @@ def test_what_the_standard_has_no_element_for() -> None:
 
 
 def test_an_independent_class_model_reads_it() -> None:
+    """An independent library for PLCopenXML reads the file, with functions, inputs and types."""
     config = ParserConfig(fail_on_unknown_attributes=False)
     text = (ROOT / "scara/Softkin_Scara2_Z.xml").read_text(encoding="utf-8").replace("tc6_0200", "tc6_0201")
     project = XmlParser(config=config).from_string(text, plcopen.Project)
@@ -183,6 +191,7 @@ def test_kinds_that_no_mechanism_has_yet(tmp_path: Path) -> None:
 
 
 def test_text_survives_whatever_is_in_it(tmp_path: Path) -> None:
+    """Text with any character of the markup comes out of the file unchanged."""
     code = "// a < b & c > d ]]> \"quoted\" 'single'\n  indented := TRUE;  // tail\n\nlast := 1;"
     one = Object("FUNCTION", "Odd", "FUNCTION Odd : BOOL\nVAR\n  last : INT := 1;  // a < b & 'c'\nEND_VAR", code)
     path = tmp_path / "odd.xml"

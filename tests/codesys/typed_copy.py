@@ -27,7 +27,7 @@ def typed_variables(root: Element) -> dict[str, Variables]:
 
 
 def declared_variables(declared: ast.Declaration) -> Iterator[tuple[str, Variables]]:
-    """The same, from the syntax tree."""
+    """The variables of every block, function and method from the syntax tree, in the same form."""
     if isinstance(declared, ast.Block):
         yield declared.name, list(_sections(declared.sections))
         for method in declared.methods:

@@ -19,6 +19,7 @@ KINDS = {"regular", "singular", "garbage", "rotation", "bytes", "reach", "limits
 
 @pytest.mark.parametrize("name", NAMES)
 def test_answers_are_those_recorded(name: str) -> None:
+    """The package gives the recorded answer to every recorded question."""
     recording = read(name)
     found = list(compared(recording))
     assert not found, f"{len(found)} differences:\n" + "\n".join(found[:SHOWN])
@@ -110,6 +111,8 @@ FAULTS: tuple[Callable[[Answer], None], ...] = (
 @pytest.mark.parametrize("fault", FAULTS)
 @pytest.mark.parametrize("name", ["Kin_Scara4_ZCcoupled_Type1", "Coupled_Scara3_CCZ_CAxis_Tool"])
 def test_a_planted_fault_is_found(name: str, fault: Callable[[Answer], None]) -> None:
+    """The comparison finds each kind of wrong answer."""
+
     def wrong(one: Robot, question: Question) -> Answer:
         found = answer(one, question)
         fault(found)

@@ -1,4 +1,4 @@
-"""Argument and result types of the functions the language itself brings."""
+"""The types of arguments and results of the standard functions of the language."""
 
 from collections.abc import Callable
 

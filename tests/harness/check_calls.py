@@ -1,4 +1,4 @@
-"""Arguments of calls: their names, number, types, and what is handed on by reference."""
+"""Arguments of calls: their names, their number, their types, and which of them are passed by reference."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Does a block have every method and property of the library interfaces it names?"""
+"""The check that a block has every method and property of the library interfaces that it implements."""
 
 import json
 import re
@@ -29,7 +29,7 @@ _BY_KEY = {name.lower(): name for name in INTERFACES}
 
 
 def plain(type_text: str | None) -> str | None:
-    """A type without what does not matter: case, blanks, the namespace."""
+    """A type as text without the differences that do not matter: case, blanks, and the namespace."""
     if type_text is None:
         return None
     return re.sub(r"\s+", " ", _PREFIX.sub("", type_text.upper())).replace(", ", ",").strip()

@@ -1,4 +1,4 @@
-"""Which type fits where without a conversion. Stricter than CODESYS: nothing is ever lost silently."""
+"""The types that may be assigned without a conversion. The rules are stricter than in CODESYS: no digit is lost."""
 
 import re
 
@@ -8,7 +8,7 @@ _CONVERSION = re.compile(r"(\w+?)_TO_(\w+)\Z")
 
 
 def fits(given: types.Type, wanted: types.Type) -> bool:
-    """May a value of the given type be assigned to the wanted type?"""
+    """Whether a value of the given type may be assigned to the wanted type."""
     if given == wanted:
         return not isinstance(given, types.NoResult)
     if isinstance(given, types.IntegerLiteral):

@@ -1,4 +1,4 @@
-"""What the checker finds out about a text; the translator reads it and decides nothing again."""
+"""The facts about a text that the checker establishes; the translator relies on them."""
 
 from __future__ import annotations
 

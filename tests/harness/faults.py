@@ -1,4 +1,4 @@
-"""The two ways Structured Text can be wrong: refused as text, or stopped while it runs."""
+"""The two errors of Structured Text: a text that is refused, and a fault that stops it while it runs."""
 
 from dataclasses import dataclass
 
@@ -24,7 +24,7 @@ class StError(Exception):
 
 
 class StFault(Exception):
-    """What would stop a PLC while the text runs."""
+    """A fault that would stop a PLC while the text runs."""
 
     def __init__(self, message: str, place: Place | None = None) -> None:
         super().__init__(message if place is None else f"{place}: {message}")

@@ -1,4 +1,4 @@
-"""Python source for the value a variable starts with."""
+"""Python source for the initial value of a variable."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from types import CodeType, FunctionType
 from typing import Any
 
 NOTE = "_note"
-"""How the translation calls what notes a line."""
+"""The name of the function in the translation that notes a line."""
 
 
 def marked_code(source: str, filename: str) -> dict[str, CodeType]:

@@ -1,4 +1,4 @@
-"""Names nobody may declare: words of the language and macros of the C world a controller is built in."""
+"""Names that no text may declare: words of the language, and macros of the C code of a controller."""
 
 from .faults import Place, StError
 

@@ -1,4 +1,4 @@
-"""How declared things are called in the translated Python source."""
+"""The names of declared objects and variables in the translated Python source."""
 
 import keyword
 

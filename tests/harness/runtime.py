@@ -1,4 +1,4 @@
-"""What translated text works with: references, memory, and arithmetic that faults like a controller."""
+"""The runtime of translated text: references, memory, and arithmetic that faults as on a controller."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LOOP_CAP = 1_000_000
 
 # ---- references ----------------------------------------------------------------------------
 class Cell:
-    """A scalar variable that can be handed on by reference."""
+    """A scalar variable that can be passed by reference."""
 
     __slots__ = ("value",)
 
@@ -21,7 +21,7 @@ class Cell:
 
 
 class FieldCell:
-    """A scalar field of an object, handed on by reference."""
+    """A scalar field of an object that is passed by reference."""
 
     __slots__ = ("name", "owner")
 
@@ -39,7 +39,7 @@ class FieldCell:
 
 
 class ElementCell:
-    """A scalar element of an array, handed on by reference."""
+    """A scalar element of an array that is passed by reference."""
 
     __slots__ = ("elements", "index")
 

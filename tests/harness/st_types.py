@@ -67,7 +67,7 @@ class Pointer:
 
 @dataclass(frozen=True)
 class Opaque:
-    """A library structure whose fields nobody may name: only its size is known."""
+    """A library structure whose fields a text may not name: only its size is known."""
 
     name: str
     size: int
@@ -86,7 +86,7 @@ class IntegerLiteral:
 
 @dataclass(frozen=True)
 class Address:
-    """What ADR gives: it may become a pointer to the memory of its operand."""
+    """The result of ADR: it may become a pointer to the memory of its operand."""
 
     of: Type
 

@@ -77,6 +77,7 @@ FAULTS = {
 
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_fault_stops_the_text_and_names_its_line(name: str) -> None:
+    """A run-time fault stops the execution, and its message names the file and the line."""
     body, x, k, message = FAULTS[name]
     with pytest.raises(StFault, match=message) as caught:
         run(body, x, k)
@@ -85,16 +86,19 @@ def test_a_fault_stops_the_text_and_names_its_line(name: str) -> None:
 
 @pytest.mark.parametrize("garbage", [NAN, INF, -INF])
 def test_a_garbage_input_can_be_copied_and_compared(garbage: float) -> None:
+    """Copying and comparing NaN or an infinite number is no fault."""
     assert run("r := x; b := r > 1.0; b := r = x; IF NOT (x <= 1.0E9) THEN Probe := 1.0; END_IF", garbage) in (0.0, 1.0)
 
 
 @pytest.mark.parametrize("side", ["b OR (1.0 / x > 0.0)", "(1.0 / x > 0.0) OR b", "(b XOR b) AND (1.0 / x > 0.0)"])
 def test_both_sides_of_a_logic_operator_are_evaluated(side: str) -> None:
+    """AND and OR evaluate both operands, as the standard allows a controller to do."""
     with pytest.raises(StFault, match="division by zero"):
         run(f"b := TRUE; b := {side};")
 
 
 def test_a_fault_inside_a_called_function_names_the_inner_line() -> None:
+    """A fault inside a called function is reported with the line of that function."""
     text = """FUNCTION Inner : LREAL
 VAR_INPUT x : LREAL; END_VAR
 Inner := 1.0 / x;
@@ -110,6 +114,7 @@ END_FUNCTION
 
 
 def test_recursion_without_end_is_a_fault() -> None:
+    """Methods that call each other without end cause a fault instead of a crash."""
     text = """FUNCTION_BLOCK Looping
 METHOD PUBLIC Ping : BOOL
 Ping := Pong();
@@ -125,6 +130,7 @@ END_FUNCTION_BLOCK
 
 @pytest.mark.parametrize(("size", "reach"), [(36, 4), (72, 9), (80, 9)])
 def test_the_size_of_the_matrix_limits_what_a_pointer_reaches(size: int, reach: int) -> None:
+    """A pointer reaches the elements of a matrix and no memory beyond it."""
     body = "p := ADR(m); FOR n := 0 TO k DO p^[n] := 1.0; END_FOR Probe := DINT_TO_LREAL(SIZEOF(m));"
     assert run(body, k=reach - 1, matrix_size=size) == size
     with pytest.raises(StFault):

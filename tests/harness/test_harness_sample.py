@@ -25,6 +25,7 @@ def initialised(lib: Library) -> Any:
 
 
 def test_blark_parses_every_piece() -> None:
+    """The independent grammar reads every part of the sample."""
     trees = parse_text_with_blark(TEXT, FILE.name)
     assert len(trees) == 20
     assert "PROPERTY PUBLIC NumAxes : UDINT" in trees
@@ -39,6 +40,7 @@ def test_blark_parses_every_piece() -> None:
     ],
 )
 def test_blark_refuses_broken_pieces(right: str, wrong: str) -> None:
+    """The independent grammar and the harness both refuse text with a broken statement."""
     broken = TEXT.replace(right, wrong, 1)
     assert broken != TEXT
     with pytest.raises(StError, match="blark"):
@@ -57,6 +59,7 @@ def pose(lib: Library, kin: Any, a0: float, a1: float, a2: float) -> tuple[Any, 
 @pytest.mark.parametrize("order", ["rows", "columns"])
 @pytest.mark.parametrize(("a0", "a1"), [(10.0, 20.0), (-100.0, 130.0), (170.0, -45.0)])
 def test_there_and_back_in_both_storage_orders(order: str, a0: float, a1: float) -> None:
+    """Forward and inverse kinematics of the sample agree, whether matrices are stored by rows or by columns."""
     lib = compiled(order=order)
     kin = initialised(lib)
     f, cd = pose(lib, kin, a0, a1, 7.0)
@@ -70,6 +73,7 @@ def test_there_and_back_in_both_storage_orders(order: str, a0: float, a1: float)
 
 
 def test_an_unreachable_point_is_an_error_and_no_fault() -> None:
+    """A point out of reach is answered with an error code, and causes no run-time fault."""
     lib = compiled()
     kin = initialised(lib)
     f, cd = pose(lib, kin, 0.0, 30.0, 0.0)
@@ -80,6 +84,7 @@ def test_an_unreachable_point_is_an_error_and_no_fault() -> None:
 
 
 def test_garbage_faults_where_it_is_first_used() -> None:
+    """A computation with NaN is a fault in the statement that uses it first."""
     lib = compiled()
     kin = initialised(lib)
     f, cd = pose(lib, kin, 0.0, 30.0, 0.0)
@@ -91,10 +96,12 @@ def test_garbage_faults_where_it_is_first_used() -> None:
 
 @pytest.mark.parametrize("size", [36, 80])
 def test_a_matrix_of_another_size_stops_initialisation(size: int) -> None:
+    """Initialize refuses to work with a library whose matrix has another size."""
     assert compiled(matrix_size=size).new("Kin_Sample_Planar").call("Initialize") == "SMC_TRAFO_NOT_INITIALIZED"
 
 
 def test_the_configuration_block() -> None:
+    """The configuration block of the sample writes the byte that belongs to each choice."""
     config = compiled().new("Kin_Sample_Planar_Config")
     for elbow, expected in (("Right", 1), ("Left", 2), ("Singular", 0)):
         config(eElbow=elbow)
@@ -102,12 +109,14 @@ def test_the_configuration_block() -> None:
 
 
 def test_a_program_uses_instances() -> None:
+    """A program can declare instances of function blocks and call their methods."""
     main = compiled().new("Sample_Main")
     main()
     assert (main.eError, main.cdActive.abyData[0], main.kin.xInitialized) == ("SMC_NO_ERROR", 2, True)
 
 
 def test_pragmas_comments_and_initial_values_are_kept() -> None:
+    """Pragmas, comments and initial values of a declaration can be read after compiling."""
     kin = compiled().objects["Kin_Sample_Planar"]
     assert kin.pragmas == ("{attribute 'sm_kin_libdoc'}", "{attribute 'sm_kin_axes' := 'A1, A2, Z'}")
     assert kin.comment.startswith("A planar arm")
@@ -117,6 +126,7 @@ def test_pragmas_comments_and_initial_values_are_kept() -> None:
 
 
 def test_a_contract_can_be_kept_by_the_base() -> None:
+    """A block satisfies an interface with methods that it inherits."""
     derived = (
         "FUNCTION_BLOCK Derived EXTENDS Kin_Sample_Planar IMPLEMENTS TRAFO.ISMKinematicWithInfo2\nEND_FUNCTION_BLOCK"
     )
@@ -154,6 +164,7 @@ CONTRACT = {
 
 @pytest.mark.parametrize("name", CONTRACT)
 def test_a_broken_contract_is_refused(name: str) -> None:
+    """A block that lacks or changes a method of its interface is refused."""
     right, wrong, message = CONTRACT[name]
     # A renamed thing is renamed everywhere; otherwise only the first place changes.
     renamed = "lacks" in message or message == "cdsrc"

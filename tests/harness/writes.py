@@ -1,4 +1,4 @@
-"""Who may write what: constants, inputs, and the rule that only Initialize and AxisSettings change an instance."""
+"""Rules of assignment: for constants, for inputs, and that only Initialize and AxisSettings change an instance."""
 
 from . import ast
 from . import st_types as types
@@ -27,7 +27,7 @@ def _variable(meaning: types.Meaning | None) -> types.Variable | None:
 
 
 def is_place(node: ast.Expression, facts: Facts) -> bool:
-    """Does the expression name memory, rather than a value?"""
+    """Whether the expression names memory, and not a mere value."""
     if isinstance(node, (ast.Index, ast.Dereference)):
         return True
     return isinstance(node, (ast.Name, ast.Member)) and isinstance(facts.meanings.get(node), types.Variable)
@@ -53,7 +53,7 @@ def check_write(node: ast.Expression, scope: Scope, facts: Facts) -> None:
 
 
 def _check_foreign(node: ast.Expression, facts: Facts) -> None:
-    """Of another instance only the inputs can be written, as a whole or in part."""
+    """Refuse an assignment to a variable of another instance that is no input, or no part of an input."""
     while isinstance(node, (ast.Member, ast.Index)):
         meaning = facts.meanings.get(node)
         if isinstance(meaning, types.Variable) and meaning.member_of is not None and isinstance(node, ast.Member):

@@ -10,8 +10,8 @@ from tests.harness.instance import Entry
 from tests.text import values
 from tests.text.controller import OK, Controller
 from tests.text.samples import Sample
+from tests.text.serial_pairs import SerialPair
 from tests.text.settings import settings
-from tests.text.twins import Twins
 
 
 @dataclass(frozen=True)
@@ -50,10 +50,10 @@ def methods_of(controller: Controller) -> list[str]:
     return [method.name for method in block.methods if method.access != "PRIVATE" and method.name != "Initialize"]
 
 
-def call_of(twins: Twins, controller: Controller, method: str, sample: Sample) -> Call:
+def call_of(pair: SerialPair, controller: Controller, method: str, sample: Sample) -> Call:
     """A method with arguments that fit a pose; what it writes holds what means nothing."""
     entry: Entry = controller.block.routines[method.lower()]
-    given = _fitting(twins, sample)
+    given = _fitting(pair, sample)
     arguments, written = {}, []
     for parameter, make in zip(entry.routine.parameters, entry.defaults, strict=True):
         if parameter.scope == "VAR_OUTPUT":
@@ -68,11 +68,11 @@ def call_of(twins: Twins, controller: Controller, method: str, sample: Sample) -
     return Call(controller, method, arguments, tuple(written), has_status)
 
 
-def _fitting(twins: Twins, sample: Sample) -> dict[str, Any]:
+def _fitting(pair: SerialPair, sample: Sample) -> dict[str, Any]:
     """An argument for every input in the contract, by its name."""
-    library = twins.library
-    position, rotation, data = twins.controller.forward(sample.axes)[1]
-    size = len(twins.robot.CONFIGURATION)
+    library = pair.library
+    position, rotation, data = pair.controller.forward(sample.axes)[1]
+    size = len(pair.robot.CONFIGURATION)
     axes, vector = values.axes(library, sample.axes), values.vector(library, position)
     configuration = values.configuration(library, data[:size])
     return {

@@ -1,4 +1,4 @@
-"""The comparisons: by method of a block, its expected answer, from its twin in Python or from the description.
+"""The comparisons: by method of a block, its expected answer, from the same method in Python or from the description.
 
 A test runs for every method that stands in the emitted text, and looks it up here: one that is missing fails.
 """
@@ -15,10 +15,10 @@ from tests.text.closeness import asked, assert_same, is_close
 from tests.text.controller import NOT_INITIALIZED, OK, UNREACHABLE, Answer, Controller
 from tests.text.reasons import compare_reason
 from tests.text.samples import HALF_TURN, NO_TURN, Bytes, Sample, commands
+from tests.text.serial_pairs import SerialPair
 from tests.text.settings import Range, own_limits, together
-from tests.text.twins import Twins
 
-Comparison = Callable[[Twins, Sample], None]
+Comparison = Callable[[SerialPair, Sample], None]
 ROUNDING = 1e-11
 BYTES = 32
 """The bytes of CONFIGDATA in the stand-in for the library."""
@@ -35,63 +35,63 @@ def signed(byte: int) -> int:
     return byte - 256 if byte > 127 else byte
 
 
-def initialize(twins: Twins, sample: Sample) -> None:
+def initialize(pair: SerialPair, sample: Sample) -> None:
     """Fresh, refused without parameters or with the last one, and again accepted."""
-    one = Controller(twins.library, twins.mechanism)
+    one = Controller(pair.library, pair.mechanism)
     assert not one.block.call("IsInitialized")
-    assert one.initialise(twins.robot.parameters) == OK
+    assert one.initialise(pair.robot.parameters) == OK
     assert one.block.call("IsInitialized")
-    one.set_inputs({"offset_" + twins.mechanism.joints[0].key: float("nan")})
+    one.set_inputs({"offset_" + pair.mechanism.joints[0].key: float("nan")})
     assert one.block.call("Initialize") == NOT_INITIALIZED
     assert not one.block.call("IsInitialized")
-    assert one.initialise(twins.robot.parameters) == OK
-    assert_same(one.forward(sample.axes), twins.controller.forward(sample.axes), twins, sample)
+    assert one.initialise(pair.robot.parameters) == OK
+    assert_same(one.forward(sample.axes), pair.controller.forward(sample.axes), pair, sample)
 
 
-def name(twins: Twins, sample: Sample) -> None:
-    expected = twins.mechanism.title or twins.mechanism.block_name
-    assert twins.controller.block.call("GetKinematicsName") == expected
+def name(pair: SerialPair, sample: Sample) -> None:
+    expected = pair.mechanism.title or pair.mechanism.block_name
+    assert pair.controller.block.call("GetKinematicsName") == expected
 
 
-def axis_properties(twins: Twins, sample: Sample) -> None:
+def axis_properties(pair: SerialPair, sample: Sample) -> None:
     """Types as declared, and the limits that the block keeps; beyond the axes a free linear one."""
     for index in (*range(6), 255, 2**32 - 1):
-        found = twins.controller.axis_properties(index)
-        if index < len(twins.mechanism.joints):
-            assert_same(found, _properties(twins, twins.mechanism.joints[index]), twins, index)
+        found = pair.controller.axis_properties(index)
+        if index < len(pair.mechanism.joints):
+            assert_same(found, _properties(pair, pair.mechanism.joints[index]), pair, index)
         else:
             assert found == ("Linear", True, 0.0, 0.0)
 
 
-def _properties(twins: Twins, joint: Joint) -> tuple[str, bool, float, float]:
+def _properties(pair: SerialPair, joint: Joint) -> tuple[str, bool, float, float]:
     kind = "Rotary" if joint.kind is Kind.ROTARY else "Linear"
-    own = own_limits(twins.mechanism, twins.robot.parameters, joint)
+    own = own_limits(pair.mechanism, pair.robot.parameters, joint)
     return (kind, True, 0.0, 0.0) if own is None else (kind, False, *own)
 
 
-def axis_settings(twins: Twins, sample: Sample) -> None:
+def axis_settings(pair: SerialPair, sample: Sample) -> None:
     """Limits of all drives around a pose narrow those of the machine: the machine with both answers
     the same in Python.
     """
     rng = np.random.default_rng(list(sample.data) or 5)
-    controller = Controller(twins.library, twins.mechanism)
-    drives = [drive_around(value, joint, rng) for value, joint in zip(sample.axes, twins.mechanism.joints, strict=True)]
-    both = together(twins.mechanism, twins.robot.parameters, drives)
+    controller = Controller(pair.library, pair.mechanism)
+    drives = [drive_around(value, joint, rng) for value, joint in zip(sample.axes, pair.mechanism.joints, strict=True)]
+    both = together(pair.mechanism, pair.robot.parameters, drives)
     statuses = [controller.axis_settings(index, drive) for index, drive in enumerate(drives)]
     assert set(statuses) == {OK}
-    assert controller.initialise(twins.robot.parameters) == (NOT_INITIALIZED if both is None else OK)
+    assert controller.initialise(pair.robot.parameters) == (NOT_INITIALIZED if both is None else OK)
     if both is None:
         return
-    robot = type(twins.robot)(**both)
-    for command in commands(twins.machine, sample):
+    robot = type(pair.robot)(**both)
+    for command in commands(pair.machine, sample):
         frame = command.position, command.rotation
         status, answer = asked(robot.inverse, frame, command.configuration, command.reference)
         expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
         found = controller.inverse(*frame, command.configuration, command.reference)
         if status == OK and robot.singularity(answer).is_singular and not is_close(found, (status, expected)):
-            assert_same_pose(twins, found, (status, expected), command)
+            assert_same_pose(pair, found, (status, expected), command)
             continue
-        assert_same(found, (status, expected), twins, drives, command)
+        assert_same(found, (status, expected), pair, drives, command)
 
 
 def drive_around(value: float, joint: Joint, rng: np.random.Generator) -> Range:
@@ -104,116 +104,116 @@ def drive_around(value: float, joint: Joint, rng: np.random.Generator) -> Range:
     return max(low, inside - below), min(high, inside + above)
 
 
-def forward(twins: Twins, sample: Sample) -> None:
-    status, answer = asked(twins.robot.forward, sample.axes)
+def forward(pair: SerialPair, sample: Sample) -> None:
+    status, answer = asked(pair.robot.forward, sample.axes)
     expected = (*answer[0], padded(answer[1])) if status == OK else None
-    assert_same(twins.controller.forward(sample.axes), (status, expected), twins, sample)
+    assert_same(pair.controller.forward(sample.axes), (status, expected), pair, sample)
 
 
-def _is_spatial(twins: Twins) -> bool:
-    chain = twins.machine.mechanism.chain
+def _is_spatial(pair: SerialPair) -> bool:
+    chain = pair.machine.mechanism.chain
     return chain is not None and is_spatial(chain)
 
 
-def inverse(twins: Twins, sample: Sample) -> None:
-    for command in commands(twins.machine, sample):
+def inverse(pair: SerialPair, sample: Sample) -> None:
+    for command in commands(pair.machine, sample):
         frame = command.position, command.rotation
-        status, answer = asked(twins.robot.inverse, frame, command.configuration, command.reference)
+        status, answer = asked(pair.robot.inverse, frame, command.configuration, command.reference)
         expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
-        found = twins.controller.inverse(*frame, command.configuration, command.reference)
-        if 3 in own_bytes(twins, sample) and _is_spatial(twins) and not is_close(found, (status, expected)):
-            assert_same_pose(twins, found, (status, expected), command)
+        found = pair.controller.inverse(*frame, command.configuration, command.reference)
+        if 3 in own_bytes(pair, sample) and _is_spatial(pair) and not is_close(found, (status, expected)):
+            assert_same_pose(pair, found, (status, expected), command)
         else:
-            assert_same(found, (status, expected), twins, command)
+            assert_same(found, (status, expected), pair, command)
 
 
-def own_bytes(twins: Twins, sample: Sample) -> tuple[int, ...]:
+def own_bytes(pair: SerialPair, sample: Sample) -> tuple[int, ...]:
     """The branch bytes of a sample; nothing where it has no pose."""
-    status, answer = asked(twins.robot.forward, sample.axes)
-    return tuple(answer[1][: twins.robot.BRANCHES]) if status == OK else ()
+    status, answer = asked(pair.robot.forward, sample.axes)
+    return tuple(answer[1][: pair.robot.BRANCHES]) if status == OK else ()
 
 
-def assert_same_pose(twins: Twins, found: Answer, expected: Answer, command: object) -> None:
+def assert_same_pose(pair: SerialPair, found: Answer, expected: Answer, command: object) -> None:
     """Where branches meet the last digit decides half of those of an angle, and perhaps whether another is free.
 
     Both answers must reach the same pose, which is known to all digits.
     """
-    assert found[0] == expected[0] == OK, f"{found} is not {expected}: {twins} {command}"
-    count = len(twins.mechanism.joints)
-    first, second = (twins.robot.forward(answer[1][:count])[0] for answer in (found, expected))
+    assert found[0] == expected[0] == OK, f"{found} is not {expected}: {pair} {command}"
+    count = len(pair.mechanism.joints)
+    first, second = (pair.robot.forward(answer[1][:count])[0] for answer in (found, expected))
     apart = [abs(a - b) for a, b in zip(first.position, second.position, strict=True)]
-    assert max(apart) < ROUNDING * twins.machine.reach, f"{found} is not {expected}: {twins} {command}"
+    assert max(apart) < ROUNDING * pair.machine.reach, f"{found} is not {expected}: {pair} {command}"
     turned = [
         abs(a - b) for p, q in zip(first.rotation, second.rotation, strict=True) for a, b in zip(p, q, strict=True)
     ]
-    assert max(turned) < ROUNDING or not twins.machine.closure.follows_rotation, (
-        f"{found} is not {expected}: {twins} {command}"
+    assert max(turned) < ROUNDING or not pair.machine.closure.follows_rotation, (
+        f"{found} is not {expected}: {pair} {command}"
     )
 
 
-def diagnose(twins: Twins, sample: Sample) -> None:
-    for command in commands(twins.machine, sample):
-        compare_reason(twins, command)
+def diagnose(pair: SerialPair, sample: Sample) -> None:
+    for command in commands(pair.machine, sample):
+        compare_reason(pair, command)
 
 
-def orientation(twins: Twins, sample: Sample) -> None:
-    expected = asked(twins.robot.orientation, sample.axes)
-    assert_same(twins.controller.orientation(sample.axes), expected, twins, sample)
+def orientation(pair: SerialPair, sample: Sample) -> None:
+    expected = asked(pair.robot.orientation, sample.axes)
+    assert_same(pair.controller.orientation(sample.axes), expected, pair, sample)
 
 
-def singularity(twins: Twins, sample: Sample) -> None:
-    expected = twins.robot.singularity(sample.axes).is_singular
-    assert twins.controller.is_singular(sample.axes) == expected, f"{twins} {sample}"
+def singularity(pair: SerialPair, sample: Sample) -> None:
+    expected = pair.robot.singularity(sample.axes).is_singular
+    assert pair.controller.is_singular(sample.axes) == expected, f"{pair} {sample}"
 
 
-def jacobian(twins: Twins, sample: Sample) -> None:
-    status, rows = asked(twins.robot.jacobian, sample.axes)
+def jacobian(pair: SerialPair, sample: Sample) -> None:
+    status, rows = asked(pair.robot.jacobian, sample.axes)
     expected = None
     if status == OK:
         wide = [tuple(row) + (0.0,) * (6 - len(row)) for row in rows]
         expected = (*wide, *((0.0,) * 6,) * (6 - len(wide)))
-    assert_same(twins.controller.jacobian(sample.axes), (status, expected), twins, sample)
+    assert_same(pair.controller.jacobian(sample.axes), (status, expected), pair, sample)
 
 
-def image(twins: Twins, sample: Sample) -> None:
+def image(pair: SerialPair, sample: Sample) -> None:
     for method in ("GetOrientationImage", "GetFlangeOrientationImageTotal"):
-        if method.lower() in twins.controller.block.routines:
-            expected = twins.robot.orientation_image()
-            assert_same(twins.controller.image(method), (OK, tuple(expected)), twins)
+        if method.lower() in pair.controller.block.routines:
+            expected = pair.robot.orientation_image()
+            assert_same(pair.controller.image(method), (OK, tuple(expected)), pair)
 
 
-def image_with_orientation(twins: Twins, sample: Sample) -> None:
+def image_with_orientation(pair: SerialPair, sample: Sample) -> None:
     """The projection, as a space of one orientation; refused where the tool points exactly the opposite way.
 
     A machine that follows the whole rotation, or the tool's direction, gives the rotation itself.
     """
     refusals = []
-    whole = twins.mechanism.task.turning in (Turning.DIRECTION, Turning.FULL)
+    whole = pair.mechanism.task.turning in (Turning.DIRECTION, Turning.FULL)
     for rows in (sample.rotation, NO_TURN, HALF_TURN):
-        status, projected = (OK, rows) if whole else asked(twins.robot.project, rows)
+        status, projected = (OK, rows) if whole else asked(pair.robot.project, rows)
         expected = None
         if status == OK:
-            freedom = "one" if twins.mechanism.task.turning is Turning.DIRECTION else "zero"  # the twist is passive
+            freedom = "one" if pair.mechanism.task.turning is Turning.DIRECTION else "zero"  # the twist is passive
             expected = (freedom, projected, tuple(row[2] for row in projected), (0.0, 0.0, 1.0))
-        assert_same(twins.controller.image_with_orientation(rows), (status, expected), twins, rows)
+        assert_same(pair.controller.image_with_orientation(rows), (status, expected), pair, rows)
         refusals += [status] if status != OK else []
     assert refusals == ([] if whole else [UNREACHABLE])
 
 
-def configuration_offset(twins: Twins, sample: Sample) -> None:
+def configuration_offset(pair: SerialPair, sample: Sample) -> None:
     """All automatic where there is no pose: the method has no status."""
     for offset in ((0.0, 0.0, 0.0), sample.offset):
-        _, found = asked(twins.robot.configuration_offset, sample.axes, offset)
+        _, found = asked(pair.robot.configuration_offset, sample.axes, offset)
         expected = padded(found or ())
-        assert twins.controller.configuration_offset(sample.axes, offset) == expected, f"{twins} {sample}"
+        assert pair.controller.configuration_offset(sample.axes, offset) == expected, f"{pair} {sample}"
 
 
-def inverse_offset(twins: Twins, sample: Sample) -> None:
-    robot, far = twins.robot, sample.reference
+def inverse_offset(pair: SerialPair, sample: Sample) -> None:
+    robot, far = pair.robot, sample.reference
     if asked(robot.forward, sample.axes)[0] != OK:
         return
     for offset in ((0.0, 0.0, 0.0), sample.offset):
-        place = point_at(twins, sample, offset)
+        place = point_at(pair, sample, offset)
         own = robot.configuration_offset(sample.axes, offset)
         opened = (0,) * len(own)
         for point, configuration, reference in (
@@ -226,62 +226,62 @@ def inverse_offset(twins: Twins, sample: Sample) -> None:
         ):
             status, answer = asked(robot.inverse_offset, point, offset, configuration, reference)
             expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
-            found = twins.controller.inverse_offset(point, offset, configuration, reference)
-            assert_same(found, (status, expected), twins, point, offset, configuration, reference)
+            found = pair.controller.inverse_offset(point, offset, configuration, reference)
+            assert_same(found, (status, expected), pair, point, offset, configuration, reference)
 
 
-def point_at(twins: Twins, sample: Sample, offset: Iterable[float]) -> tuple[float, ...]:
+def point_at(pair: SerialPair, sample: Sample, offset: Iterable[float]) -> tuple[float, ...]:
     """Where a point of the flange is."""
-    (position, rotation), _ = twins.robot.forward(sample.axes)
+    (position, rotation), _ = pair.robot.forward(sample.axes)
     arm = tuple(offset)
     return tuple(
         p + sum(r * o for r, o in zip(row, arm, strict=True)) for p, row in zip(position, rotation, strict=True)
     )
 
 
-def configuration_size(twins: Twins, sample: Sample) -> None:
-    assert twins.controller.block.call("GetConfigurationDataSize") == len(twins.robot.CONFIGURATION) == len(sample.data)
+def configuration_size(pair: SerialPair, sample: Sample) -> None:
+    assert pair.controller.block.call("GetConfigurationDataSize") == len(pair.robot.CONFIGURATION) == len(sample.data)
 
 
-def default_configuration(twins: Twins, sample: Sample) -> None:
-    found = twins.controller.configuration(sample.data)
-    assert twins.controller.block.call("GetDefaultConfigurationData", cd=found) is True
-    assert tuple(found.abyData) == padded(twins.robot.DEFAULT_CONFIGURATION)
+def default_configuration(pair: SerialPair, sample: Sample) -> None:
+    found = pair.controller.configuration(sample.data)
+    assert pair.controller.block.call("GetDefaultConfigurationData", cd=found) is True
+    assert tuple(found.abyData) == padded(pair.robot.DEFAULT_CONFIGURATION)
 
 
-def connectible(twins: Twins, sample: Sample) -> None:
+def connectible(pair: SerialPair, sample: Sample) -> None:
     """By the branch bytes alone."""
-    branches = twins.robot.BRANCHES
+    branches = pair.robot.BRANCHES
     others = sample.data[:branches] + tuple(255 - byte for byte in sample.data[branches:])
     changed = tuple(255 - byte for byte in sample.data[:branches]) + sample.data[branches:]
     for data, expected in ((sample.data, True), (others, True), (changed, branches == 0)):
-        given = {"cd1": twins.controller.configuration(sample.data), "cd2": twins.controller.configuration(data)}
-        assert twins.controller.block.call("CPConnectible", **given) is expected
+        given = {"cd1": pair.controller.configuration(sample.data), "cd2": pair.controller.configuration(data)}
+        assert pair.controller.block.call("CPConnectible", **given) is expected
 
 
-def automatic_periods(twins: Twins, sample: Sample) -> None:
+def automatic_periods(pair: SerialPair, sample: Sample) -> None:
     """The period bytes are 0, and all others are copied."""
-    source, found = twins.controller.configuration(sample.data), twins.controller.configuration(())
+    source, found = pair.controller.configuration(sample.data), pair.controller.configuration(())
     expected = list(source.abyData)
-    expected[twins.robot.BRANCHES : len(sample.data)] = [0] * len(twins.robot.PERIOD_AXES)
-    twins.controller.block.call("ActivateAutomaticRotaryPeriods", cdDst=found, cdSrc=source)
+    expected[pair.robot.BRANCHES : len(sample.data)] = [0] * len(pair.robot.PERIOD_AXES)
+    pair.controller.block.call("ActivateAutomaticRotaryPeriods", cdDst=found, cdSrc=source)
     assert found.abyData == expected
 
 
-def singular_configuration(twins: Twins, sample: Sample) -> None:
-    branches = twins.robot.BRANCHES
+def singular_configuration(pair: SerialPair, sample: Sample) -> None:
+    branches = pair.robot.BRANCHES
     for byte in range(5):
         data = (byte,) * branches + (3,) * (len(sample.data) - branches)
-        given = twins.controller.configuration(data)
-        assert twins.controller.block.call("IsConfigSingular", cd=given) is (byte == 3 and branches > 0)
+        given = pair.controller.configuration(data)
+        assert pair.controller.block.call("IsConfigSingular", cd=given) is (byte == 3 and branches > 0)
 
 
-def periods(twins: Twins, sample: Sample) -> None:
+def periods(pair: SerialPair, sample: Sample) -> None:
     """By axis, signed; 0 for an axis without a period."""
     found = [99] * 6
-    twins.controller.block.call("GetPeriods", cd=twins.controller.configuration(sample.data), aPeriods=found)
+    pair.controller.block.call("GetPeriods", cd=pair.controller.configuration(sample.data), aPeriods=found)
     expected = [0] * 6
-    for axis, byte in zip(twins.robot.PERIOD_AXES, sample.data[twins.robot.BRANCHES :], strict=True):
+    for axis, byte in zip(pair.robot.PERIOD_AXES, sample.data[pair.robot.BRANCHES :], strict=True):
         expected[axis] = signed(byte)
     assert found == expected
 

@@ -1,5 +1,5 @@
-"""Every test that asks for pairs runs for machines of every kind; one that asks for twins, for those of serial
-mechanisms."""
+"""A test that asks for `pairs` runs for machines of every kind; one that asks for `serial_pairs` runs for the machines
+of serial mechanisms alone."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 
 from derive.description.mechanism import Mechanism
 from tests.text.pairs import POSITION_KINEMATICS, Pair, pairs_of
-from tests.text.twins import MECHANISMS, Twins, twins_of
+from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
 
 
 @pytest.fixture(params=POSITION_KINEMATICS, ids=lambda m: m.name)
@@ -23,6 +23,6 @@ def mechanism(request: pytest.FixtureRequest) -> Mechanism:
 
 
 @pytest.fixture
-def twins(mechanism: Mechanism) -> tuple[Twins, ...]:
+def serial_pairs(mechanism: Mechanism) -> tuple[SerialPair, ...]:
     """Its machines, each as a block and in Python."""
-    return twins_of(mechanism)
+    return serial_pairs_of(mechanism)

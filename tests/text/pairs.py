@@ -9,16 +9,16 @@ from tests.text import comparisons
 from tests.text.comparisons import Comparison
 from tests.text.loops import answers
 from tests.text.loops.machines import LOOPS, Loop, loops_of
-from tests.text.twins import MECHANISMS, Twins, twins_of
+from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
 
-Pair = Twins | Loop
+Pair = SerialPair | Loop
 POSITION_KINEMATICS = (*MECHANISMS, *LOOPS)
 """Serial mechanisms and those with rods. Orientation kinematics have methods, and a folder, of their own."""
 
 
 def pairs_of(mechanism: Mechanism) -> tuple[Pair, ...]:
     """Its machines."""
-    return loops_of(mechanism) if mechanism.rods else twins_of(mechanism)
+    return loops_of(mechanism) if mechanism.rods else serial_pairs_of(mechanism)
 
 
 def comparisons_of(mechanism: Mechanism) -> Mapping[str, Comparison]:

@@ -10,27 +10,27 @@ import pytest
 from derive.description.mechanism import Turning
 from tests.text.controller import OK, UNREACHABLE
 from tests.text.limits import EXACTLY_A_TURN, has_limits, is_inside
-from tests.text.twins import Twins
+from tests.text.serial_pairs import SerialPair
 
 ROUND_TRIP = 1e-9
 """Away from singular poses: relative to a turn, or to the size of the machine."""
 
 
-def unlimited(twins: tuple[Twins, ...]) -> list[Twins]:
+def unlimited(serial_pairs: tuple[SerialPair, ...]) -> list[SerialPair]:
     """The machines on which every pose is allowed."""
-    return [t for t in twins if not has_limits(t.machine)]
+    return [t for t in serial_pairs if not has_limits(t.machine)]
 
 
-def is_limited(one: Twins) -> bool:
+def is_limited(one: SerialPair) -> bool:
     """Whether limits are given that some samples are beyond, checked or not."""
     if one.machine.label == EXACTLY_A_TURN:
         return any(joint.is_angle for joint in one.mechanism.joints)
     return one.machine.label.startswith("limit")
 
 
-def test_inverse_kinematics_finds_the_axes_of_a_pose(twins: tuple[Twins, ...]) -> None:
+def test_inverse_kinematics_finds_the_axes_of_a_pose(serial_pairs: tuple[SerialPair, ...]) -> None:
     """With the bytes that forward kinematics writes, wherever the reference is where every byte can hold its turn."""
-    for one in unlimited(twins):
+    for one in unlimited(serial_pairs):
         for sample in one.regular:
             status, pose = one.controller.forward(sample.axes)
             assert status == OK
@@ -43,9 +43,9 @@ def test_inverse_kinematics_finds_the_axes_of_a_pose(twins: tuple[Twins, ...]) -
             assert axes[count:] == (0.0,) * (6 - count)
 
 
-def test_limits_refuse_what_is_beyond_them_and_nothing_else(twins: tuple[Twins, ...]) -> None:
+def test_limits_refuse_what_is_beyond_them_and_nothing_else(serial_pairs: tuple[SerialPair, ...]) -> None:
     """Where every byte says what was chosen, and so no other solution is possible."""
-    for one in twins:
+    for one in serial_pairs:
         inside = is_inside(one.machine, np.array([sample.axes for sample in one.regular]))
         for sample, is_allowed in zip(one.regular, inside, strict=True):
             _, (position, rotation, data) = one.controller.forward(sample.axes)
@@ -54,23 +54,24 @@ def test_limits_refuse_what_is_beyond_them_and_nothing_else(twins: tuple[Twins, 
         assert set(inside) == ({True, False} if is_limited(one) else {True})
 
 
-def test_the_number_of_axes(twins: tuple[Twins, ...]) -> None:
-    for one in twins:
+def test_the_number_of_axes(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """NumAxes is the number of joints of the mechanism."""
+    for one in serial_pairs:
         assert one.controller.block.get("NumAxes") == len(one.mechanism.joints)
 
 
-def test_calling_the_block_itself_does_nothing(twins: tuple[Twins, ...]) -> None:
+def test_calling_the_block_itself_does_nothing(serial_pairs: tuple[SerialPair, ...]) -> None:
     """A block is a set of methods: its body is empty."""
-    one = twins[1]
+    one = serial_pairs[1]
     fields = [v.name for section in one.library.objects[one.mechanism.block_name].sections for v in section.variables]
     before = [getattr(one.controller.block, name) for name in fields]
     one.controller.block()
     assert [getattr(one.controller.block, name) for name in fields] == before
 
 
-def test_the_orientation_is_that_of_the_frame_and_in_the_image(twins: tuple[Twins, ...]) -> None:
+def test_the_orientation_is_that_of_the_frame_and_in_the_image(serial_pairs: tuple[SerialPair, ...]) -> None:
     """A flange with one degree of freedom turns about its axis; one with none does not turn."""
-    for one in twins:
+    for one in serial_pairs:
         whole = "GetOrientationImage".lower() not in one.controller.block.routines
         method = "GetFlangeOrientationImageTotal" if whole else "GetOrientationImage"
         _, (freedom, zero, base, flange) = one.controller.image(method)
@@ -86,9 +87,9 @@ def test_the_orientation_is_that_of_the_frame_and_in_the_image(twins: tuple[Twin
                 assert rotation == zero
 
 
-def test_the_projected_orientation_is_the_one_that_the_axes_reach(twins: tuple[Twins, ...]) -> None:
+def test_the_projected_orientation_is_the_one_that_the_axes_reach(serial_pairs: tuple[SerialPair, ...]) -> None:
     """For tilted commands: GetFlangeOrientationImageWithOri, and forward kinematics of inverse kinematics."""
-    for one in unlimited(twins):
+    for one in unlimited(serial_pairs):
         if "getflangeorientationimagewithori" not in one.controller.block.routines:
             continue
         for sample in one.regular:
@@ -106,9 +107,9 @@ def test_the_projected_orientation_is_the_one_that_the_axes_reach(twins: tuple[T
                 assert row[followed] == pytest.approx(wanted[followed], abs=1e-12)
 
 
-def test_a_point_off_the_flange_comes_to_its_place(twins: tuple[Twins, ...]) -> None:
+def test_a_point_off_the_flange_comes_to_its_place(serial_pairs: tuple[SerialPair, ...]) -> None:
     """Round trip of the offset interface, with the configuration that it gives itself."""
-    for one in unlimited(twins):
+    for one in unlimited(serial_pairs):
         if "cartesiantoaxes_offset" not in one.controller.block.routines:
             continue
         for sample in one.regular:
@@ -124,7 +125,7 @@ def test_a_point_off_the_flange_comes_to_its_place(twins: tuple[Twins, ...]) -> 
                 assert found == pytest.approx(point, abs=1e-9 * size), f"{one} {sample} {offset}"
 
 
-def place(one: Twins, axes: tuple[float, ...], offset: tuple[float, ...]) -> list[float]:
+def place(one: SerialPair, axes: tuple[float, ...], offset: tuple[float, ...]) -> list[float]:
     """Where a point of the flange is at axis values, by the block's own forward kinematics."""
     position, rotation, _ = one.controller.forward(axes)[1]
     turned = [sum(r * o for r, o in zip(row, offset, strict=True)) for row in rotation]

@@ -63,6 +63,7 @@ def configured(one: Pair, given: dict[str, Any]) -> tuple[int, ...]:
 
 
 def test_what_is_set_is_read(one: Pair) -> None:
+    """The reading block gives back what the setting block wrote, for every choice and turn."""
     counts = one.robot.BRANCHES, len(one.robot.PERIOD_AXES)
     for branches in product((0, 1, 2), repeat=counts[0]):
         for turn in PERIODS:
@@ -75,10 +76,12 @@ def test_what_is_set_is_read(one: Pair) -> None:
 
 
 def test_without_inputs_it_is_the_default(one: Pair) -> None:
+    """A setting block without inputs writes the default configuration."""
     assert configured(one, {}) == padded(one.robot.DEFAULT_CONFIGURATION)
 
 
 def test_a_turn_that_a_byte_cannot_hold_is_automatic(one: Pair) -> None:
+    """A turn beyond a signed byte is written as automatic."""
     size = len(one.robot.PERIOD_AXES)
     for turn in NO_PERIODS:
         given = inputs(one.mechanism, (1,) * one.robot.BRANCHES, (turn,) * size)
@@ -86,6 +89,7 @@ def test_a_turn_that_a_byte_cannot_hold_is_automatic(one: Pair) -> None:
 
 
 def test_every_byte_can_be_read(one: Pair) -> None:
+    """The reading block shows every byte as the branch, the turn or the coincidence that it means."""
     branches, periods = one.robot.BRANCHES, len(one.robot.PERIOD_AXES)
     for byte in range(256):
         found = outputs(one, (byte,) * (branches + periods))
@@ -113,6 +117,7 @@ def test_what_is_set_drives_inverse_kinematics(one: Pair) -> None:
 
 
 def test_a_branch_byte_that_means_nothing_is_refused(one: Pair) -> None:
+    """A branch byte above 3 is refused as in Python."""
     sample = one.regular[0]
     (position, rotation), own = one.robot.forward(sample.axes)
     for index, byte in product(range(one.robot.BRANCHES), range(4, 256)):

@@ -46,6 +46,7 @@ def code(file: str) -> Iterator[tuple[int, str]]:
 
 
 def test_every_mechanism_has_its_block() -> None:
+    """Every mechanism has a function block."""
     assert len(blocks()) == len(UNITS) >= 20
 
 
@@ -65,6 +66,7 @@ def test_the_contract_data_agrees_with_the_stand_ins(name: str) -> None:
 
 @pytest.mark.parametrize("file", UNITS)
 def test_methods_are_those_of_the_contract(file: str) -> None:
+    """A block has exactly the methods of its interfaces and its own, with the documented signatures."""
     block = blocks()[file]
     interfaces = list(CONTRACT.closure([name.removeprefix("TRAFO.") for name in block.implements]))
     wanted = {m: s for i in interfaces for m, s in i.methods.items()} | dict(CONTRACT.own)
@@ -81,6 +83,7 @@ def test_methods_are_those_of_the_contract(file: str) -> None:
 
 @pytest.mark.parametrize("file", UNITS)
 def test_the_newest_interfaces_that_fit(file: str) -> None:
+    """A block implements the newest interfaces that fit its configuration and its kind."""
     block = blocks()[file]
     names = [name.removeprefix("TRAFO.") for name in block.implements]
     has_configuration = f"{block.name}_Config" in library().objects
@@ -113,6 +116,7 @@ def test_the_kinds_of_the_vendors_parts() -> None:
 
 
 def test_two_blocks_implement_everything() -> None:
+    """Two blocks together implement every interface of the contract."""
     files = ("scara/Kin_Scara4_ZCcoupled_Type1.st", "orientation/Softkin_Wrist3.st")
     names = [name.removeprefix("TRAFO.") for file in files for name in blocks()[file].implements]
     assert set(CONTRACT.interfaces) == {i.name for i in CONTRACT.closure(names)}
@@ -134,6 +138,7 @@ def test_layout(file: str) -> None:
 
 
 def test_names_of_objects_are_unique_ignoring_case() -> None:
+    """No two objects have the same name in upper or lower case, and all have a prefix."""
     names = [name.lower() for name in library().objects]
     assert len(names) == len(set(names))
     assert all(name.startswith(("softkin_", "kin_", "mc_kin_", "prg_softkin")) for name in names)
@@ -141,6 +146,7 @@ def test_names_of_objects_are_unique_ignoring_case() -> None:
 
 @pytest.mark.parametrize("file", UNITS)
 def test_names_inside_a_block_are_unique_ignoring_case(file: str) -> None:
+    """No two names inside a block are the same in upper or lower case."""
     block = blocks()[file]
     members = [v.name for s in block.sections for v in s.variables] + [m.name for m in block.methods] + ["NumAxes"]
     for method in block.methods:
@@ -172,6 +178,7 @@ def test_only_initialize_and_the_settings_write_the_instance(file: str) -> None:
 
 @pytest.mark.parametrize("file", UNITS)
 def test_blocks_with_turns_take_the_limits_of_the_drives(file: str) -> None:
+    """Exactly the blocks with turns implement the interface for the limits of drives."""
     block = blocks()[file]
     has_turns = "TRAFO.ISMKinPeriodHandling" in block.implements
     assert ("TRAFO.ISMKinematicAxisSettings" in block.implements) == has_turns
@@ -197,6 +204,7 @@ def _written(body: tuple[ast.Statement, ...]) -> Iterator[str]:
 
 @pytest.mark.parametrize("file", UNITS)
 def test_inputs_are_documented(file: str) -> None:
+    """Every block and every input has the attributes that the configurator shows."""
     block = blocks()[file]
     assert any("'sm_kin_libdoc'" in p for p in block.pragmas)
     axes = [p for p in block.pragmas if "'sm_kin_axes'" in p]
@@ -230,6 +238,7 @@ def test_inputs_are_documented(file: str) -> None:
 
 
 def test_vendor_ranges_are_half_open() -> None:
+    """The ranges of inputs are written as half-open intervals."""
     block = blocks()["scara/Kin_Scara4_ZCcoupled_Type1.st"]
     inputs = {v.name: v for s in block.sections if s.scope == "VAR_INPUT" for v in s.variables}
     assert "{attribute 'sm_kin_param_range' := ']0 .. 800]'}" in inputs["dLinkLength1"].pragmas

@@ -195,6 +195,7 @@ def test_primitives(name: str) -> None:
     ],
 )
 def test_expressions(expression: sp.Basic, expected: Cost) -> None:
+    """The operations of an expression are counted as expected."""
     assert expression_cost(expression) == expected
 
 
@@ -216,6 +217,7 @@ def test_statements() -> None:
 
 
 def test_the_bound_of_an_iteration_is_stated() -> None:
+    """The description of a block with an iteration states the most passes."""
     texts = {m.name: text_of(m) for m in ALL if m.is_platform or m.search is not None}
     assert len(texts) >= 2
     for text in texts.values():

@@ -51,12 +51,14 @@ def both(position: tuple[float, ...], configuration: tuple[int, ...]) -> Diagnos
     ],
 )
 def test_the_axis_beyond_its_limit_and_how_far(axes: tuple[float, ...], reason: str, missing: float) -> None:
+    """Diagnose names the axis beyond its limit, the missing amount, and a turn that is inside."""
     found = both(*frame(axes))
     assert (found.status, found.reason) == (Status.UNREACHABLE, reason)
     assert found.missing == pytest.approx(missing, rel=1e-6)
 
 
 def test_nothing_to_say() -> None:
+    """Diagnose answers an empty text for a pose that is solved."""
     assert both(*frame((5.0, 30.0, 50.0))) == (Status.OK, "", 0.0, 0)
 
 
@@ -69,10 +71,12 @@ def test_out_of_reach_by_a_length(distance: float, missing: float) -> None:
 
 
 def test_what_is_no_number() -> None:
+    """Diagnose says which input is no number."""
     assert both((1.0, NAN, 0.0), (1, 0, 0)) == (Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0, 0)
 
 
 def test_a_byte_without_a_meaning() -> None:
+    """Diagnose names the configuration byte that means nothing."""
     assert both((400.0, 0.0, 50.0), (7, 0, 0)) == (
         Status.BAD_INPUT,
         "byte 0 of the configuration means nothing",
@@ -82,6 +86,7 @@ def test_a_byte_without_a_meaning() -> None:
 
 
 def test_before_initialize() -> None:
+    """Diagnose says that the block is not initialised."""
     controller = Controller(compiled(SCARA), SCARA)
     assert controller.diagnose((400.0, 0.0, 50.0), NO_TURN, (1, 0, 0), REFERENCE) == ("not initialized", 0.0)
 

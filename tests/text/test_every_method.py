@@ -1,4 +1,4 @@
-"""Every method of every emitted block is executed, and answers what its Python twin answers."""
+"""Every method of every emitted block is executed, and answers what the Python package answers."""
 
 from __future__ import annotations
 
@@ -25,17 +25,20 @@ EVERYWHERE = (
 
 
 def test_every_loop_is_here() -> None:
+    """Every mechanism with rods is compared."""
     assert len(LOOPS) == 11
 
 
 @pytest.mark.parametrize("mechanism", POSITION_KINEMATICS, ids=lambda m: m.name)
 def test_every_method_is_here(mechanism: Mechanism) -> None:
+    """Every public method in the text of a block is compared."""
     methods = compiled(mechanism).objects[mechanism.block_name].methods
     assert public_methods(mechanism) == tuple(m.name for m in methods if m.access != "PRIVATE")
 
 
 @pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
 def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str) -> None:
+    """A method of the block answers as the Python package does."""
     compare = comparisons_of(mechanism)[method]
     for pair in pairs_of(mechanism):
         for sample in pair.regular[: 3 if method in POSELESS else None]:

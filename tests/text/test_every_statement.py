@@ -26,8 +26,8 @@ from tests.text import (
 from tests.text.comparisons import COMPARISONS
 from tests.text.reasons import provoke
 from tests.text.samples import MANY, Sample, coinciding
+from tests.text.serial_pairs import SerialPair, serial_pair, serial_pairs_of
 from tests.text.statements import Statements
-from tests.text.twins import Twins, twins_from, twins_of
 from tests.text.units import compiled, compiled_shared, file_of, shared_texts, text_of
 
 MACHINES = ("plain", "equal", "limited", "limited to a turn")
@@ -37,21 +37,22 @@ STEPS = range(0, MANY, FEW_OF_THE_GRID)
 
 
 def test_every_statement_runs(mechanism: Mechanism) -> None:
-    twins = twins_of(mechanism)
+    """The tests execute every statement of the block of a serial mechanism."""
+    serial_pairs = serial_pairs_of(mechanism)
     statements = Statements([file_of(mechanism)], libraries(mechanism))
     with statements.watched():
-        run_the_tests(mechanism, twins)
-        for one in (one for one in twins if one.machine.label in MACHINES):
+        run_the_tests(mechanism, serial_pairs)
+        for one in (one for one in serial_pairs if one.machine.label in MACHINES):
             for sample in (
                 *few(one.regular, FEW),
                 *(few(one.grid, FEW_OF_THE_GRID) if one.machine.label == "equal" else ()),
             ):
                 compare_all(one, sample)
-        if twins[0].machine.is_spatial and mechanism.branches:
-            for one in (*twins[:3], twins_from(bare_machine(mechanism))):
+        if serial_pairs[0].machine.is_spatial and mechanism.branches:
+            for one in (*serial_pairs[:3], serial_pair(bare_machine(mechanism))):
                 for sample in few(coinciding(one.machine), FEW_OF_THE_GRID):
                     compare_all(one, sample)
-        for one, samples in ((one, one.grid[k : k + FEW_OF_THE_GRID]) for one in twins for k in STEPS):
+        for one, samples in ((one, one.grid[k : k + FEW_OF_THE_GRID]) for one in serial_pairs for k in STEPS):
             if not left_out(mechanism, statements):
                 break
             for sample in samples:  # a side of a choice that only a few singular poses reach
@@ -60,6 +61,7 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
 
 
 def test_every_statement_of_the_shared_objects_runs() -> None:
+    """The tests execute every statement of the shared functions."""
     kinds = product(test_matrix_functions.ORDERS, (72, 36))
     libraries = [compiled_shared(), *(test_matrix_functions.library(*kind) for kind in kinds)]
     libraries += [test_matrix_functions.misbehaving(name) for name in test_matrix_functions.BROKEN]
@@ -104,33 +106,33 @@ def libraries(mechanism: Mechanism) -> list[Library]:
     return found
 
 
-def compare_all(one: Twins, sample: Sample) -> None:
+def compare_all(one: SerialPair, sample: Sample) -> None:
     for method, compare in COMPARISONS.items():
         if method.lower() in one.controller.block.routines:
             compare(one, sample)
 
 
-def run_the_tests(mechanism: Mechanism, twins: tuple[Twins, ...]) -> None:
+def run_the_tests(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) -> None:
     """What the comparisons leave out: refusals, and the other blocks."""
-    test_blocks_alone.test_the_number_of_axes(twins)
-    test_blocks_alone.test_calling_the_block_itself_does_nothing(twins)
-    test_not_initialised.test_no_method_works(twins, test_not_initialised.fresh)
-    test_initialise.test_every_parameter_is_checked(twins[-1:])
+    test_blocks_alone.test_the_number_of_axes(serial_pairs)
+    test_blocks_alone.test_calling_the_block_itself_does_nothing(serial_pairs)
+    test_not_initialised.test_no_method_works(serial_pairs, test_not_initialised.fresh)
+    test_initialise.test_every_parameter_is_checked(serial_pairs[-1:])
     test_initialise.test_limits_are_in_order(mechanism, 10.0, 10.0)
     test_initialise.test_a_matrix_of_another_size_is_refused(mechanism, 36)
     test_initialise.test_a_configuration_that_is_too_small_is_refused(mechanism)
-    test_limits.test_every_limit_refuses_alone(twins)
-    test_limits.test_a_turn_that_refuses_is_told_with_the_one_inside(twins)
+    test_limits.test_every_limit_refuses_alone(serial_pairs)
+    test_limits.test_a_turn_that_refuses_is_told_with_the_one_inside(serial_pairs)
     test_axis_settings.every_statement_of_the_settings(mechanism)
-    test_garbage.test_garbage_in_one_number(twins)
-    test_garbage.test_a_pose_that_cannot_be_assembled(twins)
-    test_garbage.test_what_is_no_rotation(twins)
-    test_singular_poses.test_a_point_on_the_axis_of_a_link_cannot_be_aimed(twins[:3])
-    provoke(twins[1], twins[1].regular[0])
+    test_garbage.test_garbage_in_one_number(serial_pairs)
+    test_garbage.test_a_pose_that_cannot_be_assembled(serial_pairs)
+    test_garbage.test_what_is_no_rotation(serial_pairs)
+    test_singular_poses.test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs[:3])
+    provoke(serial_pairs[1], serial_pairs[1].regular[0])
     if mechanism.constraints:
         test_initialise.test_the_coupling_is_given_once()
     if mechanism in test_configuration_blocks.CONFIGURABLE:
-        test_configuration_blocks.test_what_is_set_is_read(twins[1])
+        test_configuration_blocks.test_what_is_set_is_read(serial_pairs[1])
 
 
 def unreachable(mechanism: Mechanism, lines: list[str]) -> set[int]:

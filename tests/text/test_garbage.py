@@ -19,7 +19,7 @@ from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK
 from tests.text.limits import has_limits
 from tests.text.pairs import Pair
 from tests.text.samples import NO_TURN, Rows
-from tests.text.twins import Twins
+from tests.text.serial_pairs import SerialPair
 
 GARBAGE = (math.nan, math.inf, -math.inf, 1e300, -1e300, 1.1e9)
 NO_ROTATIONS: tuple[Rows, ...] = (
@@ -60,6 +60,7 @@ def check(call: Call, clean: tuple[Any, dict[str, Any]], what: object) -> None:
 
 
 def test_garbage_in_one_number(pairs: tuple[Pair, ...]) -> None:
+    """NaN, an infinite or a huge number in one argument is refused without a fault, and outputs stay as they are."""
     for one in (pairs[1], pairs[-3]):
         sample = one.regular[-1]
         for method in methods_of(one.controller):
@@ -72,6 +73,7 @@ def test_garbage_in_one_number(pairs: tuple[Pair, ...]) -> None:
 
 
 def test_garbage_in_every_number(pairs: tuple[Pair, ...]) -> None:
+    """Garbage in all arguments is refused without a fault, and outputs stay as they are."""
     for one in (pairs[1], pairs[-3]):
         sample = one.regular[-1]
         for method in methods_of(one.controller):
@@ -103,6 +105,7 @@ def spoil(value: Any, garbage: float) -> None:
 
 
 def test_garbage_in_axes_as_in_python(pairs: tuple[Pair, ...]) -> None:
+    """Garbage in axis values has the status that Python gives."""
     one = pairs[1]
     sample = one.regular[0]
     for index, garbage in product(range(len(sample.axes)), GARBAGE):
@@ -147,9 +150,9 @@ def test_what_is_no_rotation(pairs: tuple[Pair, ...]) -> None:
                     assert one.controller.image_with_orientation(rows)[0] == BAD_INPUT
 
 
-def test_a_pose_that_cannot_be_assembled(twins: tuple[Twins, ...]) -> None:
+def test_a_pose_that_cannot_be_assembled(serial_pairs: tuple[SerialPair, ...]) -> None:
     """A joint beyond what the closure allows: a negative radius, an angle past the vertical."""
-    for one in twins[:5]:
+    for one in serial_pairs[:5]:
         for index, joint in enumerate(one.mechanism.joints):
             if joint.domain is None:
                 continue

@@ -18,7 +18,7 @@ from tests.text.any_method import call_of, methods_of
 from tests.text.closeness import asked
 from tests.text.controller import NOT_INITIALIZED, OK, Controller
 from tests.text.pairs import Pair
-from tests.text.twins import MECHANISMS, Twins, twins_of
+from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
 from tests.text.units import compiled, compiled_text, file_of, text_of
 
 NO_NUMBERS = (math.nan, math.inf, -math.inf, 1e300, -1e300)
@@ -75,7 +75,8 @@ def as_integers(parameter: Parameter, given: dict[str, float]) -> dict[str, floa
 
 @pytest.mark.parametrize(("lower", "upper"), [(10.0, 10.0), (10.0, -10.0), (0.0, -10.0), (10.0, 0.0), (0.2, 0.2)])
 def test_limits_are_in_order(mechanism: Mechanism, lower: float, upper: float) -> None:
-    one = twins_of(mechanism)[0]
+    """Initialize refuses a lower limit that is not below the upper one."""
+    one = serial_pairs_of(mechanism)[0]
     for key in (*(j.key for j in mechanism.joints), *(q.name for q in mechanism.limited)):
         wrong = {f"lower_{key}": lower, f"upper_{key}": upper}
         assert Controller(one.library, mechanism).initialise({**one.robot.parameters, **wrong}) == NOT_INITIALIZED
@@ -86,7 +87,7 @@ def test_limits_are_in_order(mechanism: Mechanism, lower: float, upper: float) -
 def test_the_coupling_is_given_once() -> None:
     """The one constraint between parameters in the catalogue."""
     (mechanism,) = (m for m in MECHANISMS if m.constraints)
-    machine = twins_of(mechanism)[0]
+    machine = serial_pairs_of(mechanism)[0]
     given = {**machine.robot.parameters, "pitch_zc": 20.0}
     assert Controller(machine.library, mechanism).initialise(given) == OK
     assert Controller(machine.library, mechanism).initialise(given | {"gear_coupling": 1e-9}) == NOT_INITIALIZED
@@ -102,15 +103,16 @@ def test_a_length_has_no_default(mechanism: Mechanism) -> None:
 
 @pytest.mark.parametrize("size", [36, 80])
 def test_a_matrix_of_another_size_is_refused(mechanism: Mechanism, size: int) -> None:
+    """Initialize refuses a library whose matrix has another size."""
     controller = Controller(compiled(mechanism, matrix_size=size), mechanism)
-    assert controller.initialise(twins_of(mechanism)[0].robot.parameters) == NOT_INITIALIZED
+    assert controller.initialise(serial_pairs_of(mechanism)[0].robot.parameters) == NOT_INITIALIZED
     assert controller.block.call("IsInitialized") is False
 
 
 def test_a_configuration_that_is_too_small_is_refused(mechanism: Mechanism) -> None:
     """By a compiler that looks at indices, and by Initialize where the compiler does not."""
     size = len(softkin.catalogue()[mechanism.name].CONFIGURATION)
-    given = twins_of(mechanism)[0].robot.parameters
+    given = serial_pairs_of(mechanism)[0].robot.parameters
     if size > 0:
         just_enough = Controller(compiled(mechanism, max_config_data=size - 1), mechanism)
         assert just_enough.initialise(given) == OK
@@ -131,9 +133,9 @@ def without_index_checks(mechanism: Mechanism) -> Library:
     return compiled_text(file_of(mechanism), text, max_config_data=size - 2)
 
 
-def test_inputs_have_no_influence_after_initialize(twins: tuple[Twins, ...]) -> None:
+def test_inputs_have_no_influence_after_initialize(serial_pairs: tuple[SerialPair, ...]) -> None:
     """No number, nor the other direction, nor the limits."""
-    for one in twins[-3:]:
+    for one in serial_pairs[-3:]:
         controller = Controller(one.library, one.mechanism)
         assert controller.initialise(one.robot.parameters) == OK
         controller.set_inputs(

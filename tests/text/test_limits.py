@@ -7,7 +7,7 @@ import numpy as np
 from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.other_turns import check_other_turns
 from tests.text.samples import Sample
-from tests.text.twins import Twins
+from tests.text.serial_pairs import SerialPair
 
 WIDTH = 1.0
 """How far the limit on the other side is."""
@@ -15,8 +15,9 @@ BEYOND, TOLERATED = 1e-8, 1e-9
 """How far a pose is from a limit, relative to 1 and the value; the tolerance is 1e-9 of 1 and both limits."""
 
 
-def test_every_limit_refuses_alone(twins: tuple[Twins, ...]) -> None:
-    one = twins[4]
+def test_every_limit_refuses_alone(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """Each limit refuses a pose that only this limit excludes."""
+    one = serial_pairs[4]
     tried = {joint.key for joint in one.mechanism.joints} | {quantity.name for quantity in one.mechanism.limited}
     for name in sorted(tried):
         chosen = [(sample, value) for sample in one.regular if (value := limited_value(one, sample, name)) is not None]
@@ -36,15 +37,16 @@ def test_every_limit_refuses_alone(twins: tuple[Twins, ...]) -> None:
         assert chosen, name
 
 
-def test_a_turn_that_refuses_is_told_with_the_one_inside(twins: tuple[Twins, ...]) -> None:
-    one = twins[4]
+def test_a_turn_that_refuses_is_told_with_the_one_inside(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """A refused turn is reported with the number of the turn that is inside."""
+    one = serial_pairs[4]
     for sample in one.regular[:3]:
         assert check_other_turns(one, sample) or not one.robot.PERIOD_AXES
 
 
-def test_small_limits_are_limits(twins: tuple[Twins, ...]) -> None:
+def test_small_limits_are_limits(serial_pairs: tuple[SerialPair, ...]) -> None:
     """Only where both are 0 there is none."""
-    one = twins[0]
+    one = serial_pairs[0]
     for index, joint in enumerate(one.mechanism.joints):
         for lower, upper in ((-0.2, 0.1), (0.0, 0.3), (-0.3, 0.0)):
             controller = Controller(one.library, one.mechanism)
@@ -53,7 +55,7 @@ def test_small_limits_are_limits(twins: tuple[Twins, ...]) -> None:
             assert controller.axis_properties(index)[1:] == (False, lower, upper)
 
 
-def limited_value(one: Twins, sample: Sample, name: str) -> float | None:
+def limited_value(one: SerialPair, sample: Sample, name: str) -> float | None:
     """The value at a pose of what has a limit; None where a limit may not stand there."""
     machine = one.machine
     for joint, value in zip(machine.mechanism.joints, sample.axes, strict=True):
@@ -64,7 +66,7 @@ def limited_value(one: Twins, sample: Sample, name: str) -> float | None:
     return dict(zip((q.name for q in machine.mechanism.limited), quantities, strict=True))[name]
 
 
-def status(one: Twins, sample: Sample, limits: dict[str, float]) -> str:
+def status(one: SerialPair, sample: Sample, limits: dict[str, float]) -> str:
     """Of inverse kinematics for the very configuration of a pose, with other limits."""
     controller = Controller(one.library, one.mechanism)
     assert controller.initialise({**one.robot.parameters, **limits}) == OK

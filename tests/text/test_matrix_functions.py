@@ -32,16 +32,19 @@ def matrix(made: Library, rows: tuple[tuple[float, ...], ...]) -> Any:
 
 @pytest.mark.parametrize("order", ORDERS)
 def test_the_order_is_found(order: str) -> None:
+    """The storage order of the matrix is found, by rows and by columns."""
     assert library(order, 72).function("Softkin_FindMatrixOrder")() == ORDERS[order]
 
 
 @pytest.mark.parametrize("size", [36, 80])
 def test_no_order_where_the_size_differs(size: int) -> None:
+    """A matrix of another size has an unknown order."""
     assert library("rows", size).function("Softkin_FindMatrixOrder")() == "Unknown"
 
 
 @pytest.mark.parametrize("order", ORDERS)
 def test_read_and_write(order: str) -> None:
+    """Reading a matrix and writing it give back the rotation, in both storage orders."""
     made = library(order, 72)
     found = [0.0] * 9
     assert made.function("Softkin_ReadMatrix")(m=matrix(made, ROWS), aElements=found, eOrder=ORDERS[order]) is True
@@ -53,6 +56,7 @@ def test_read_and_write(order: str) -> None:
 
 @pytest.mark.parametrize(("size", "order"), [(72, "Unknown"), (36, "Rows"), (80, "Rows"), (80, "Columns")])
 def test_nothing_is_touched_where_the_matrix_is_not_known(size: int, order: str) -> None:
+    """With an unknown order reading and writing return FALSE and change nothing."""
     made = library("rows", size)
     found, value = UNTOUCHED[:], matrix(made, ROWS)
     assert made.function("Softkin_ReadMatrix")(m=value, aElements=found, eOrder=order) is False
@@ -82,4 +86,5 @@ def misbehaving(name: str) -> Library:
 
 @pytest.mark.parametrize("name", BROKEN)
 def test_no_order_where_the_library_behaves_otherwise(name: str) -> None:
+    """A library whose functions behave differently has an unknown order."""
     assert misbehaving(name).function("Softkin_FindMatrixOrder")() == "Unknown"

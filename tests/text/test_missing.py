@@ -56,6 +56,7 @@ def said(robot: softkin.Mechanism, position: tuple[float, ...], rotation: object
 
 @pytest.mark.parametrize("mechanism", LEGS, ids=lambda m: m.name)
 def test_a_rod_would_have_to_be_so_much_longer_or_shorter(mechanism: Mechanism) -> None:
+    """A rod with a length changed by the missing amount reaches the pose."""
     robot = nominal(mechanism)
     rng = np.random.default_rng(3)
     size = sum(abs(p.nominal) for p in mechanism.parameters if p.unit == "u")
@@ -131,6 +132,7 @@ def test_a_ball_joint_that_swings_too_far(name: str) -> None:
 
 
 def test_the_joint_along_which_is_searched() -> None:
+    """A root scan without a root names the joint that was scanned."""
     robot = nominal(next(m for _, m in catalogue() if m.search is not None), j6_offset_x=40.0)
     found = said(robot, (3000.0, 0.0, 500.0))
     assert found == (Status.UNREACHABLE, "A6: the search along it finds no root of this branch", 0.0, 0)

@@ -34,6 +34,7 @@ def test_every_name_that_the_harness_refuses_is_known() -> None:
 
 
 def test_temporaries_are_spelled_around_them() -> None:
+    """A temporary variable with a reserved name gets another spelling."""
     assert spellings(("nan", "step", "heading"), ()) == {"nan": "nanValue", "step": "stepValue", "heading": "heading"}
     assert {"nan", "step", "to", "dint"} <= reserved()
 
@@ -50,6 +51,7 @@ def test_temporaries_are_spelled_around_them() -> None:
     ],
 )
 def test_a_clash_is_one_sentence(objects: tuple[Object, ...], message: str) -> None:
+    """A name with another meaning is refused with one sentence."""
     shared = objects_of("FUNCTION Softkin_Root : LREAL\nVAR\n  y : LREAL;\nEND_VAR\n\ny := 1.0;\nEND_FUNCTION\n")
     with pytest.raises(DescriptionError, match=re.escape(message)) as refusal:
         refuse_clashes({"a/b.st": objects, "softkin/Softkin_Root.st": shared})
@@ -57,6 +59,7 @@ def test_a_clash_is_one_sentence(objects: tuple[Object, ...], message: str) -> N
 
 
 def test_a_name_in_a_method_is_seen_too() -> None:
+    """A reserved name among the variables of a method is refused, too."""
     head = "FUNCTION_BLOCK Mine\nVAR\n  x : LREAL;\nEND_VAR\n\n"
     text = head + "METHOD PUBLIC Run\nVAR\n  nan : LREAL;\nEND_VAR\n\nnan := x;\n"
     with pytest.raises(DescriptionError, match=r"Mine\.Run declares nan, which is a macro"):
@@ -64,6 +67,7 @@ def test_a_name_in_a_method_is_seen_too() -> None:
 
 
 def test_two_objects_of_one_name() -> None:
+    """Two objects whose names differ in case alone are refused."""
     with pytest.raises(DescriptionError, match=r"b\.st: the name MINE is taken by a\.st"):
         refuse_clashes({"a.st": block("Mine"), "b.st": block("MINE")})
 
@@ -83,6 +87,7 @@ def generated(tmp_path: Path, capsys: pytest.CaptureFixture[str], **changes: str
 
 
 def test_a_mechanism_with_the_name_of_a_block_of_softmotion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A mechanism with the name of a block of SoftMotion is refused, and nothing is written."""
     said = generated(tmp_path, capsys, CODESYS="SINSEGYE")
     wanted = "scara/Kin_Scara2_Z.st: Kin_Scara2_Z declares Kin_Scara2_Z, which is a name of the SoftMotion libraries"
     assert said == f"error: {wanted}: {REMEDY}\n"

@@ -11,7 +11,7 @@ import pytest
 from tests.text.any_method import Call, call_of, methods_of
 from tests.text.controller import NOT_INITIALIZED, OK, Controller
 from tests.text.pairs import Pair
-from tests.text.twins import Twins
+from tests.text.serial_pairs import SerialPair
 
 State = dict[str, dict[Any, Any]]
 INDEPENDENT = {
@@ -50,11 +50,11 @@ NEUTRAL: dict[str, Callable[[Any, State, State], bool]] = {
 """What methods without a status answer."""
 
 
-def fresh(one: Twins) -> Controller:
+def fresh(one: SerialPair) -> Controller:
     return Controller(one.library, one.mechanism)
 
 
-def refused(one: Twins) -> Controller:
+def refused(one: SerialPair) -> Controller:
     """A block that was initialised, and then refused other inputs."""
     controller = fresh(one)
     assert controller.initialise(one.robot.parameters) == OK
@@ -63,7 +63,8 @@ def refused(one: Twins) -> Controller:
 
 
 @pytest.mark.parametrize("made", [fresh, refused])
-def test_no_method_works(pairs: tuple[Pair, ...], made: Callable[[Twins], Controller]) -> None:
+def test_no_method_works(pairs: tuple[Pair, ...], made: Callable[[SerialPair], Controller]) -> None:
+    """No method works before Initialize, and outputs stay as they are."""
     one = pairs[-1]
     controller = made(one)
     for method in methods_of(controller):
@@ -78,6 +79,6 @@ def test_no_method_works(pairs: tuple[Pair, ...], made: Callable[[Twins], Contro
             assert NEUTRAL[method](result, before, after), f"{method} {result} {after}"
 
 
-def working(one: Twins, call: Call, method: str) -> tuple[Any, State]:
+def working(one: SerialPair, call: Call, method: str) -> tuple[Any, State]:
     """What the same method of an initialised block answers."""
     return call_of(one, one.controller, method, one.regular[0]).run()

@@ -59,6 +59,7 @@ END_TYPE
 
 
 def test_objects() -> None:
+    """A text is split into objects with declaration, implementation and members."""
     block, order = objects_of(TEXT)
     assert (block.kind, block.name, block.implementation) == ("FUNCTION_BLOCK", "Block", "")
     assert block.declaration.startswith("{attribute 'flag'}\n") and block.declaration.endswith("OF LREAL;\nEND_VAR")
@@ -73,16 +74,19 @@ def test_objects() -> None:
 
 
 def test_an_object_without_an_end_is_refused() -> None:
+    """An object without its closing line is refused."""
     with pytest.raises(ValueError, match="'METHOD PUBLIC Nothing' has no END_METHOD"):
         objects_of(TEXT.replace("METHOD PUBLIC Nothing\nEND_METHOD", "METHOD PUBLIC Nothing"))
 
 
 def test_text_in_no_object_is_refused() -> None:
+    """Text outside of all objects is refused."""
     with pytest.raises(ValueError, match="'VAR_GLOBAL' stands in no object"):
         objects_of(f"{TEXT}\nVAR_GLOBAL\n  x : INT;\nEND_VAR\n")
 
 
 def test_rulers_are_all_that_is_added() -> None:
+    """The rulers are the only lines that are added to a text."""
     text = ruled(objects_of(TEXT))
     lines = [line for line in text.split("\n") if line and not line.startswith("// ====")]
     assert lines == [line for line in TEXT.split("\n") if line]
@@ -99,6 +103,7 @@ def test_rulers_are_all_that_is_added() -> None:
 
 
 def test_no_closing_line_stands_between_two_rulers() -> None:
+    """Between two rulers stands exactly what one pastes into one editor."""
     inside = ""
     for line in ruled(objects_of(TEXT)).split("\n"):
         if line.startswith("// ===="):
@@ -110,6 +115,7 @@ def test_no_closing_line_stands_between_two_rulers() -> None:
 
 
 def test_declarations() -> None:
+    """The interfaces, sections, variables, types and comments of a declaration are read."""
     block, order = objects_of(TEXT)
     declared = declaration_of(block.declaration)
     assert declared.interfaces == ("SPACE.One", "SPACE.Two")
@@ -145,17 +151,21 @@ def test_declarations_that_no_block_has_yet() -> None:
 
 
 def test_a_head_it_cannot_read_is_refused() -> None:
+    """A declaration with an unknown head is refused."""
     with pytest.raises(ValueError, match="not a head of an object"):
         declaration_of("FUNCTION_BLOCK Robot ABSTRACT\nVAR\nEND_VAR")
 
 
 @pytest.mark.parametrize("line", ["  a, b : LREAL;", "  a : LREAL", "a : LREAL;", "  a : LREAL; b : LREAL;"])
 def test_a_declaration_it_cannot_read_is_refused(line: str) -> None:
+    """A line that declares more or less than one variable is refused."""
     with pytest.raises(ValueError, match="not a declaration of one variable"):
         declaration_of(f"FUNCTION F : BOOL\nVAR\n{line}\nEND_VAR")
 
 
 def test_what_a_file_needs() -> None:
+    """A file needs the files whose objects its code names, directly or indirectly."""
+
     def function(name: str, code: str) -> tuple[Object, ...]:
         return objects_of(f"FUNCTION {name} : LREAL\n\n{name} := {code};\nEND_FUNCTION\n")
 

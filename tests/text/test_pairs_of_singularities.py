@@ -11,7 +11,7 @@ from derive.description.mechanism import Mechanism
 from tests.catalogue.cornered import KR6_D3, PAIRED, places, poses
 from tests.catalogue.machines import machine
 from tests.text.controller import OK
-from tests.text.twins import twins_from
+from tests.text.serial_pairs import serial_pair
 
 BOUND = 3e-11
 """Of what is missed: two free angles at their thresholds of 1e-11, either of them a chord of 2."""
@@ -21,13 +21,14 @@ SOME = 6
 
 @pytest.mark.parametrize("paired", PAIRED, ids=lambda m: m.name)
 def test_no_pose_is_lost(paired: Mechanism) -> None:
+    """Where two singularities coincide the block reaches every pose."""
     rng = np.random.default_rng(11)
     for one, corner in places(paired):
         given = {**one.given, "check_limits": 0.0}
-        twins = twins_from(replace(one, robot=one.changed(check_limits=False), given=given))
+        pair = serial_pair(replace(one, robot=one.changed(check_limits=False), given=given))
         axes = poses(one, corner)
         for row in axes[rng.choice(len(axes), SOME)].tolist():
-            status, answer = twins.controller.forward(row)
+            status, answer = pair.controller.forward(row)
             assert status == OK
             position, rotation, own = answer
             opened = (0,) * len(one.robot.CONFIGURATION)
@@ -35,19 +36,19 @@ def test_no_pose_is_lost(paired: Mechanism) -> None:
             references = (row, [0.0] * len(row), rng.uniform(-180.0, 180.0, len(row)).tolist())
             for reference in references:
                 for configuration in (branches, opened):
-                    status, found = twins.controller.inverse(position, rotation, configuration, reference)
-                    assert status == OK, f"{twins} {corner.names} {row} {configuration} {reference}"
+                    status, found = pair.controller.inverse(position, rotation, configuration, reference)
+                    assert status == OK, f"{pair} {corner.names} {row} {configuration} {reference}"
                     met = np.array([found[: len(row)]]), np.array([position]), np.array([rotation])
-                    assert one.miss(*met)[0] < BOUND, f"{twins} {corner.names} {row} {configuration} {reference}"
+                    assert one.miss(*met)[0] < BOUND, f"{pair} {corner.names} {row} {configuration} {reference}"
 
 
 def test_a_shoulder_and_an_elbow_at_once() -> None:
     """The shoulder's root is rounding, 5.4e-9 too long for the elbow that is stretched."""
     (mechanism,) = (m for m in PAIRED if m.name == "Kin_ArticulatedRobot_6DOF")
-    twins = twins_from(machine(mechanism, "shifted", KR6_D3))
+    pair = serial_pair(machine(mechanism, "shifted", KR6_D3))
     axes = (110.0, 1.6345249003522546, 85.23635830927383, -70.0, -30.0, 100.0)
-    _, (position, rotation, own) = twins.controller.forward(axes)
+    _, (position, rotation, own) = pair.controller.forward(axes)
     for configuration in (own, (0,) * len(own)):
-        status, found = twins.controller.inverse(position, rotation, configuration, axes)
+        status, found = pair.controller.inverse(position, rotation, configuration, axes)
         assert status == OK
-        assert twins.machine.miss(np.array([found]), np.array([position]), np.array([rotation]))[0] < 1e-12
+        assert pair.machine.miss(np.array([found]), np.array([position]), np.array([rotation]))[0] < 1e-12

@@ -8,7 +8,7 @@ from tests.catalogue.machines import Array, Machine
 from tests.text.closeness import asked, assert_same
 from tests.text.controller import OK, UNREACHABLE
 from tests.text.limits import draw_inside, has_limits, is_inside
-from tests.text.twins import Twins
+from tests.text.serial_pairs import SerialPair
 
 STEPS = 300
 CANDIDATES = 40
@@ -43,16 +43,17 @@ def inside_domains(machine: Machine, axes: Array) -> Array:
     return usable
 
 
-def test_a_path_is_followed_without_a_jump(twins: tuple[Twins, ...]) -> None:
+def test_a_path_is_followed_without_a_jump(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """The block follows a path without a jump of an axis."""
     lengths = []
-    for one in twins:
+    for one in serial_pairs:
         line = path(one.machine)
         allowed = is_inside(one.machine, line) | (not one.robot.checks_limits)
         lengths.append(follow(one, line, allowed))
     assert max(lengths) > 100, "no path is long"
 
 
-def follow(one: Twins, line: Array, allowed: Array) -> int:
+def follow(one: SerialPair, line: Array, allowed: Array) -> int:
     """Walk along a line in Cartesian space; the number of steps that were answered."""
     _, (_, _, data) = one.controller.forward(line[0])
     branches = one.robot.BRANCHES

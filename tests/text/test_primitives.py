@@ -38,6 +38,7 @@ def call(name: str, *values: Any) -> Any:
 
 @given(lengths, lengths)
 def test_atan2(y: float, x: float) -> None:
+    """Softkin_Atan2 is the arc tangent of two arguments, which ignores the sign of a zero."""
     assert call("Atan2", y, x) == pytest.approx(math.atan2(y + 0.0, x + 0.0), abs=1e-15, rel=1e-15)
 
 
@@ -50,27 +51,32 @@ def test_atan2_on_the_axes_and_diagonals(y: float, x: float) -> None:
 
 @given(some.floats(-1e300, 1e300))
 def test_root(value: float) -> None:
+    """Softkin_Root is the square root, and 0 for a negative number."""
     assert call("Root", value) == math.sqrt(max(0.0, value))
 
 
 @given(some.floats(-2e9, 2e9))
 def test_floor(value: float) -> None:
+    """Softkin_Floor is the largest whole number that is not more than its argument."""
     assert call("Floor", value) == math.floor(value)
 
 
 @given(angles, angles)
 def test_nearest_period(value: float, centre: float) -> None:
+    """Softkin_NearestPeriod is bit for bit the reference function."""
     assert call("NearestPeriod", value, centre) == run.nearest_period(np.float64(value), np.float64(centre))
 
 
 @given(radians, radians, some.floats(0.0, math.pi))
 def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
+    """Softkin_NearestOnArc is the reference function."""
     wanted = run.nearest_on_arc(np.float64(angle), np.float64(centre), np.float64(half))
     assert call("NearestOnArc", angle, centre, half) == pytest.approx(float(wanted), abs=1e-12)
 
 
 @given(some.floats(-1e9, 1e9))
 def test_period_number(axis: float) -> None:
+    """Softkin_PeriodNumber is the number of the turn of an axis value, or 0 beyond a byte."""
     turns = math.floor((axis + (180.0 + float(EDGE))) / 360.0)
     number = turns + 1 if turns >= 0 else turns
     assert call("PeriodNumber", axis) == (number if abs(number) <= 127 else 0)
@@ -81,36 +87,43 @@ def test_period_number(axis: float) -> None:
     [(0, 1), (-180, 1), (179.9, 1), (180, 2), (-180.1, -1), (-540, -1), (-541, -2), (126 * 360, 127), (127 * 360, 0)],
 )
 def test_period_number_at_edges(axis: float, number: int) -> None:
+    """An axis value on the edge of a turn belongs to the turn above."""
     assert call("PeriodNumber", float(axis)) == number
 
 
 @pytest.mark.parametrize("period", range(-127, 128))
 def test_a_period_survives_its_byte(period: int) -> None:
+    """A period number that is written to a byte is read back."""
     assert call("PeriodOfByte", call("ByteOfPeriod", period)) == period
 
 
 @pytest.mark.parametrize("period", [-32768, -128, 128, 32767])
 def test_a_period_that_no_byte_holds_is_automatic(period: int) -> None:
+    """A period number beyond a signed byte is written as automatic."""
     assert call("ByteOfPeriod", period) == 0
 
 
 @pytest.mark.parametrize(("margin", "byte"), [(1.0, 1), (-1.0, 2), (0.0, 3), (float(FREE_ANGLE), 3), (-2e-11, 2)])
 def test_branch_byte(margin: float, byte: int) -> None:
+    """Softkin_BranchByte is 1 or 2 by the sign of the margin, and 3 where branches coincide."""
     assert call("BranchByte", margin) == byte
 
 
 @pytest.mark.parametrize(("byte", "admitted"), [(0, {1, 2}), (1, {1}), (2, {2}), (3, {1, 2}), (4, set())])
 def test_admitted_branches(byte: int, admitted: set[int]) -> None:
+    """A branch byte of 0 or 3 admits both branches, 1 and 2 admit their own."""
     assert {branch for branch in (1, 2) if call("AdmitsBranch", byte, branch)} == admitted
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300, -1.1e9])
 def test_what_is_no_number(value: float) -> None:
+    """NaN, infinite and too large values are no numbers."""
     assert not call("IsNumber", value)
 
 
 @given(lengths)
 def test_what_is_a_number(value: float) -> None:
+    """Every number up to the largest input is a number."""
     assert call("IsNumber", value)
 
 
@@ -135,6 +148,7 @@ def initialised(**options: Any) -> str:
 
 
 def test_initialize_refuses_a_library_that_it_cannot_use() -> None:
+    """Initialize accepts both storage orders, and refuses matrices and configurations of another size."""
     assert initialised() == initialised(order="columns") == "SMC_NO_ERROR"
     assert initialised(matrix_size=36) == initialised(matrix_size=80) == "SMC_TRAFO_NOT_INITIALIZED"
     assert initialised(max_config_data=3) == "SMC_NO_ERROR"

@@ -50,6 +50,7 @@ def title(piece: Piece) -> str:
 @pytest.mark.slow
 @pytest.mark.parametrize("unit", TEXTS)
 def test_it_parses(unit: str) -> None:
+    """The independent grammar reads every part of a unit."""
     for piece in pieces()[unit]:
         assert parse_with_blark(piece.text, piece.kind), f"{unit} {piece.title}"
 
@@ -61,6 +62,7 @@ def test_nothing_is_left_out() -> None:
 
 @pytest.mark.slow
 def test_a_unit_parses_as_it_is_written() -> None:
+    """The independent grammar reads a unit as a whole."""
     trees = parse_text_with_blark(TEXTS[WHOLE], WHOLE)
     assert any(line.startswith("METHOD PUBLIC CartesianToAxes ") for line in trees)
 
@@ -76,6 +78,7 @@ def test_all_names_are_names() -> None:
 
 @pytest.mark.parametrize("word", ["and", "end_var", "at"])
 def test_a_word_of_the_grammar_would_be_refused(word: str) -> None:
+    """The independent grammar refuses a variable with the name of a keyword."""
     with pytest.raises(lark.LarkError):
         parse_with_blark(declaring(["headingLength", word]), "METHOD")
 
@@ -87,6 +90,7 @@ def declaring(variables: list[str]) -> str:
 
 
 def test_what_is_the_same_to_a_grammar() -> None:
+    """Parts that differ in names and numbers alone count as one part."""
     text = "IF a > 1.0 THEN\n  RETURN;\nEND_IF\nIF b2 > 20.5E-3 THEN\n  RETURN;\nEND_IF\n"
     text += "x := y;  // so\n\nz := y;  // or so\nx := -y;"
     assert names(text) == {"a", "b2", "x", "y", "z"}

@@ -43,12 +43,14 @@ def reference(function: type[sp.Function], *arguments: float) -> float:
 @example(-5e-324, -1.0)
 @example(HUGE, 5e-324)
 def test_atan2(y: float, x: float) -> None:
+    """The arc tangent is that of the reference interpreter, in (-pi, pi]."""
     found = LIBRARY.function("Softkin_Atan2")(y, x)
     assert found == pytest.approx(reference(Atan2, y, x), rel=ROUNDING, abs=5e-324)
     assert -math.pi <= found <= math.pi
 
 
 def test_atan2_in_every_quadrant() -> None:
+    """The arc tangent is exact at multiples of 45 degrees."""
     quarter = math.pi / 4
     for y, x, eighths in (
         (0, 1, 0),
@@ -66,6 +68,7 @@ def test_atan2_in_every_quadrant() -> None:
 
 @given(value=SIZES)
 def test_root(value: float) -> None:
+    """The root is bit for bit that of the reference interpreter."""
     assert LIBRARY.function("Softkin_Root")(value) == reference(Root, value)
 
 
@@ -76,11 +79,13 @@ def test_root(value: float) -> None:
 @example(180.0 - 1.1e-9, 0.0)
 @example(540.0, 360.0)
 def test_nearest_period(value: float, centre: float) -> None:
+    """The nearest period is bit for bit that of the reference interpreter."""
     assert LIBRARY.function("Softkin_NearestPeriod")(value, centre) == reference(NearestPeriod, value, centre)
 
 
 @given(angle=ANGLES, centre=ANGLES, half=st.floats(0.0, math.pi))
 def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
+    """The nearest angle on an arc is that of the reference interpreter."""
     expected = reference(NearestOnArc, angle, centre, half)
     assert LIBRARY.function("Softkin_NearestOnArc")(angle, centre, half) == pytest.approx(
         expected, rel=1e-14, abs=1e-14
@@ -93,6 +98,7 @@ def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
 @example(2e9)
 @example(-2e9)
 def test_floor(value: float) -> None:
+    """The floor of a number up to 2e9 is exact."""
     if abs(value) <= 2e9:
         assert LIBRARY.function("Softkin_Floor")(value) == math.floor(value)
 
@@ -100,11 +106,13 @@ def test_floor(value: float) -> None:
 @given(value=st.floats(2.1e9, HUGE) | st.floats(-HUGE, -2.1e9))
 @example(math.nextafter(2e9, math.inf))
 def test_floor_leaves_what_no_integer_holds(value: float) -> None:
+    """The floor of a larger number is the number itself."""
     assert LIBRARY.function("Softkin_Floor")(value) == value
 
 
 @pytest.mark.parametrize("value", NO_NUMBERS)
 def test_what_is_no_number(value: float) -> None:
+    """NaN, infinite and too large values are no numbers."""
     assert LIBRARY.function("Softkin_IsNumber")(value) is False
 
 
@@ -112,6 +120,7 @@ def test_what_is_no_number(value: float) -> None:
 @example(1e9)
 @example(-1e9)
 def test_what_is_a_number(value: float) -> None:
+    """Every number of reasonable size is a number."""
     assert LIBRARY.function("Softkin_IsNumber")(value) is True
 
 
@@ -124,6 +133,7 @@ def test_what_is_a_number(value: float) -> None:
 @example(-180.0 - 360.0 * 127)
 @example(-180.0 - 360.0 * 127 - 1e-3)
 def test_period_number(axis: float) -> None:
+    """The period number is the number of the turn, or 0 beyond a byte."""
     turn = math.floor((axis + (180.0 + 1e-9)) / 360.0)
     number = turn + 1 if turn >= 0 else turn
     assert LIBRARY.function("Softkin_PeriodNumber")(axis) == (number if abs(number) <= 127 else 0)
@@ -201,11 +211,13 @@ def test_period_numbers_and_bytes() -> None:
 @example(-1.0000001e-11)
 @example(0.0)
 def test_branch_byte(margin: float) -> None:
+    """The branch byte is 3 where branches coincide, else 1 or 2 by the sign of the margin."""
     expected = 3 if abs(margin) <= 1e-11 else (1 if margin > 0 else 2)
     assert LIBRARY.function("Softkin_BranchByte")(margin) == expected
 
 
 def test_which_bytes_admit_a_branch() -> None:
+    """Of all bytes, 0 and 3 admit both branches, 1 and 2 one each, and the others none."""
     admits = LIBRARY.function("Softkin_AdmitsBranch")
     for byte in range(256):
         assert [admits(byte, branch) for branch in (1, 2)] == [byte in (0, 3, 1), byte in (0, 3, 2)]
@@ -231,6 +243,7 @@ def solved(matrix: np.ndarray, right: np.ndarray) -> tuple[float, np.ndarray]:
 
 @pytest.mark.parametrize("size", range(1, 7))
 def test_solve(size: int) -> None:
+    """The solution and the determinant of a linear system are those of NumPy."""
     rng = np.random.default_rng(size)
     for columns in (0, 1, 6):
         for _ in range(20):
@@ -241,6 +254,7 @@ def test_solve(size: int) -> None:
 
 
 def test_solve_where_the_first_pivot_is_zero() -> None:
+    """A system whose first pivot is zero is solved."""
     determinant, solution = solved(np.array([[0.0, 2.0], [4.0, 1.0]]), np.array([[2.0], [9.0]]))
     assert determinant == -8.0
     assert solution.tolist() == [[2.0], [1.0]]
@@ -248,12 +262,14 @@ def test_solve_where_the_first_pivot_is_zero() -> None:
 
 @pytest.mark.parametrize("matrix", [np.zeros((3, 3)), np.ones((3, 3))])
 def test_solve_where_nothing_solves(matrix: np.ndarray) -> None:
+    """A singular system has the determinant 0 and a solution of zeros."""
     determinant, solution = solved(matrix, np.ones((3, 2)))
     assert determinant == 0.0
     assert not solution.any()
 
 
 def test_solve_what_is_no_number() -> None:
+    """A system with NaN, an infinite or a huge number has the determinant 0 and a solution of zeros."""
     for wrong in (math.nan, math.inf, -math.inf, 1e31):
         for k in range(2):
             tables = np.array([[2.0, 1.0], [1.0, -3.0]]), np.array([[1.0], [2.0]])

@@ -11,7 +11,7 @@ from tests.text.controller import BAD_INPUT, OK
 from tests.text.pairs import Pair
 from tests.text.reasons import compare_reason
 from tests.text.samples import Command, Rows, Sample, tilted
-from tests.text.twins import Twins
+from tests.text.serial_pairs import SerialPair
 
 ROUNDING = 1e-9
 
@@ -20,12 +20,13 @@ def rows(matrix: np.ndarray) -> Rows:
     return tuple(map(tuple, matrix.tolist()))
 
 
-def offered(one: Twins) -> bool:
+def offered(one: SerialPair) -> bool:
     return "getflangeorientationimagewithori" in one.controller.block.routines
 
 
-def test_a_frame_from_real_is_answered_as_in_python(twins: tuple[Twins, ...]) -> None:
-    for one in (twins[0], twins[-1]):
+def test_a_frame_from_real_is_answered_as_in_python(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """A frame that was rounded to single precision is answered as in Python."""
+    for one in (serial_pairs[0], serial_pairs[-1]):
         for sample in one.regular[:3]:
             (position, rotation), own = one.robot.forward(sample.axes)
             for matrix in slightly_off(np.array(rotation)):
@@ -37,6 +38,7 @@ def test_a_frame_from_real_is_answered_as_in_python(twins: tuple[Twins, ...]) ->
 
 
 def test_beyond_that_it_is_refused_with_the_same_reason(pairs: tuple[Pair, ...]) -> None:
+    """A rotation with a larger error is refused with the reason of Python."""
     one = pairs[0]
     sample = one.regular[0]
     (position, rotation), own = one.robot.forward(sample.axes)
@@ -48,10 +50,10 @@ def test_beyond_that_it_is_refused_with_the_same_reason(pairs: tuple[Pair, ...])
             assert one.controller.image_with_orientation(rows(matrix))[0] == BAD_INPUT
 
 
-def test_the_image_is_the_rotation_that_the_inverse_gives_the_flange(twins: tuple[Twins, ...]) -> None:
+def test_the_image_is_the_rotation_that_the_inverse_gives_the_flange(serial_pairs: tuple[SerialPair, ...]) -> None:
     """GetFlangeOrientationImageWithOri and CartesianToAxes repair and project the same frame alike."""
     rng = np.random.default_rng(17)
-    one = twins[0]
+    one = serial_pairs[0]
     for sample in one.regular[:3] if offered(one) else ():
         (position, rotation), own = one.robot.forward(sample.axes)
         turns = [np.array(rotation)]
@@ -62,7 +64,9 @@ def test_the_image_is_the_rotation_that_the_inverse_gives_the_flange(twins: tupl
                 _agree(one, sample, position, matrix, own)
 
 
-def _agree(one: Twins, sample: Sample, position: tuple[float, ...], matrix: np.ndarray, own: tuple[int, ...]) -> None:
+def _agree(
+    one: SerialPair, sample: Sample, position: tuple[float, ...], matrix: np.ndarray, own: tuple[int, ...]
+) -> None:
     status, image = one.controller.image_with_orientation(rows(matrix))
     assert status == OK
     freedom, zero, base_axis, _ = image

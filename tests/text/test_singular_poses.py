@@ -14,7 +14,7 @@ from tests.catalogue.test_offset import on_the_axis
 from tests.text.comparisons import COMPARISONS, assert_same_pose
 from tests.text.controller import OK
 from tests.text.samples import NO_TURN, Sample, coinciding, near
-from tests.text.twins import Twins, twins_from
+from tests.text.serial_pairs import SerialPair, serial_pair
 
 MACHINES = ("equal", "random 1")
 """With equal links every singular pose exists; with random offsets none of them is at a round number."""
@@ -27,8 +27,9 @@ EVERY = 7
 
 
 @pytest.mark.parametrize("label", MACHINES)
-def test_quarter_turns(twins: tuple[Twins, ...], label: str) -> None:
-    (one,) = (t for t in twins if t.machine.label == label)
+def test_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
+    """At multiples of a quarter turn every method answers as in Python."""
+    (one,) = (t for t in serial_pairs if t.machine.label == label)
     assert len(one.grid) >= 9
     for sample in one.grid if label == "equal" else one.grid[::3]:
         for method in offered(one, METHODS):
@@ -36,39 +37,41 @@ def test_quarter_turns(twins: tuple[Twins, ...], label: str) -> None:
 
 
 @pytest.mark.parametrize("label", MACHINES)
-def test_near_quarter_turns(twins: tuple[Twins, ...], label: str) -> None:
-    (one,) = (t for t in twins if t.machine.label == label)
+def test_near_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
+    """Next to multiples of a quarter turn every method answers as in Python."""
+    (one,) = (t for t in serial_pairs if t.machine.label == label)
     for sample in near(one.grid[::EVERY]):
         for method in offered(one, METHODS):
             COMPARISONS[method](one, sample)
 
 
 @pytest.mark.parametrize("label", MACHINES)
-def test_a_point_off_the_flange_at_quarter_turns(twins: tuple[Twins, ...], label: str) -> None:
-    (one,) = (t for t in twins if t.machine.label == label)
+def test_a_point_off_the_flange_at_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
+    """At and next to quarter turns the offset methods answer as in Python."""
+    (one,) = (t for t in serial_pairs if t.machine.label == label)
     for sample in (*one.grid[::EVERY], *near(one.grid[::EVERY])):
         for method in offered(one, OFFSET_METHODS):
             COMPARISONS[method](one, sample)
 
 
-def test_singularities_that_coincide(twins: tuple[Twins, ...]) -> None:
+def test_singularities_that_coincide(serial_pairs: tuple[SerialPair, ...]) -> None:
     """Wrist on axis 1, elbow stretched or folded, wrist straight: several at once, exactly and nearly."""
-    if not twins[1].machine.is_spatial or not twins[1].robot.BRANCHES:
+    if not serial_pairs[1].machine.is_spatial or not serial_pairs[1].robot.BRANCHES:
         return
-    for one in (twins[1], twins_from(bare_machine(twins[1].mechanism))):
+    for one in (serial_pairs[1], serial_pair(bare_machine(serial_pairs[1].mechanism))):
         for sample in coinciding(one.machine):
             for method in ("AxesToCartesian", "CartesianToAxes"):
                 COMPARISONS[method](one, sample)
 
 
-def offered(one: Twins, methods: tuple[str, ...]) -> list[str]:
+def offered(one: SerialPair, methods: tuple[str, ...]) -> list[str]:
     """Those that the block has."""
     return [method for method in methods if method.lower() in one.controller.block.routines]
 
 
-def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(twins: tuple[Twins, ...]) -> None:
+def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs: tuple[SerialPair, ...]) -> None:
     """The effective link of the offset interface is then too short to have a direction."""
-    for one in twins:
+    for one in serial_pairs:
         if "cartesiantoaxes_offset" not in one.controller.block.routines:
             continue
         for sample in one.regular[:5]:
@@ -76,7 +79,7 @@ def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(twins: tuple[Twins, ...])
                 COMPARISONS["CartesianToAxes_Offset"](one, replace(sample, offset=offset))
 
 
-def fixed_points(one: Twins, sample: Sample) -> Iterator[tuple[float, ...]]:
+def fixed_points(one: SerialPair, sample: Sample) -> Iterator[tuple[float, ...]]:
     """For every rotary axis, the point of the flange about which it turns the flange."""
     jacobian, rotation = one.robot.jacobian(sample.axes), one.robot.orientation(sample.axes)
     for index, joint in enumerate(one.mechanism.joints):
@@ -87,9 +90,9 @@ def fixed_points(one: Twins, sample: Sample) -> Iterator[tuple[float, ...]]:
             yield tuple(on_the_axis(one.machine, np.array([sample.axes]), index)[0].tolist())
 
 
-def test_a_tie_goes_to_the_first_branch(twins: tuple[Twins, ...]) -> None:
+def test_a_tie_goes_to_the_first_branch(serial_pairs: tuple[SerialPair, ...]) -> None:
     """A point straight ahead, and a reference that is as far from one solution as from its mirror image."""
-    one = twins[0]
+    one = serial_pairs[0]
     if not one.robot.BRANCHES or one.machine.is_spatial:
         return
     count, size = len(one.mechanism.joints), len(one.robot.CONFIGURATION)
@@ -103,9 +106,9 @@ def test_a_tie_goes_to_the_first_branch(twins: tuple[Twins, ...]) -> None:
         assert solve(first, nothing) == solve(opened, nothing) != solve((2, *first[1:]), nothing)
 
 
-def test_where_branches_coincide_the_first_answers(twins: tuple[Twins, ...]) -> None:
+def test_where_branches_coincide_the_first_answers(serial_pairs: tuple[SerialPair, ...]) -> None:
     """They are equally far from any reference."""
-    one = twins[1]
+    one = serial_pairs[1]
     if not one.robot.BRANCHES:
         return
     periods = (0,) * len(one.robot.PERIOD_AXES)
@@ -127,26 +130,26 @@ def test_where_branches_coincide_the_first_answers(twins: tuple[Twins, ...]) -> 
     assert compared
 
 
-def nearly_singular(one: Twins, sample: Sample) -> int:
+def nearly_singular(one: SerialPair, sample: Sample) -> int:
     """How many margins nearly vanish."""
     return sum(abs(margin) < NEARLY for margin in one.robot.singularity(sample.axes).margins.values())
 
 
-def singular_samples(one: Twins) -> tuple[Sample, ...]:
+def singular_samples(one: SerialPair) -> tuple[Sample, ...]:
     """Right angles; of an arm in space, whose elbow stretches at any angle, what is singular by its description too."""
     has_loci = one.machine.is_spatial and one.robot.BRANCHES > 0
     return (*one.grid, *coinciding(one.machine)) if has_loci else one.grid
 
 
-def branches_of(one: Twins, sample: Sample) -> tuple[int, ...]:
+def branches_of(one: SerialPair, sample: Sample) -> tuple[int, ...]:
     """The branch bytes that forward kinematics writes."""
     data: tuple[int, ...] = one.controller.forward(sample.axes)[1][2]
     return data[: one.robot.BRANCHES]
 
 
-def test_the_grid_has_singular_poses(twins: tuple[Twins, ...]) -> None:
+def test_the_grid_has_singular_poses(serial_pairs: tuple[SerialPair, ...]) -> None:
     """A mechanism with margins is singular somewhere on the grid, and not everywhere."""
-    (equal,) = (t for t in twins if t.machine.label == "equal")
+    (equal,) = (t for t in serial_pairs if t.machine.label == "equal")
     found = [equal.controller.is_singular(sample.axes) for sample in singular_samples(equal)]
     assert any(found) == bool(equal.robot.MARGINS)
     assert not all(found)

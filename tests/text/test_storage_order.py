@@ -6,14 +6,15 @@ import pytest
 
 from derive.description.mechanism import Mechanism
 from tests.text.comparisons import COMPARISONS, POSELESS
-from tests.text.twins import twins_of
+from tests.text.serial_pairs import serial_pairs_of
 
 FEW = 10
 MACHINES = ("nominal", "random 2", "limited")
 
 
 def test_every_method_answers_the_same_by_columns(mechanism: Mechanism) -> None:
-    for by_rows, by_columns in zip(twins_of(mechanism), twins_of(mechanism, "columns"), strict=True):
+    """Every method gives the same answers for matrices that are stored by columns."""
+    for by_rows, by_columns in zip(serial_pairs_of(mechanism), serial_pairs_of(mechanism, "columns"), strict=True):
         if by_rows.machine.label not in MACHINES:
             continue
         for sample in by_rows.regular[:FEW]:
@@ -25,5 +26,6 @@ def test_every_method_answers_the_same_by_columns(mechanism: Mechanism) -> None:
 
 @pytest.mark.parametrize("order", ["rows", "columns"])
 def test_the_order_is_found(mechanism: Mechanism, order: str) -> None:
-    (found,) = {one.controller.block.matrixOrder for one in twins_of(mechanism, order)}
+    """Initialize finds the storage order of the library."""
+    (found,) = {one.controller.block.matrixOrder for one in serial_pairs_of(mechanism, order)}
     assert found.lower() == order

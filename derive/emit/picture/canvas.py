@@ -1,4 +1,4 @@
-"""Marks as PNG and SVG, by matplotlib. The same marks give the same bytes: no date, a fixed font, a fixed salt."""
+"""Marks as PNG and SVG, by matplotlib. The same marks give the same bytes: no date, a fixed font, a fixed hash salt."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from derive.emit.picture.ink import Area, Line, Mark, Text
 
 WIDTH = 900
 _DOTS = 72
-"""Pixels of an inch: so a pixel is a point, and both formats have the same coordinates."""
+"""Pixels in an inch: a pixel is then a point, and both formats have the same coordinates."""
 _FAMILY = b"font-family: 'DejaVu Sans'"
 _FAMILIES = _FAMILY + b", Verdana, sans-serif"
-"""A viewer without the font takes one that is as wide."""
+"""A viewer that lacks the font takes one of the same width."""
 _COLOURS = 192
 _SETTINGS: Any = {
     "svg.fonttype": "none",  # text stays text
@@ -40,14 +40,14 @@ _SETTINGS: Any = {
 
 @dataclass(frozen=True)
 class Pictures:
-    """One drawing in two formats."""
+    """One drawing as PNG and as SVG."""
 
     png: bytes
     svg: bytes
 
 
 def pictures(marks: Iterable[Mark], height: int) -> Pictures:
-    """The marks, in their order, on a page of WIDTH × height pixels."""
+    """The pictures of the marks, drawn in their order on a page of WIDTH × height pixels."""
     with matplotlib.rc_context(_SETTINGS):
         figure = Figure(figsize=(WIDTH / _DOTS, height / _DOTS), dpi=_DOTS, facecolor=style.PAPER)
         for order, mark in enumerate(marks):
@@ -100,7 +100,7 @@ def _svg(figure: Figure) -> bytes:
 
 @cache
 def text_width(text: str, size: float, is_bold: bool = False) -> float:
-    """How wide a text is, in pixels."""
+    """The width of a text in pixels."""
     font = _font(is_bold)
     font.set_size(size, _DOTS)
     font.set_text(text, 0.0)

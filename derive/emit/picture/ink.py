@@ -1,4 +1,4 @@
-"""What a page consists of: lines, areas and texts in pixels, y upward."""
+"""The marks on a page: lines, areas and texts, in pixels with y upward."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 Spot = tuple[float, float]
 Vector = NDArray[np.float64]
 _DECIMALS = 1
-"""Coordinates are rounded, so that the last bit of a number cannot be seen in a file."""
+"""Coordinates are rounded to this many decimals, so that the last bit of a number does not change a file."""
 _HEAD, _HALF = 9.0, 3.4
-"""Length of an arrow head, and half of its width."""
+"""The length of an arrow head, and half of its width."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Area:
 
 @dataclass(frozen=True)
 class Text:
-    """A line of text, its centre (or its left end) at a point half-way up."""
+    """A line of text with its centre, or its left end at half of its height, at a point."""
 
     text: str
     at: Spot
@@ -47,7 +47,7 @@ class Text:
     is_left: bool = False
     is_bold: bool = False
     has_ground: bool = True
-    """Whether what lies below is covered."""
+    """Whether the text covers what is drawn below it."""
 
 
 Mark = Line | Area | Text
@@ -70,7 +70,7 @@ def area(points: Iterable[Iterable[float]], fill: str, edge: str, width: float =
 
 
 def head(tip: Sequence[float] | Vector, direction: Vector, colour: str, size: float = 1.0) -> Area:
-    """The head of an arrow; nothing to see where it has no direction."""
+    """The head of an arrow; it has no size where the direction vanishes."""
     end, length = np.asarray(tip, dtype=float), float(np.linalg.norm(direction))
     along = direction / length if length > 1e-9 else np.zeros(2)
     across = np.array([-along[1], along[0]])

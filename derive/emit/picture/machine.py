@@ -1,4 +1,4 @@
-"""The machine on its part of the page: bodies first, joints on them, names last."""
+"""The machine on its part of the page: bodies are drawn first, joints next, names last."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from derive.emit.picture.symbols import angle_lines, bar, ground, opening, rail,
 from derive.emit.picture.view import Box, fitted
 
 _MARGINS = (78.0, 62.0, 84.0, 58.0)
-"""Room for names about the machine: left, below, right, above."""
+"""Room for names around the machine: left, below, right, above."""
 _ANGLE_RADIUS = 46.0
 _CLOSE = 30.0
-"""Joints nearer than this would cover each other."""
+"""Joints at a smaller distance than this would cover each other."""
 _ORIGIN = Frame((0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
 
 
 class Machine:
-    """Draws a machine to a sheet; `names` spells parameters."""
+    """Draws a machine on a sheet; `names` holds the spelling of parameters."""
 
     def __init__(self, drawing: Drawing, box: Box, names: Mapping[str, str]) -> None:
         self._scene, self._names = drawing.scene, names
@@ -39,12 +39,12 @@ class Machine:
         self._view = fitted(points, inside, is_planar=drawing.is_planar)
         heights = [self._view.page(p)[1] for p in points]
         self.needed = float(max(heights) - min(heights)) + below + above
-        """How high it is with its names."""
+        """The height of the machine with its names."""
         self._taken: list[Vector] = []
-        """Where joints are drawn."""
+        """The positions at which joints are drawn."""
 
     def _points(self) -> list[Point]:
-        """What must be on the page."""
+        """The points that must be on the page."""
         points = [_ORIGIN.position, self._scene.tool.position]
         points += [p for s in self._scene.segments for p in (s.start, s.end)]
         points += [p for slide, ends in self._rails.items() if slide.has_rail for p in ends]
@@ -52,7 +52,7 @@ class Machine:
         return points if len(set(points)) > 1 else [*points, *everywhere]
 
     def drawn(self) -> Sheet:
-        """The sheet with everything on it."""
+        """The sheet with the machine on it."""
         view, scene, sheet = self._view, self._scene, self._sheet
         for segment in sorted(scene.segments, key=self._order):
             sheet.draw(bar(segment, view))
@@ -95,7 +95,7 @@ class Machine:
         sheet.label("TCP", style.LABEL, style.INK, places, is_bold=True)
 
     def _anchored(self, turn: Turn) -> tuple[Vector, float]:
-        """Where along its axis a joint is drawn, clear of others; in the plane with a larger arrow instead."""
+        """The position on its axis at which a joint covers no other; in a plane its arrow is larger instead."""
         at, radius = self._view.page(turn.at), style.ARC_RADIUS
         along = self._view.direction(turn.axis)
         for shift in (0.0, 52.0, -52.0, 104.0, -104.0):
@@ -113,7 +113,7 @@ class Machine:
         return box.left + room < x < box.right - room and box.bottom + room < y < box.top - room
 
     def _order(self, segment: Segment) -> tuple[bool, float]:
-        """The base first, then from far to near."""
+        """The sort key of a segment: the base first, then from far to near."""
         depth = sum(float(self._view.eye @ np.array(p)) for p in (segment.start, segment.end))
         return segment.body is not Body.BASE, round(depth, 6)
 

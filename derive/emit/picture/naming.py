@@ -14,7 +14,7 @@ from derive.emit.picture.symbols import STEPS, arc
 from derive.emit.picture.view import View
 
 _SHORT = 26.0
-"""A dimension shorter than this on the page has a leader and no line with heads."""
+"""A dimension shorter than this on the page has a leader instead of a dimension line."""
 
 
 def name_turn(sheet: Sheet, view: View, turn: Turn, text: str, at: Vector, radius: float) -> None:
@@ -28,9 +28,7 @@ def name_turn(sheet: Sheet, view: View, turn: Turn, text: str, at: Vector, radiu
 
 
 def name_slide(sheet: Sheet, view: View, slide: Slide, text: str, tip: Vector) -> None:
-    """The name of a linear axis at the tip of its arrow; of a rail that drives share, what they
-    make of it at its end.
-    """
+    """The name of a linear axis at the tip of its arrow; on a rail that drives share, their motion at its end."""
     along = view.direction(slide.axis)
     toward = along / max(float(np.linalg.norm(along)), 1e-9)
     reach = 14.0 + abs(float(toward[0])) * max(0.0, 3.4 * len(text) - 8.0)
@@ -43,14 +41,14 @@ def name_slide(sheet: Sheet, view: View, slide: Slide, text: str, tip: Vector) -
 
 
 def name_axes(sheet: Sheet, letters: str, tips: Sequence[tuple[Vector, list[Mark]]]) -> None:
-    """The letters of a frame, at the tips of its axes; the one that points at the eye has none."""
+    """The letters of a frame at the tips of its axes; an axis that points to the viewer has no letter."""
     for letter, colour, (tip, marks) in zip(letters, style.AXES, tips, strict=True):
         if marks:
             sheet.label(letter, style.LABEL, colour, around(tip, (10.0, 15.0)), is_bold=True)
 
 
 def name_point(sheet: Sheet, text: str, at: Vector) -> None:
-    """The coordinates of a point, with a leader where they are not beside it."""
+    """The coordinates of a point, with a leader where they do not stand beside it."""
     places = []
     for place in around(at, (16.0, 26.0, 40.0, 56.0, 76.0)):
         is_far = bool(np.linalg.norm(place.at - at) > 30.0)
@@ -60,7 +58,7 @@ def name_point(sheet: Sheet, text: str, at: Vector) -> None:
 
 
 def name_angle(sheet: Sheet, text: str, at: Vector, points: Sequence[Vector]) -> None:
-    """The name of an angle, outside its arc."""
+    """The name of an angle, outside of its arc."""
     middle = points[len(points) // 2]
     toward = (middle - at) / max(float(np.linalg.norm(middle - at)), 1e-9)
     places = around(middle, (12.0, 20.0, 32.0), toward=toward)
@@ -69,7 +67,7 @@ def name_angle(sheet: Sheet, text: str, at: Vector, points: Sequence[Vector]) ->
 
 
 def name_length(sheet: Sheet, view: View, dimension: Dimension, text: str) -> None:
-    """A dimension line beside what it measures; a leader to the middle where that is too short."""
+    """A dimension line beside the length that it measures; a leader to the middle of a length that is too short."""
     start, end = view.page(dimension.start), view.page(dimension.end)
     length = float(np.linalg.norm(end - start))
     sheet.label(
@@ -101,7 +99,7 @@ def _aside(place: Vector, at: Vector, shift: float) -> Vector:
 
 
 def _measured(start: Vector, end: Vector, aside: Vector) -> tuple[Mark, ...]:
-    """A dimension line with two heads, and the lines that extend to it."""
+    """A dimension line with two heads, and its extension lines."""
     first, last = start + aside, end + aside
     over = aside / float(np.linalg.norm(aside)) * 4.0
     return (

@@ -1,4 +1,4 @@
-"""The page: the machine with its joints and dimensions, the choices of its configuration beside it, words below."""
+"""The page: the machine with its joints and dimensions, the choices of its configuration beside it, text below."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from derive.emit.picture.view import Box
 
 _PANEL = 214.0
 _LOWEST, _HIGHEST = 250.0, 560.0
-"""How high the part of the page with the machine may be."""
+"""The least and the greatest height of the part of the page with the machine."""
 _ROW, _LETTERS = 16.0, 125
-"""The words below: the height of a line, and how many letters it has."""
+"""The text below: the height of a line, and its number of letters."""
 
 
 @dataclass(frozen=True)
 class Page:
-    """All marks of a picture, and how high it is."""
+    """All marks of a picture, and its height."""
 
     marks: tuple[Mark, ...]
     height: int
 
 
 def page(drawing: Drawing, title: str, names: Mapping[str, str]) -> Page:
-    """The picture of a mechanism, as high as it needs; `names` spells parameters."""
+    """The picture of a mechanism, as high as it needs to be; `names` holds the spelling of parameters."""
     choices = chosen(drawing)
     words = list(_words(drawing, [choice for _, choice in choices], names))
     bottom = 20.0 + _ROW * len(words)
@@ -49,7 +49,7 @@ def page(drawing: Drawing, title: str, names: Mapping[str, str]) -> Page:
 
 
 def _words(drawing: Drawing, shown: Sequence[Choice], names: Mapping[str, str]) -> Iterator[str]:
-    """What the picture cannot show."""
+    """The sentences on what the picture cannot show."""
     if drawing.is_zero:
         yield "Zero pose: all axes at their offsets. Arrows show the positive direction of every axis."
     else:

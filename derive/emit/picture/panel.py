@@ -1,4 +1,4 @@
-"""The choices of a configuration: small pictures of both, one over the other."""
+"""The choices of a configuration: small pictures in which both poses are drawn over each other."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from derive.emit.picture.ink import Mark, Text, line
 from derive.emit.picture.view import Box, View, fitted
 
 _MOST = 3
-"""Small pictures that have room."""
+"""The most small pictures on a page."""
 HEIGHT = 180.0
-"""Of one small picture."""
+"""The height of one small picture."""
 _FIRST, _SECOND = style.INK, "#d07a1c"
 
 
 def chosen(drawing: Drawing) -> list[tuple[str, Choice]]:
-    """As many choices as have room: the way of assembly, and the branches that look different."""
+    """The choices that are shown, as many as have room: the assembly mode, and branches with different poses."""
     shown = [(f"Byte {k}, {c.name}", c) for k, c in enumerate(drawing.choices) if c.scenes is not None]
     assembly = drawing.assembly
     ways = [("Assembly", assembly)] if assembly is not None and assembly.scenes is not None else []

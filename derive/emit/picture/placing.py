@@ -1,4 +1,4 @@
-"""Where labels go: of several places, the one that covers least of what is there."""
+"""The places of labels: of several possible places, the one that covers least."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _OVER_TEXT, _OVER_INK, _OUTSIDE = 0.6, 3.0, 2000.0
 
 @dataclass(frozen=True)
 class Place:
-    """A place for a label, what it costs by itself, and what else is drawn with it."""
+    """A place for a label, its own cost, and the marks that are drawn with the label."""
 
     at: Vector
     cost: float
@@ -27,7 +27,7 @@ class Place:
 
 @dataclass
 class Sheet:
-    """What is on the page so far."""
+    """The marks on the page so far."""
 
     box: Box
     marks: list[Mark] = field(default_factory=list)
@@ -35,7 +35,7 @@ class Sheet:
     _ink: list[Vector] = field(default_factory=list)
 
     def draw(self, marks: Iterable[Mark]) -> None:
-        """Add marks, which labels then keep clear of."""
+        """Add marks, which later labels avoid."""
         for mark in marks:
             self.marks.append(mark)
             if isinstance(mark, Text):
@@ -44,14 +44,14 @@ class Sheet:
                 self._ink.append(_sampled(mark))
 
     def label(self, text: str, size: float, colour: str, places: Sequence[Place], *, is_bold: bool = False) -> None:
-        """Put a label at the best of its places."""
+        """Draw a label at the best of its places."""
 
         def at(place: Place) -> Text:
             return Text(text, spot(place.at), size, colour, is_bold=is_bold)
 
         best = min(
             places, key=lambda place: round(place.cost + self._cost(at(place), place.marks), 3)
-        )  # the first of equals
+        )  # among equals, the first
         self.draw((*best.marks, at(best)))
 
     def _cost(self, text: Text, marks: Sequence[Mark]) -> float:
@@ -72,7 +72,7 @@ class Sheet:
 
 
 def around(at: Vector, distances: Sequence[float], *, toward: Vector | None = None) -> list[Place]:
-    """Places about a point, preferably in a direction."""
+    """Places around a point, preferably in a direction."""
     found = []
     for distance in distances:
         for angle in np.arange(0.0, 2 * np.pi, np.pi / 8):

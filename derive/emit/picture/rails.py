@@ -12,19 +12,19 @@ from derive.emit.picture.ink import Mark, Vector, arrow
 from derive.emit.picture.view import View
 
 _TRAVEL = 0.34
-"""How long a rail is, as a part of the machine."""
+"""The length of a rail over the size of the machine."""
 FREE = 100.0
-"""The size of a machine without lengths."""
+"""The size that is drawn for a machine without lengths."""
 _BACK = 0.25
-"""How much of a rail lies behind its zero."""
+"""The part of a rail that lies behind its zero."""
 _ASIDE, _ALONE = 15.0, 64.0
-"""How far an arrow is from its rail, and how long it is without one, in pixels."""
+"""In pixels: the distance of an arrow from its rail, and the length of an arrow without a rail."""
 
 Ends = tuple[Point, Point]
 
 
 def rails(scene: Scene) -> dict[Slide, Ends]:
-    """The ends of every rail. Rails that begin in one point are drawn one on the other, as slides are mounted."""
+    """The ends of every rail. Rails that begin at one point are drawn one on the other, as slides are mounted."""
     travel = _TRAVEL * (scene.size or FREE)
     above: dict[Point, Vector] = {}
     found = {}
@@ -40,13 +40,13 @@ def rails(scene: Scene) -> dict[Slide, Ends]:
 
 
 def is_stacked(scene: Scene) -> bool:
-    """Whether some rails begin in one point."""
+    """Whether several rails begin at one point."""
     places = [slide.at for slide in scene.slides if slide.has_rail and slide.has_arrow]
     return len(set(places)) < len(places)
 
 
 def slide_arrow(slide: Slide, ends: Ends, view: View, *, is_beside: bool) -> Iterator[Mark]:
-    """The arrow in positive direction: along the rail where there is one; `is_beside` keeps it off a bar else."""
+    """The arrow in the positive direction, along the rail if there is one; else `is_beside` moves it off a bar."""
     if not slide.has_arrow:
         return
     along = view.direction(slide.axis)
@@ -61,7 +61,7 @@ def slide_arrow(slide: Slide, ends: Ends, view: View, *, is_beside: bool) -> Ite
 
 
 def _on_rail(place: Point, ends: Ends) -> Point:
-    """The place of a rail that is nearest: its zero, or the beginning of a rail that stands on another."""
+    """The point of a rail nearest to a place: its zero, or the beginning of a rail that stands on another."""
     begin, end = map(np.array, ends)
     along = end - begin
     return _point(begin + np.clip((np.array(place) - begin) @ along / (along @ along), 0.0, 1.0) * along)

@@ -15,7 +15,7 @@ AXES = ("#c23b30", "#2d8a43", "#2f62b5")
 PAPER = "#ffffff"
 
 TITLE, LABEL, NAME, SMALL = 17.0, 11.5, 14.0, 11.5
-"""Sizes of letters."""
+"""The sizes of letters."""
 LINK_WIDTH, ROD_WIDTH, PLATE_WIDTH, BASE_WIDTH = 9.0, 5.0, 5.0, 5.0
 JOINT_RADIUS = 11.0
 ARC_RADIUS = 25.0

@@ -19,13 +19,13 @@ _WIDTHS = {
 }
 _COLOURS = {Body.LINK: style.LINK, Body.ROD: style.ROD, Body.PLATE: style.PLATE, Body.BASE: style.BASE}
 _SWEEP = np.radians(75.0)
-"""How far an arrow about an axis goes in the plane; in space it goes about most of the axis."""
+"""The angle of an arrow about an axis in the plane; in space an arrow goes most of the way around."""
 _AROUND = np.radians(250.0)
 STEPS = 28
 
 
 def bar(segment: Segment, view: View) -> list[Mark]:
-    """A body as a stroke with an edge."""
+    """A body, drawn as a stroke with an edge."""
     ends = [view.page(segment.start), view.page(segment.end)]
     width = _WIDTHS[segment.body]
     if segment.body is Body.BASE:
@@ -34,7 +34,7 @@ def bar(segment: Segment, view: View) -> list[Mark]:
 
 
 def ground(at: Vector, view: View) -> list[Mark]:
-    """Where the machine is held: a plate in space, a triangle with hatching in the plane."""
+    """The base of the machine: a plate in space, a triangle with hatching in the plane."""
     if not view.is_planar:
         corners = [at + 26.0 * (view.axes @ np.array([x, y, 0.0])) for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
         return [area(corners, style.BASE, style.FAINT)]
@@ -47,7 +47,7 @@ def ground(at: Vector, view: View) -> list[Mark]:
 
 
 def basis(axis: Sequence[float], toward: Sequence[float] | Vector | None) -> tuple[Vector, Vector, Vector]:
-    """The axis, a direction across it, and the one a quarter turn on."""
+    """The axis, a direction perpendicular to it, and that direction turned by 90 degrees about the axis."""
     z = np.array(axis, dtype=float)
     z /= np.linalg.norm(z)
     guess = np.array(
@@ -59,7 +59,7 @@ def basis(axis: Sequence[float], toward: Sequence[float] | Vector | None) -> tup
 
 
 def arc(turn: Turn, at: Vector, radius: float, view: View) -> list[Vector]:
-    """The way of a positive turn about the axis through a point of the page."""
+    """The points of an arc in the positive sense about the axis through a point of the page."""
     if view.is_planar:
         z, x, y = basis(turn.axis, turn.zero or turn.toward)
         turned = _angle(x, y, turn.toward) if turn.zero is not None and turn.toward is not None else 0.0
@@ -93,7 +93,7 @@ def turning(turn: Turn, at: Vector, radius: float, view: View) -> list[Mark]:
 
 
 def _reference(turn: Turn, direction: Sequence[float] | None, at: Vector, length: float, view: View) -> list[Mark]:
-    """A dashed line from which a turn is counted."""
+    """A dashed line at the zero of a turn."""
     if direction is None:
         return []
     _, x, _ = basis(turn.axis, direction)
@@ -101,7 +101,7 @@ def _reference(turn: Turn, direction: Sequence[float] | None, at: Vector, length
 
 
 def opening(arc_: Arc, radius: float, view: View) -> list[Vector]:
-    """The points of an angle between two directions, the short way."""
+    """The points of the arc between two directions, along the smaller angle."""
     start, end = np.array(arc_.start), np.array(arc_.end)
     angle = float(np.arccos(np.clip(start @ end, -1.0, 1.0)))
     across = end - (end @ start) * start
@@ -113,7 +113,7 @@ def opening(arc_: Arc, radius: float, view: View) -> list[Vector]:
 
 
 def angle_lines(arc_: Arc, radius: float, view: View) -> list[Mark]:
-    """An angle of the machine: both directions, and an arrow from the first to the second."""
+    """An angle of the machine: both of its directions, and an arrow from the first to the second."""
     at, points = view.page(arc_.at), opening(arc_, radius, view)
     sides: list[Mark] = [
         line([at, at + 1.25 * (p - at)], style.FAINT, 0.9, (3.0, 3.0)) for p in (points[0], points[-1])

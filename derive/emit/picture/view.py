@@ -1,4 +1,4 @@
-"""From the machine to the page: straight from above for a machine in the plane, an axonometric view else."""
+"""The projection of the machine to the page: from above for a planar machine, else an axonometric view."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from derive.drawing.scene import Point
 from derive.emit.picture.ink import Vector
 
 _AZIMUTH, _ELEVATION = np.radians(-74.0), np.radians(26.0)
-"""Where the eye is: X goes to the right and a little down, Y to the right and up, Z up."""
+"""The direction of the viewer: X points right and a little down, Y points right and up, Z points up."""
 
 
 @dataclass(frozen=True)
 class Box:
-    """A part of the page."""
+    """A rectangular part of the page."""
 
     left: float
     bottom: float
@@ -29,23 +29,23 @@ class View:
     """A parallel projection to a part of the page."""
 
     axes: Vector
-    """Two rows: what points to the right, and what points up."""
+    """Two rows: the direction that points right on the page, and the direction that points up."""
     scale: float
     """Pixels of one unit of the machine."""
     shift: Vector
     is_planar: bool
 
     def page(self, point: Iterable[float]) -> Vector:
-        """Where a point of the machine is on the page."""
+        """The point of the page that shows a point of the machine."""
         return np.asarray(self.scale * (self.axes @ np.array(list(point))) + self.shift)
 
     def direction(self, vector: Iterable[float]) -> Vector:
-        """A direction of the machine on the page, not normalised: what points at the eye is short."""
+        """A direction of the machine on the page, not normalised: a direction towards the viewer is short."""
         return np.asarray(self.axes @ np.array(list(vector)))
 
     @property
     def eye(self) -> Vector:
-        """The direction to the eye."""
+        """The direction to the viewer."""
         return np.cross(self.axes[0], self.axes[1])
 
 

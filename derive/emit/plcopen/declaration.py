@@ -1,4 +1,4 @@
-"""What a declaration says, read from its text: the head, the pragmas, and every variable with type and comment."""
+"""The content of a declaration, read from its text: head, pragmas, and every variable with type and comment."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ENUMERATOR = re.compile(r"  (\w+)(?: := (\d+))?,?")
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable; what it has not is empty."""
+    """A variable; the text of a missing part is empty."""
 
     name: str
     type: str
@@ -33,7 +33,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class Section:
-    """A section of variables: its keyword, and whether they are constant."""
+    """A section of variables: its keyword, and whether its variables are constant."""
 
     scope: str
     is_constant: bool
@@ -42,7 +42,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Declaration:
-    """A declaration. A structure has one section, `enumerators` are those of an enumeration, with their numbers."""
+    """A declaration. A structure has one section; an enumeration has `enumerators` with their numbers."""
 
     returns: str
     extends: str
@@ -52,14 +52,14 @@ class Declaration:
     enumerators: tuple[tuple[str, int], ...]
 
     def names(self) -> Iterator[str]:
-        """Every name that is declared inside."""
+        """Every name that the declaration declares."""
         yield from (name for name, _ in self.enumerators)
         for section in self.sections:
             yield from (v.name for v in section.variables)
 
 
 def declaration_of(text: str) -> Declaration:
-    """Read a declaration as this project writes it; raises `ValueError` for a line of a section it cannot read."""
+    """Read a declaration in the form that the compiler writes; raises `ValueError` for a line that it cannot read."""
     lines = _without_comments(text)
     head = next((at for at, line in enumerate(lines) if _HEAD.match(line)), None)
     found = _HEAD.fullmatch(lines[head]) if head is not None else None
@@ -77,9 +77,9 @@ def declaration_of(text: str) -> Declaration:
 
 
 def _without_comments(text: str) -> list[str]:
-    """The lines without those that are comments; a bracketed comment has lines of its own.
+    """The lines that are no comments. A bracketed comment stands on separate lines.
 
-    A comment that is further in than a declaration goes on with the one beside it.
+    A comment with a deeper indent than a declaration continues the comment beside that declaration.
     """
     joined = re.sub(r"// [^\n]*(?:\n {4,}// [^\n]*)+", lambda found: re.sub(r"\n {4,}// ", " ", found[0]), text)
     bare = re.sub(r"^\(\*.*?\*\)$", "", joined, flags=re.DOTALL | re.MULTILINE)

@@ -1,7 +1,7 @@
-"""PLCopenXML as CODESYS V3.5 reads it: objects with their text, a typed copy of what they declare, and folders.
+"""PLCopenXML as CODESYS V3.5 reads it: objects with their text, a typed copy of their declarations, and folders.
 
-CODESYS takes the plain text of a declaration, which keeps comments and pragmas; the typed copy is what other tools
-read. Everything that the standard has no element for stands in `addData`, in the elements CODESYS itself writes.
+CODESYS takes the plain text of a declaration, which keeps comments and pragmas; other tools read the typed copy. Data
+for which the standard has no element stands in `addData`, in the elements that CODESYS itself writes.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from derive.emit.plcopen.interface import add_attributes, add_base_type, add_dat
 from derive.emit.plcopen.objects import Object
 
 Folders = Mapping[str, Sequence[Object]]
-"""The objects by the folder they stand in."""
+"""The objects by the folder that holds them."""
 
 _NAMESPACE = "http://www.plcopen.org/xml/tc6_0200"
 _IDENTIFIERS = uuid.uuid5(uuid.NAMESPACE_DNS, "softkin")
 _DATE = "2000-01-01T00:00:00"
-"""The schema wants a date. It is always the same one, so that the same objects give the same file."""
+"""The schema requires a date. It is constant, so that the same objects give the same file."""
 _GETTER = "VAR\nEND_VAR"
-"""The declaration of a getter, as CODESYS itself makes it."""
+"""The declaration of a getter, as CODESYS itself writes it."""
 _POU_TYPES = {"FUNCTION": "function", "FUNCTION_BLOCK": "functionBlock", "PROGRAM": "program"}
 
 
 def document(title: str, remark: str, folders: Folders) -> str:
-    """A file with these objects, in folders below one that bears the title."""
+    """A file with these objects, in folders below a folder with the title."""
     root = ET.Element("project", xmlns=_NAMESPACE)
     _headers(root, title, remark)
     objects = [one for inside in folders.values() for one in inside]
@@ -46,7 +46,7 @@ def document(title: str, remark: str, folders: Folders) -> str:
 
 
 def _indent(root: ET.Element) -> None:
-    """Lay out the file: an element a line, but a variable on one."""
+    """Indent the file: one element on each line, but a variable with all its elements on one line."""
     ET.indent(root)
     for variable in root.iter("variable"):
         for element in variable.iter():
@@ -123,9 +123,7 @@ def _structure(root: ET.Element, folders: Folders) -> None:
         folder = ET.SubElement(root, "Folder", Name=name)
         for one in objects:
             entry = ET.SubElement(folder, "Object", Name=one.name, ObjectId=_identifier(one.name))
-            for (
-                member
-            ) in one.members:  # a tool of another vendor imports the members that are listed here, and no other
+            for member in one.members:  # other tools import the members that are listed here, and no others
                 ET.SubElement(entry, "Object", Name=member.name, ObjectId=_identifier(one.name, member.name))
 
 

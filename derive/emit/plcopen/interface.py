@@ -1,4 +1,4 @@
-"""The elements of PLCopenXML that say what an object declares: sections, variables, types, pragmas."""
+"""The elements of PLCopenXML that hold the declaration of an object: sections, variables, types, pragmas."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ _STRING = re.compile(r"STRING\((\d+)\)")
 
 
 def add_data(parent: ET.Element, name: str, unknown: str = "implementation") -> ET.Element:
-    """A new entry in the `addData` of an element, which is made where there is none; what holds its content."""
+    """Add an entry to the `addData` of an element, which is created if it is missing.
+
+    Returns the element for the content of the entry.
+    """
     extensions = parent.find("addData")
     if extensions is None:
         extensions = ET.SubElement(parent, "addData")
@@ -24,12 +27,12 @@ def add_data(parent: ET.Element, name: str, unknown: str = "implementation") -> 
 
 
 def add_text(parent: ET.Element, text: str) -> None:
-    """Plain text, as it is written."""
+    """Add plain text as it is."""
     ET.SubElement(parent, "xhtml", xmlns=_XHTML).text = text
 
 
 def add_attributes(parent: ET.Element, attributes: Attributes) -> None:
-    """The pragmas of a declaration, if it has any."""
+    """Add the pragmas of a declaration, if it has any."""
     if attributes:
         holder = ET.SubElement(add_data(parent, "attributes"), "Attributes")
         for name, value in attributes:
@@ -37,7 +40,7 @@ def add_attributes(parent: ET.Element, attributes: Attributes) -> None:
 
 
 def add_base_type(parent: ET.Element, declared: Declaration) -> None:
-    """What a data type is: a structure or an enumeration."""
+    """Add the structure or the enumeration that a data type is."""
     if declared.sections:
         structure = ET.SubElement(parent, "struct")
         for variable in declared.sections[0].variables:
@@ -49,7 +52,7 @@ def add_base_type(parent: ET.Element, declared: Declaration) -> None:
 
 
 def add_interface(parent: ET.Element, declared: Declaration) -> ET.Element:
-    """The typed copy of a declaration."""
+    """Add the typed copy of a declaration."""
     interface = ET.SubElement(parent, "interface")
     if declared.returns:
         _add_type(ET.SubElement(interface, "returnType"), declared.returns)
@@ -80,7 +83,7 @@ def _add_variable(parent: ET.Element, variable: Variable) -> None:
 
 
 def _add_value(parent: ET.Element, value: str) -> None:
-    """An initial value; that of an array is a list in square brackets, without a list inside."""
+    """Add an initial value. The value of an array is a list in square brackets, which holds no further list."""
     if not value.startswith("["):
         ET.SubElement(parent, "simpleValue", value=value)
         return

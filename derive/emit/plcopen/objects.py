@@ -1,7 +1,7 @@
-"""The objects of a text as CODESYS holds them: a declaration and an implementation each, members below a block.
+"""The objects of a text as CODESYS holds them: each has a declaration and an implementation, and a block has members.
 
-One text is the source of all: the `.st` files show these objects with a ruler above every part, PLCopenXML and the
-import script carry the same parts.
+All output forms are made of one text: the `.st` files show these objects with a ruler above every part; PLCopenXML and
+the import script hold the same parts.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _RULER_WIDTH = 110
 
 @dataclass(frozen=True)
 class Object:
-    """An object, or a member of one: a method, a property, the getter of a property (named Get)."""
+    """An object or a member of an object: a method, a property, or the getter of a property (named Get)."""
 
     kind: str
     name: str
@@ -26,21 +26,22 @@ class Object:
     members: tuple[Object, ...] = ()
 
     def parts(self) -> Iterator[Object]:
-        """The object, then its members, each before its own."""
+        """The object and its members, each followed by its own members."""
         yield self
         for member in self.members:
             yield from member.parts()
 
 
 def objects_of(text: str) -> tuple[Object, ...]:
-    """The objects of a text in their order; raises `ValueError` for one without an end, and for
-    text that is in none.
+    """The objects of a text in their order.
+
+    Raises `ValueError` for an object without an end, and for text outside of all objects.
     """
     return tuple(_Reader(text).objects())
 
 
 def ruled(objects: Sequence[Object]) -> str:
-    """The objects as text, with a ruler above every part that an editor of CODESYS holds."""
+    """The objects as text, with a ruler above every part that has its own editor in CODESYS."""
     return "\n\n".join("\n".join(_lines(one, one.name)) for one in objects) + "\n"
 
 
@@ -61,7 +62,7 @@ class _Reader:
             is_comment = "*)" not in line and (is_comment or line.startswith("(*"))
 
     def _object(self, own: list[str]) -> Object:
-        """The object that the last of these lines opens; those above it are its comment and its pragmas."""
+        """The object that the last of these lines opens; the lines above it are its comment and its pragmas."""
         opening = own[-1]
         kind, name = _opened(opening)
         members: list[Object] = []
@@ -83,7 +84,7 @@ def _opened(line: str) -> tuple[str, str]:
 
 
 def _lead(lines: Sequence[str]) -> list[str]:
-    """The last line, which opens a member, with the comments and pragmas right above it."""
+    """The last line, which opens a member, with the comments and pragmas directly above it."""
     start = len(lines) - 1
     while start > 0 and lines[start - 1].startswith(("//", "{")):
         start -= 1
@@ -91,7 +92,7 @@ def _lead(lines: Sequence[str]) -> list[str]:
 
 
 def _made(kind: str, name: str, lines: Sequence[str], members: Sequence[Object]) -> Object:
-    """The object of these lines: the declaration ends with its last section of variables, or with its head."""
+    """The object of these lines. Its declaration ends with the last section of variables, or with its head."""
     last = max(at for at, line in enumerate(lines) if line in ("END_VAR", "END_TYPE") or _OPENING.match(line))
     start = 1 if kind == "GET" else 0
     declaration = "\n".join(lines[start : last + 1]).strip("\n")
@@ -99,7 +100,7 @@ def _made(kind: str, name: str, lines: Sequence[str], members: Sequence[Object])
 
 
 def _lines(one: Object, path: str) -> Iterator[str]:
-    """Rulers and parts. What is not pasted, GET and the closing lines, stands behind a ruler that names nothing."""
+    """Rulers and parts. A ruler without a name precedes what one does not paste: GET and the closing lines."""
     if one.kind == "GET":
         yield "GET"
     if one.declaration:
@@ -108,7 +109,7 @@ def _lines(one: Object, path: str) -> Iterator[str]:
     if one.kind == "PROPERTY":
         yield _ruler()
     for member in one.members:
-        # The getter of a property goes by the name of the property
+        # The ruler of a getter has the name of the property.
         yield from _lines(member, path) if member.kind == "GET" else ("", *_lines(member, f"{path}.{member.name}"))
     if one.implementation:
         yield from () if one.kind == "GET" else ("",)

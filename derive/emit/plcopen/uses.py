@@ -1,4 +1,4 @@
-"""Which files a file needs: those that hold what its code names, and what those need in turn."""
+"""The files that a file needs: those with the objects that its code names, and the files that those need."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*")
 
 
 def needed(path: str, files: Mapping[str, Sequence[Object]]) -> tuple[str, ...]:
-    """The paths of a file and of all that it uses, directly or not, in the order of the paths."""
+    """The paths of a file and of all files that it uses, directly or indirectly, sorted."""
     homes = {one.name: home for home, objects in files.items() for one in objects}
     found: set[str] = set()
     open_paths = [path]
@@ -25,6 +25,6 @@ def needed(path: str, files: Mapping[str, Sequence[Object]]) -> tuple[str, ...]:
 
 
 def _words(objects: Sequence[Object]) -> set[str]:
-    """The words of the code: those of comments and strings name nothing."""
+    """The words of the code, except those in comments and strings."""
     texts = [text for one in objects for part in one.parts() for text in (part.declaration, part.implementation)]
     return {word for text in texts for word in _WORD.findall(_SILENT.sub("", text))}

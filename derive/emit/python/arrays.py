@@ -1,4 +1,4 @@
-"""A program as the body of a Python method on arrays: every statement for all rows at once, refusals as masks."""
+"""A program as the body of a Python method on arrays: a statement computes all rows at once, a refusal is a mask."""
 
 from __future__ import annotations
 
@@ -40,18 +40,18 @@ CALLED = frozenset((
     "nearest_period", "opposite", "passed", "reasonable", "require", "root", "select", "settled", "sin", "solve",
     "sqrt",
 ))  # fmt: skip
-"""What programs on arrays call."""
+"""The functions that programs on arrays call."""
 TYPES = frozenset(("Codes", "Real", "Reals", "Rotation", "Signs", "Truth", "Turns", "Values", "Vector", "Whole"))
-"""The types that they name."""
+"""The types that programs on arrays name."""
 
 
 def named_in(lines: Iterable[str], names: Collection[str]) -> set[str]:
-    """Those of some names that stand in statements."""
+    """Those of the names that occur in the statements."""
     return words(lines) & set(names)
 
 
 def array_body(method: Method) -> list[str]:
-    """The body on arrays: every statement for all rows, a row's status is its first condition that does not hold."""
+    """The body on arrays. The status of a row is that of its first condition that does not hold."""
     constants = constants_of(method)
     lines = _statements(method, constants)
     values = values_of(method, ArrayPrinter(constants))
@@ -93,10 +93,10 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
 
 
 def _refused_late(body: Iterable[Statement]) -> list[Statement]:
-    """The statements, conditions behind values: all rows are computed anyhow, and a choice gathers what stands
-    together.
+    """The statements with the conditions moved behind the values.
 
-    The first check the inputs, and stay. What iterates, searches or is shared asks which rows are refused before it.
+    All rows are computed in any case, and values that stand together can share a choice. The first conditions check the
+    inputs and stay in front. No condition moves across an iteration, a search or a call: these skip refused rows.
     """
     found: list[Statement] = []
     waiting: list[Statement] = []

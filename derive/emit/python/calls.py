@@ -1,5 +1,5 @@
-"""Calls of programs that several programs share: values go in and come out as one tuple, in the order of the
-program."""
+"""Calls of programs that several programs share: the arguments and the results are one tuple each, in the order of
+the program."""
 
 from __future__ import annotations
 
@@ -16,34 +16,33 @@ from derive.ir.symbols import (
 )
 
 GIVEN, FOUND = "given", "found"
-"""The argument of a shared program, and what it answered: its values or, on plain numbers, the status of its
-refusal."""
+"""The argument of a shared program, and its result: its values or, on plain numbers, the status of its refusal."""
 
 
 def scalar_lines(call: Call, printer: ScalarPrinter, refused: str = f"return {FOUND}") -> list[str]:
-    """Call, hand a refusal on, and take the values apart."""
+    """The lines that call the program, pass on its refusal, and unpack its values."""
     head = [f"{FOUND} = self._{call.program.name}({_values(call, printer)})"]
     return [*_note(call), *head, f"if isinstance({FOUND}, Status):", f"    {refused}", *_taken(call, FOUND)]
 
 
 def array_lines(call: Call, printer: ScalarPrinter) -> list[str]:
-    """The same on arrays: the shared program writes the statuses of its refusals."""
+    """The lines that call the program on arrays, where it writes the statuses of its refusals itself."""
     head = [f"{FOUND} = self.{call.program.name}({_values(call, printer)}, status)"]
     return [*_note(call), *head, *_taken(call, FOUND)]
 
 
 def scalar_search(search: FindRoot, printer: ScalarPrinter) -> list[str]:
-    """The root of a trial on plain numbers."""
+    """The lines that find the root of a trial on plain numbers."""
     return _found(search, _looked_for(search, "nearest_root", ("self._", ""), printer))
 
 
 def array_search(search: FindRoot, printer: ScalarPrinter) -> list[str]:
-    """The same on arrays, for the rows that nothing has refused."""
+    """The lines that find the root of a trial on arrays, for the rows that are not refused."""
     return _found(search, _looked_for(search, "nearest_root", ("self.", "status, "), printer))
 
 
 def every_root(search: FindRoot, printer: ScalarPrinter) -> list[str]:
-    """All roots of a trial on plain numbers."""
+    """The lines that find all roots of a trial on plain numbers."""
     return [f"return {_looked_for(search, 'every_root', ('self._', ''), printer)}"]
 
 
@@ -61,7 +60,7 @@ def _looked_for(search: FindRoot, function: str, spelling: tuple[str, str], prin
 
 
 def _given(name: sp.Symbol, printer: ScalarPrinter) -> str:
-    """A value, or the name of a part of the place, which the search puts in."""
+    """An argument of a trial: a value, or the name of a coordinate that the search sets."""
     return f'"{name.name}"' if name in PLACE else printer.name(name)
 
 
@@ -72,7 +71,7 @@ def _values(call: Call, printer: ScalarPrinter) -> str:
 
 
 def _taken(call: Call, source: str) -> list[str]:
-    """The values that are read, by their names; every other one is `_`."""
+    """The lines that unpack a result: the values that are read get their names, every other one is `_`."""
     targets = [spelled(o.name) if o.name in {name.name for name in call.names} else "_" for o in call.program.outputs]
     last = max((k for k, target in enumerate(targets) if target != "_"), default=-1)
     if last < 0:

@@ -1,4 +1,4 @@
-"""What a generated class says about itself: its axes, parameters and configuration bytes, as constructor calls."""
+"""What a generated class states about itself: its axes, parameters and configuration bytes, as constructor calls."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _USUAL: dict[Role, tuple[float, float, float | None]] = {
     Role.FLAG: (0.0, 1.0, 0.0),
     Role.SIGN: (-1.0, 1.0, 1.0),
 }
-"""Range and default by kind, where it is not any number with the default 0."""
+"""The range and the default of a parameter by its kind, where they are not "any number" and 0."""
 
 
 def class_name(name: str, better: str | None) -> str:
@@ -34,7 +34,7 @@ def module_name(name: str) -> str:
 
 
 def role(mechanism: Mechanism) -> str:
-    """What a mechanism is in a coupling."""
+    """The role of a mechanism in a coupling: "position", "orientation" or "complete"."""
     return "position" if mechanism.is_position else "orientation" if mechanism.is_orientation else "complete"
 
 
@@ -50,13 +50,13 @@ def axes(kin: Kinematics) -> list[str]:
 
 
 def usual(role: Role) -> dict[str, object]:
-    """What a parameter of a kind is, unless its own entry says otherwise: unit, range and default."""
+    """The unit, the range and the default that a parameter of a kind has unless its own entry states another."""
     low, high, default = _USUAL.get(role, (-float(LARGEST), float(LARGEST), 0.0))
     return {"unit": _UNITS[role], "low": low, "high": high, "low_is_open": role is Role.LENGTH, "default": default}
 
 
 def parameters(kin: Kinematics) -> list[str]:
-    """The keywords of the class: kind, name and meaning, then what is unusual of its kind."""
+    """The parameters of the class: kind, name and meaning, then what differs from the usual of its kind."""
     return _tuple(_parameter(p) for p in kin.parameters)
 
 
@@ -67,7 +67,7 @@ def _parameter(p: Parameter) -> str:
 
 
 def configuration(kin: Kinematics) -> list[str]:
-    """The bytes: branches first, then periods."""
+    """The bytes of the configuration: branches first, then periods."""
     branches = [
         _call("ConfigurationByte", name=b.name, kind="branch", branches=b.names, default=1) for b in kin.branches
     ]
@@ -78,7 +78,7 @@ def configuration(kin: Kinematics) -> list[str]:
 
 
 def costs(kin: Kinematics) -> list[str]:
-    """What forward and inverse kinematics cost, a line each, and the bounds of iterations."""
+    """The operations of forward and inverse kinematics, one line each, and the most passes of iterations."""
     found = costs_of(kin)
     rows = [f"forward: {_operations(found.forward)}", f"inverse: {_operations(found.inverse)}"]
     if kin.branches:
@@ -96,12 +96,12 @@ def _operations(cost: Cost) -> str:
 
 
 def default_configuration(kin: Kinematics) -> str:
-    """Branch 1 everywhere, every period open."""
+    """The default configuration: branch 1 everywhere, and no period is commanded."""
     return literal((1,) * len(kin.branches) + (0,) * len(kin.period_joints))
 
 
 def indices(kin: Kinematics, names: Sequence[str]) -> str:
-    """Which axes are meant, by index."""
+    """The indices of the axes with these names."""
     order = [j.name for j in kin.mechanism.joints]
     return literal(tuple(order.index(name) for name in names))
 
@@ -117,7 +117,7 @@ def literal(value: object) -> str:
 
 
 def _short(name: str) -> str:
-    """Without the prefix, unless what is left is no name: `Kin_5Axes`."""
+    """The name without its prefix, unless the rest is no identifier: `Kin_5Axes`."""
     short = name.removeprefix("Kin_").removeprefix("Softkin_")
     return short if short.isidentifier() else name
 

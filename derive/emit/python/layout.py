@@ -1,4 +1,4 @@
-"""How Python lies on the page: `ruff format`, once over all files; a statement comes here as one line, however long."""
+"""The layout of Python: `ruff format` runs once over all files. A statement arrives here as one line of any length."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 from textwrap import wrap
 
 WIDTH = 120
-"""No line is longer, if it can be broken at all."""
+"""The most columns of a line that can be broken."""
 _INDENT = 8
 """Columns in front of the body of a method."""
 _FORMAT = (
@@ -24,7 +24,7 @@ class UnformattedError(ValueError):
 
 
 def formatted(files: Mapping[str, str]) -> dict[str, str]:
-    """The same files, path → text, with every Python file laid out.
+    """The files, path → text, with every Python file formatted.
 
     Raises `UnformattedError` where one of them is no Python.
     """
@@ -56,7 +56,7 @@ def taken_apart(targets: Sequence[str], source: str) -> list[str]:
 
 
 def assigned(values: Mapping[str, str]) -> list[str]:
-    """`a, b = k.a, k.b`: values by the names that get them, as many in a statement as a line of a method holds."""
+    """Statements `a, b = k.a, k.b`, each with as many values as fit in a line of a method. values: name → value."""
     lines: list[str] = []
     together: dict[str, str] = {}
     for name, value in values.items():
@@ -72,13 +72,11 @@ def _assignment(values: Mapping[str, str]) -> str:
 
 
 def fits(line: str, comment: str) -> bool:
-    """Whether a comment can stand behind a statement in a method, one choice deep: the layout puts spaces around
-    operators.
-    """
+    """Whether a comment fits behind a statement inside one `if` of a method, with spaces around operators."""
     spaced = len(line) + 2 * (line.count("*") + line.count("/"))
     return _INDENT + 4 + spaced + len(f"  # {comment}") <= WIDTH
 
 
 def note_lines(note: str) -> list[str]:
-    """What the reader is told, as a comment that leaves room for an indent; nothing where that is nothing."""
+    """A note as lines of comment that leave room for an indent; no line for an empty note."""
     return wrap(note, WIDTH - 20, initial_indent="# ", subsequent_indent="# ")

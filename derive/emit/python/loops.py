@@ -1,5 +1,5 @@
-"""Systems of linear equations and iterations as Python: the same text on plain numbers and on arrays, but for the
-end."""
+"""Systems of linear equations and iterations in Python. The text is the same on plain numbers and on arrays, except for
+the end of an iteration."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def solve_lines(system: Solve, printer: ScalarPrinter) -> list[str]:
 
 
 def scalar_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
-    """The start, and the beginning of the loop."""
+    """The lines that set the start, and open the loop."""
     return _head(loop, ", ".join(_values(loop, loop.start, printer)))
 
 
 def array_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
-    """The same; the start may be one for all rows."""
+    """The lines that set the start, which may be one for all rows, and open the loop."""
     return _head(loop, f"initial({', '.join(_values(loop, loop.start, printer))})")
 
 
@@ -36,7 +36,7 @@ def _head(loop: Iterate, start: str) -> list[str]:
 
 
 def scalar_end(loop: Iterate, done: str, refusal: str, printer: ScalarPrinter) -> list[str]:
-    """Leave the loop, or go on; a loop that was never left refuses."""
+    """The lines that leave the loop, or prepare the next pass; a loop that is never left refuses."""
     return [
         *_indented([f"if {done}:", "    break"]),
         *_indented(_assignments(loop, printer)),
@@ -46,7 +46,7 @@ def scalar_end(loop: Iterate, done: str, refusal: str, printer: ScalarPrinter) -
 
 
 def array_end(loop: Iterate, printer: ScalarPrinter) -> list[str]:
-    """Leave the loop when every row is done; the rows that are done keep their state while the others go on."""
+    """The lines that leave the loop when every row is done; rows that are done keep their state while others go on."""
     state = ", ".join(_names(loop.state))
     following = [f"{value}," for value in _values(loop, loop.following, printer)]
     return [
@@ -64,7 +64,7 @@ def _assignments(loop: Iterate, printer: ScalarPrinter) -> list[str]:
 
 
 def _values(loop: Iterate, values: Sequence[sp.Basic], printer: ScalarPrinter) -> list[str]:
-    """What the state becomes."""
+    """The new values of the state."""
     return [printer.value(name, value) for name, value in zip(loop.state, values, strict=True)]
 
 

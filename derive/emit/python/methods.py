@@ -1,4 +1,4 @@
-"""Which programs become which methods: the arguments they unpack and the shape of what they return."""
+"""Which program becomes which method: the arguments that it unpacks, and the shape of its result."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def methods(kin: Kinematics) -> list[Method]:
     """The methods of the generated class that are programs, in the order of their use."""
     axes = _axes(kin)
     axis_values = axes.shape
-    measures = _measures(kin)
+    branch_margins = _branch_margins(kin)
     rows = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i, _ in enumerate(kin.rows, 1))
     margins = tuple(m.name for m in kin.margins)
     found = [
@@ -40,7 +40,7 @@ def methods(kin: Kinematics) -> list[Method]:
         text = "The twist of the frame by rows, per radian."
         entries = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i in range(1, 7))
         found.append(Method("twist", text, kin.twist, (axes,), "Matrix", entries))
-    found += [*_compatible(kin), *carried(kin), *_total_image(kin)]
+    found += [*_compatible(kin), *end_point_shift(kin), *_total_image(kin)]
     if kin.projection is not None and kin.chooses_twist:
         text = "The nearest rotation that the flange can have."
         found.append(Method("projection", text, kin.projection, (ROTATION_ARGUMENT,), "Rotation", ROTATION))
@@ -53,12 +53,12 @@ def methods(kin: Kinematics) -> list[Method]:
         )
     if kin.offset_configuration is not None:
         text = "The signed margin of every branch for a point off the flange."
-        found.append(Method("offset_measures", text, kin.offset_configuration, (axes, offset), "Reals", measures))
+        found.append(Method("offset_margins", text, kin.offset_configuration, (axes, offset), "Reals", branch_margins))
     return found
 
 
 def shared(kin: Kinematics) -> list[Method]:
-    """The programs that others call: arguments and results are tuples of their names."""
+    """The methods of the programs that others call: argument and result are one tuple each."""
     constants = {o.name for o in kin.setup.outputs}
     found: list[Method] = []
     for program in kin.shared:
@@ -69,17 +69,17 @@ def shared(kin: Kinematics) -> list[Method]:
 
 
 def every_root(kin: Kinematics) -> list[Method]:
-    """What it takes to find all roots of a search: what it is given, and axes of the joints that it finds."""
+    """The methods around a search for all roots: the arguments of the search, and the axes of the joints it finds."""
     if kin.search_given is None or kin.from_joints is None:
         return []
     pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
     joints = Argument("joints", "Reals", tuple(j.symbol.name for j in kin.mechanism.joints))
     given = tuple(o.name for o in kin.search_given.outputs)
     return [
-        Method("search_given", "What the search is given.", kin.search_given, (*pose, *_choice(kin)), "Values", given),
+        Method("search_given", "Arguments of the search.", kin.search_given, (*pose, *_choice(kin)), "Values", given),
         Method(
             "from_joints",
-            "The axes of joints.",
+            "The axis values of joint values.",
             kin.from_joints,
             (joints, *_choice(kin)[1:]),
             "Reals",
@@ -90,13 +90,13 @@ def every_root(kin: Kinematics) -> list[Method]:
 
 def forward(kin: Kinematics) -> Method:
     """Forward kinematics."""
-    result = (POSITION, ROTATION, _measures(kin))
+    result = (POSITION, ROTATION, _branch_margins(kin))
     text = "Position, rotation and the signed margin of every branch."
     return Method("forward", text, kin.forward, (_axes(kin),), "Pose", result)
 
 
 def forwards(kin: Kinematics) -> list[Method]:
-    """Forward kinematics, and from a given start where it iterates."""
+    """Forward kinematics and, where it iterates, forward kinematics from a given start."""
     if kin.forward_from is None:
         return [forward(kin)]
     start = (
@@ -105,41 +105,42 @@ def forwards(kin: Kinematics) -> list[Method]:
             "start_rotation", "Rotation", tuple(tuple(f"start_r{row}{column}" for column in "123") for row in "123")
         ),
     )
-    text = "The same, found from a given start."
-    result = (POSITION, ROTATION, _measures(kin))
+    text = "Position, rotation and the signed margin of every branch, found from a given start."
+    result = (POSITION, ROTATION, _branch_margins(kin))
     return [forward(kin), Method("forward_from", text, kin.forward_from, (_axes(kin), *start), "Pose", result)]
 
 
 def branch(kin: Kinematics) -> Method:
     """Inverse kinematics on one branch."""
     pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
-    text = "The axes of one branch, periods included, limits not."
+    text = "The axes of one branch, on their turns; limits are not tested."
     return Method("branch", text, kin.branch, (*pose, *_choice(kin)), "Reals", _axes(kin).shape, is_explained=True)
 
 
-def carried(kin: Kinematics) -> list[Method]:
-    """Where the end point of an orientation kinematics is, on a flange that turns."""
-    if kin.carried is None:
+def end_point_shift(kin: Kinematics) -> list[Method]:
+    """The vector to the end point of an orientation kinematics, on a flange that turns."""
+    if kin.end_point_shift is None:
         return []
-    text = "From a flange that turns to the end point."
-    return [Method("carried", text, kin.carried, (ROTATION_ARGUMENT, *_AXES), "Vector", POSITION)]
+    text = "The vector from a flange that turns to the end point."
+    return [Method("end_point_shift", text, kin.end_point_shift, (ROTATION_ARGUMENT, *_AXES), "Vector", POSITION)]
 
 
 def _compatible(kin: Kinematics) -> list[Method]:
     if kin.compatible is None:
         return []
-    return [Method("compatible", "Whether a flange that turns can carry this.", kin.compatible, _AXES[:1], "", ())]
+    text = "Whether a flange that turns can carry this mechanism."
+    return [Method("compatible", text, kin.compatible, _AXES[:1], "", ())]
 
 
 def _total_image(kin: Kinematics) -> list[Method]:
     if kin.total_image is None:
         return []
-    text = "The orientations on a flange, and how far the two axes are apart."
+    text = "The orientations of the tool on a flange, and the sine of the angle between the two axes."
     return [Method("total_image", text, kin.total_image, (ROTATION_ARGUMENT, *_AXES), "TotalImage", (*IMAGE, "apart"))]
 
 
 def limits(kin: Kinematics) -> Method:
-    """The test of the limits."""
+    """The test of all limits."""
     return Method("limits", "The test of the limits.", kin.limits, (_axes(kin),), "", (), is_explained=True)
 
 
@@ -147,7 +148,7 @@ def _axes(kin: Kinematics) -> Argument:
     return Argument("axes", "Reals", tuple(j.axis.name for j in kin.mechanism.joints))
 
 
-def _measures(kin: Kinematics) -> tuple[Shape, ...]:
+def _branch_margins(kin: Kinematics) -> tuple[Shape, ...]:
     return tuple(f"branch_{b.name}" for b in kin.branches)
 
 

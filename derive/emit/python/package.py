@@ -1,4 +1,4 @@
-"""Python: the package `softkin`, its runtime and one module a mechanism."""
+"""Python: the package `softkin`, which has a runtime and one module for each mechanism."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
 from derive.emit.python.calls import every_root
 from derive.emit.python.finish import Function
 from derive.emit.python.layout import formatted
-from derive.emit.python.methods import branch, carried, forwards, limits, methods, shared
+from derive.emit.python.methods import branch, end_point_shift, forwards, limits, methods, shared
 from derive.emit.python.printer import ScalarPrinter, literal, primitives_in
 from derive.emit.python.program import Method, constants_of, has_search, scalar_body, unpacked
 from derive.emit.python.refusal import explained
@@ -92,19 +92,19 @@ _FIXED = (
     "softkin/_vectors.py",
     "softkin/py.typed",
 )
-"""Files that are the same whatever the mechanisms are."""
+"""The files that do not depend on the mechanisms."""
 _INDEXED = ("README.md", "softkin/__init__.py")
-"""Files that list the mechanisms."""
+"""The files that list the mechanisms."""
 _EXPORTS = (
     "Axis", "ConfigurationByte", "Coupled", "Diagnosis", "Frame", "KinematicsError", "Mechanism", "OrientationImage",
     "Parameter", "Singularity", "Solution", "Status", "catalogue",
 )  # fmt: skip
 _MADE = ("Axis", "ConfigurationByte", "Diagnosis", "Parameter", "Status")
-"""The types of which a module makes values; it names all others in annotations alone."""
+"""The types of which a module creates values; it names all other types in annotations alone."""
 _TEXT = 110
-"""Columns of a docstring."""
+"""The most columns of a line of a docstring."""
 _CHUNK = 8192
-"""Rows of a batch at a time: 64 KiB an array."""
+"""The rows of a batch that are computed together: an array then has 64 KiB."""
 _MEANINGS = {
     Status.OK: "no error",
     Status.NOT_INITIALIZED: "a parameter is not allowed",
@@ -116,7 +116,7 @@ _MEANINGS = {
 
 
 def part(kinematics: Kinematics) -> Part:
-    """The files of one mechanism, and its entry in the lists."""
+    """The files of one mechanism, and its entries in the lists."""
     return {"index": _index(kinematics), "files": _mechanism(_templates(), kinematics)}
 
 
@@ -170,12 +170,12 @@ def _templates() -> Environment:
 
 
 def _literal(value: float | tuple[float, ...]) -> str:
-    """A constant of the search."""
+    """The literal of a constant of the search."""
     return f"({', '.join(map(literal, value))})" if isinstance(value, tuple) else literal(value)
 
 
 def _after_docstring(source: str) -> str:
-    """A module without its docstring and its first import, as a part of the package."""
+    """The text of a module of the compiler without docstring and first import, as a part of the package."""
     text = source.split("from __future__ import annotations", 1)[1].strip()
     return text.replace("from derive.ir.cells", "from softkin._cells").replace("import TypeVar", "import Any, TypeVar")
 
@@ -194,7 +194,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     """The class of a mechanism, and its programs on arrays."""
     names = _index(kin)
     scalar = methods(kin)
-    arrays = [_untold(m) for m in (*shared(kin), *forwards(kin), branch(kin), limits(kin), *carried(kin))]
+    arrays = [_untold(m) for m in (*shared(kin), *forwards(kin), branch(kin), limits(kin), *end_point_shift(kin))]
     array_programs = _array_programs(kin)
     reasons = explained(reasons_of(kin))
     bodies = [scalar_body(m, reasons) if m.is_explained else scalar_body(_untold(m)) for m in scalar]
@@ -255,14 +255,14 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
 
 
 def _constants_read(kin: Kinematics, programs: Iterable[Method], lean: Unrolled | Function | None) -> set[str]:
-    """The constants that a program reads, or the text around the programs."""
+    """The constants that a program or the text around the programs reads."""
     found = {name for method in programs for name in constants_of(method)} | set(lean.constants if lean else ())
     found |= {TIE_OF_LENGTHS.name} if chooses_by_lengths(kin.mechanism) else set()
     return found | ({"searched"} if kin.mechanism.search is not None else set())
 
 
 def _every_root(found: Sequence[Method]) -> list[str]:
-    """The body of the method that finds all roots of a search; empty where there is none."""
+    """The body of the method that finds all roots of a search; empty for a mechanism without a search."""
     for method in (m for m in found if has_search(m.program)):
         (search,) = method.program.body
         assert isinstance(search, FindRoot)
@@ -271,14 +271,14 @@ def _every_root(found: Sequence[Method]) -> list[str]:
 
 
 def _array_programs(kin: Kinematics) -> str:
-    """What the programs on arrays are, by what they offer."""
+    """The base class of the programs on arrays, by the calls that the mechanism offers."""
     if kin.mechanism.is_orientation:
         return "OrientationPrograms"
     return "Programs" if kin.forward_from is None else "StartedPrograms"
 
 
 def _bases(kin: Kinematics) -> dict[str, str]:
-    """The base classes by the module they are in: what the mechanism offers beyond the calls that all have."""
+    """The modules and names of the base classes: they hold the calls that only some mechanisms offer."""
     found = {"_offset": "OffsetKinematics"} if kin.offset_branch is not None else {}
     found |= {"_orientation": "OrientationKinematics"} if kin.mechanism.is_orientation else {}
     found |= {"_search": "SearchedInverse"} if kin.mechanism.search is not None else {}
@@ -296,7 +296,7 @@ def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
 
 
 def _untold(method: Method) -> Method:
-    """The method, telling a status alone."""
+    """The method in the form that refuses with a status alone, without a reason."""
     return replace(method, program=untold(method.program))
 
 
@@ -318,11 +318,11 @@ def _array_head(method: Method) -> str:
 
 
 def _sorted(found: set[str]) -> list[str]:
-    """Constants, then classes, then functions."""
+    """The names in alphabetical order: constants, then classes, then functions."""
     return sorted(found, key=lambda n: (not n.isupper(), n[0].islower(), n))
 
 
 def _paragraph(text: str, indent: int = 0) -> str:
-    """A text in lines of the usual width."""
+    """A text broken into the lines of a docstring, each with an indent."""
     space = " " * indent
     return "\n".join(wrap(text, _TEXT, initial_indent=space, subsequent_indent=space))

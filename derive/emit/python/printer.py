@@ -1,4 +1,4 @@
-"""Expressions as Python: once on plain numbers, once on arrays. The two differ in choice and logic only."""
+"""Expressions in Python, on plain numbers and on arrays. The two differ in choices and in logic only."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "no_offsets", "opposite", "holds",
     "reasonable",
 }  # fmt: skip
-"""Names that a generated method uses for itself."""
+"""Names that a generated method needs for its own variables."""
 _ARRAY_NAMES = {"abs": "absolute"}
-"""Primitives that are called something else on arrays."""
+"""Primitives with another name on arrays."""
 
 
 def spelled(name: str) -> str:
-    """The spelling of a name: its own, unless Python or the method around it uses that."""
+    """The spelling of a name: unchanged, unless Python or the generated method uses that name already."""
     return f"{name}_" if iskeyword(name) or name in TAKEN else name
 
 
@@ -53,19 +53,19 @@ def primitives_in(lines: Iterable[str]) -> list[str]:
 
 
 def words(lines: Iterable[str]) -> set[str]:
-    """The words of statements, without texts and comments."""
+    """The words of statements, except those in strings and comments."""
     return {
         word for line in lines for word in re.findall(r"[A-Za-z_]\w*", re.sub(r'"[^"]*"', "", line).partition("#")[0])
     }
 
 
 def is_sum_of_squares(value: sp.Expr) -> bool:
-    """Whether a value is no negative number, not even a negative zero."""
+    """Whether a value cannot be negative, and not even a negative zero."""
     return value.is_Add and all(term.is_Pow and term.exp == 2 for term in value.args)
 
 
 def _numbers_checked(node: sp.Basic) -> list[sp.Basic]:
-    """The values of which a condition asks whether they are numbers of reasonable size, and nothing else."""
+    """The values, if a condition asks only whether they are numbers of reasonable size; else none."""
     parts = list(sp.ordered(node.args)) if isinstance(node, sp.And) else [node]
     if not all(isinstance(p, sp.LessThan) and isinstance(p.lhs, sp.Abs) and p.rhs == LARGEST for p in parts):
         return []
@@ -73,17 +73,17 @@ def _numbers_checked(node: sp.Basic) -> list[sp.Basic]:
 
 
 class ScalarPrinter(ExpressionPrinter):
-    """Plain numbers: a choice is a conditional expression, and only one arm of it is evaluated.
+    """Writes expressions on plain numbers: a choice is a conditional expression that evaluates one side only.
 
-    What is short is written out instead of called, because a call takes longer: the root of a sum of squares or of a
-    name, and the size of a name. Of an angle, zeros lose their signs by adding 0.
+    A call takes longer than a short expression, so the root of a sum of squares or of a name, and the absolute value of
+    a name, are written out. In the arguments of an angle, adding 0 removes the sign of a zero.
     """
 
     def __init__(self, *, modulo_turns: bool = False, is_trusted: bool = False) -> None:
-        """modulo_turns: whether -180 degrees are as good as 180, so that the sign of a zero sine does not matter.
+        """modulo_turns: whether -180 and 180 degrees are the same, so that the sign of a zero sine does not matter.
 
-        is_trusted: whether there is a direction at all, so that not both are zero; and quotients are products, which
-        are faster.
+        is_trusted: whether sine and cosine of an angle are known not to vanish together. The conversion to degrees is
+        then a multiplication, which is faster than the division.
         """
         self.modulo_turns, self.is_trusted = modulo_turns, is_trusted
 
@@ -140,12 +140,12 @@ class ScalarPrinter(ExpressionPrinter):
 
 
 class ArrayPrinter(ScalarPrinter):
-    """Arrays: a choice evaluates both arms, and conditions are masks. Constants are read where they are:
+    """Writes expressions on arrays: a choice evaluates both sides, and conditions are masks. Constants are attributes:
     `k.arm_length`.
     """
 
     def __init__(self, constants: Collection[str] = (), *, modulo_turns: bool = False) -> None:
-        """constants: their names; modulo_turns: as on plain numbers."""
+        """constants: the names of the constants; modulo_turns: as in `ScalarPrinter`."""
         super().__init__(modulo_turns=modulo_turns)
         self.constants = frozenset(constants)
 

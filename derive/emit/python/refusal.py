@@ -1,5 +1,5 @@
-"""How a body on plain numbers refuses: with a status, or with a diagnosis: which axis or leg, why, and how much is
-missing."""
+"""How a body on plain numbers refuses: with a status, or with a diagnosis, which names the axis or the leg, the reason
+and the missing amount."""
 
 from __future__ import annotations
 
@@ -22,44 +22,44 @@ _SCALAR = ScalarPrinter()
 
 @dataclass(frozen=True)
 class Refusals:
-    """How a body on plain numbers refuses: it returns what `answer` says for a status."""
+    """Refusals that return what `answer` gives for a status."""
 
     answer: Callable[[Status], str]
     success: str = field(default="Status.OK", kw_only=True)
-    """What a body without results returns where nothing refuses."""
+    """What a body without results returns where no condition refuses."""
 
     def lines(self, requires: Sequence[Require]) -> list[str]:
-        """Where conditions that refuse alike do not all hold."""
+        """The lines that refuse where conditions with the same refusal do not all hold."""
         head = _unless([r.condition for r in requires])
         return [*_notes(requires), head, f"    return {self.answer(requires[0].otherwise)}"]
 
     def of_loop(self, loop: Iterate) -> str:
-        """Where a loop was never left."""
+        """The line that refuses where a loop is never left."""
         return f"return {self.answer(loop.otherwise)}"
 
     def of_call(self) -> str:
-        """Where a shared program has refused."""
+        """The expression with which a caller passes on the refusal of a shared program."""
         return f"return {FOUND}"
 
 
 @dataclass(frozen=True)
 class Explained(Refusals):
-    """Refusals that say why. What is missing is computed there, and nowhere else."""
+    """Refusals with a reason. The missing amount is computed where the refusal is returned, and nowhere else."""
 
     reasons: Reasons
 
     def lines(self, requires: Sequence[Require]) -> list[str]:
-        """Every reason for itself; a value between two limits in one."""
+        """The lines that refuse, for each reason separately; the two limits of one value are tested together."""
         if len(requires) == 2 and (limits := Limits.of(*requires)) is not None:
             return self._between(limits)
         return [*_notes(requires), *(line for check in self.reasons.checks(requires) for line in self._lines(check))]
 
     def of_loop(self, loop: Iterate) -> str:
-        """A loop that was never left has a reason and no amount."""
+        """The line that refuses where a loop is never left: a reason without an amount."""
         return self._refused(loop.otherwise, self.reasons.loop(loop))
 
     def of_call(self) -> str:
-        """A shared program has no reason of its own."""
+        """A shared program refuses without a reason."""
         return f'return Diagnosis({FOUND}, "", 0.0)'
 
     def _lines(self, check: Check) -> Iterator[str]:
@@ -71,11 +71,13 @@ class Explained(Refusals):
         yield from (f"    {line}" for line in (*missing, *inside, *refused))
 
     def _on_another(self, turn: OtherTurn, status: Status, reason: str, missing: str) -> list[str]:
-        """Refuse because of the turn, where another one is inside."""
+        """The lines that refuse because of the turn where another turn is inside the limits."""
         return [f"if turn := {_turn_inside(turn)}:", f"    {self._refused(status, reason, f'{missing}, turn')}"]
 
     def _between(self, limits: Limits) -> list[str]:
-        """What is beyond one of its limits: how far, and the turn that is inside, say functions of the package."""
+        """The lines that refuse a value beyond one of its limits. Functions of the package compute the missing amount,
+        and the number of a turn that is inside.
+        """
         value, low, high = map(_SCALAR.print, (limits.value, limits.lowest, limits.highest))
         subject = self.reasons.name(limits.reason.subject)
         given = f'"{subject}", {value}, {low}, {high}'
@@ -93,8 +95,8 @@ class Explained(Refusals):
 
 @dataclass(frozen=True)
 class Limits:
-    """Two conditions that a value is between two limits, with the reasons to tell: below the one,
-    or above the other.
+    """The two conditions that a value is between its limits, with the reason for each: below the lower limit, or above
+    the upper one.
     """
 
     value: sp.Expr
@@ -104,7 +106,7 @@ class Limits:
 
     @classmethod
     def of(cls, below: Require, above: Require) -> Limits | None:
-        """What two conditions say; None where they say something else."""
+        """The limits that two conditions test; None where they test something else."""
         low, high, reason, other = below.condition, above.condition, below.reason, above.reason
         if not (
             isinstance(low, sp.GreaterThan)
@@ -121,7 +123,7 @@ class Limits:
 
 
 def _unless(conditions: Sequence[sp.Basic]) -> str:
-    """The head of what is done where conditions do not all hold."""
+    """The `if` in front of what is done where conditions do not all hold."""
     sized = _sized(*conditions)
     if sized:
         return f"if not reasonable({', '.join(map(_SCALAR.print, sized))}):"
@@ -129,13 +131,13 @@ def _unless(conditions: Sequence[sp.Basic]) -> str:
 
 
 def _notes(requires: Sequence[Require]) -> list[str]:
-    """What the conditions are about, as a comment; of inputs the function that tests them says it."""
+    """The subject of the conditions as a comment; none for inputs, where the name of the called function tells it."""
     note = requires[0].comment
     return [] if _sized(requires[0].condition) else note_lines(note)
 
 
 def _sized(*conditions: sp.Basic) -> list[sp.Expr]:
-    """The values, if the conditions are that several are numbers of reasonable size."""
+    """The values, if the conditions test that several values are numbers of reasonable size."""
     parts = _parts(conditions)
     sized = [
         part.lhs.args[0]
@@ -150,7 +152,7 @@ def _parts(conditions: Iterable[sp.Basic]) -> list[sp.Basic]:
 
 
 def status_of(status: Status) -> str:
-    """A status as generated code names it."""
+    """A status as the generated code names it."""
     return f"Status.{status.name}"
 
 
@@ -159,7 +161,7 @@ PLAIN = Refusals(status_of)
 
 
 def explained(reasons: Reasons) -> Explained:
-    """Refusals with a diagnosis; nothing where there is none."""
+    """Refusals with a diagnosis; a body without results returns None where no condition refuses."""
     return Explained(status_of, reasons, success="None")
 
 
@@ -172,12 +174,12 @@ def conjunction(conditions: Iterable[sp.Basic]) -> str:
 
 
 def _turn_inside(turn: OtherTurn) -> str:
-    """The call that looks for the number of a turn that is inside."""
+    """The call that finds the number of a turn inside the limits."""
     low, high = (_one(word, ends) for word, ends in (("max", turn.lowest), ("min", turn.highest)))
     return f"turn_inside({_SCALAR.print(turn.axis)}, {low}, {high})"
 
 
 def _one(word: str, ends: Sequence[sp.Expr]) -> str:
-    """The largest or the smallest of one or more ends."""
+    """The largest or the smallest of one or more limits."""
     texts = [_SCALAR.print(end) for end in ends]
     return f"{word}({', '.join(texts)})" if len(texts) > 1 else texts[0]

@@ -1,4 +1,5 @@
-"""The commanded rotation in Python: one function on plain numbers, with the reason of a refusal, and one on arrays."""
+"""The repair of the commanded rotation in Python: one function on plain numbers, with the reason of a refusal, and one
+on arrays."""
 
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ from derive.report.reasons import reasons_of_rotation
 
 
 def rotation_functions() -> dict[str, object]:
-    """What the templates read: the bodies, and what they call."""
+    """The values that the templates read: the bodies of both functions, and the names that they call."""
     summary = "The rotation as it is used."
     method = Method("made_rotation", summary, rotation_program(), (ROTATION_ARGUMENT,), "Rotation", ROTATION)
     plain = scalar_body(method, explained(reasons_of_rotation()))

@@ -1,7 +1,7 @@
-"""The setup program as what makes the constants of a machine from its parameters.
+"""The setup program in Python: it computes the constants of a machine from its parameters.
 
-The range of each parameter is tested by the table of parameters, and where an axis may be is made by one call an axis:
-both are the same for every machine.
+Two steps are the same for every machine, and stand in the runtime: the table of parameters tests the range of each
+parameter, and one call for each axis computes its range of motion.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ _TYPES = {Role.FLAG: "bool", Role.SIGN: "int"}
 
 
 def keywords(parameters: tuple[Parameter, ...]) -> str:
-    """The head of `__init__`: every parameter as a keyword, with its default where it has one."""
+    """The parameters of `__init__`: a keyword for each parameter of the machine, with its default where it has one."""
     typed = (f"{p.name}: {_TYPES.get(p.role, 'float')}{_default(p)}" for p in parameters)
     return f"def __init__(self, *, {', '.join(typed)}) -> None:"
 
 
 def setup_body(kin: Kinematics, read: Collection[str]) -> list[str]:
-    """Conditions as errors that name the parameters, then the constants that programs read."""
+    """The lines that raise errors for parameters that cannot be, then compute the constants that programs read."""
     by_refusal = {window.refusal: window for window in windows(kin.mechanism)}
     program = _own(kin, read)
     lines: list[str] = []
@@ -64,7 +64,7 @@ def setup_body(kin: Kinematics, read: Collection[str]) -> list[str]:
 
 
 def _own(kin: Kinematics, read: Collection[str]) -> Program:
-    """The setup program without what is the same for every machine, and without what nobody reads."""
+    """The setup program without the steps of the runtime, and without values that no program reads."""
     tested = ranges(kin.parameters)
     elsewhere = {let.name for window in windows(kin.mechanism) for let in (*window.limits, *window.ends)}
     outputs = tuple(o for o in kin.setup.outputs if o.name in read)
@@ -79,7 +79,7 @@ def _own(kin: Kinematics, read: Collection[str]) -> Program:
 
 
 def _given(kin: Kinematics, program: Program, found: Collection[Window]) -> dict[str, str]:
-    """The parameters that are read by their names: name → value."""
+    """The parameters that the lines read under their own names: name → value."""
     refusals = {window.refusal for window in found}
     values = [o.value for o in program.outputs] + [e for window in found for f in window.fallback for e in f]
     symbols = {s for value in values for s in symbols_of(value)}
@@ -96,7 +96,7 @@ def _value(parameter: Parameter) -> str:
 
 
 def _window(window: Window, read: Collection[str]) -> list[str]:
-    """Where an axis may be; limits that are none are refused even where nobody reads them."""
+    """The line that computes the range of an axis. It refuses invalid limits even where no program reads the range."""
     targets = [f"self.{o.name}" if o.name in read else "_" for o in window.outputs]
     call = f'machine._window("{window.key}"{_without_limits(window)})'
     while targets and targets[-1] == "_":
@@ -107,7 +107,7 @@ def _window(window: Window, read: Collection[str]) -> list[str]:
 
 
 def _without_limits(window: Window) -> str:
-    """The argument that says where an axis is to which no limits are given."""
+    """The argument with the range of an axis that is given no limits."""
     if not window.fallback:
         return ""
     condition, low, high = window.fallback[-1]

@@ -1,1 +1,1 @@
-"""Function blocks for SoftMotion: their interfaces, methods, settings, self-tests and overview."""
+"""Function blocks for SoftMotion: their interfaces, methods, settings, self-tests and their overview."""

@@ -1,4 +1,4 @@
-"""What the templates of a function block read: its axes, configuration bytes, inputs and instance variables."""
+"""The data of a function block that templates read: axes, configuration bytes, inputs and instance variables."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis: its place in AXISPOS_REF, its type, and the spellings of its limits."""
+    """One axis: its index in AXISPOS_REF, its type, and the spellings of its limits."""
 
     name: str
     field: str
@@ -54,7 +54,7 @@ class BranchByte:
 
     @property
     def choices(self) -> tuple[Input, ...]:
-        """The inputs of the block that sets a configuration."""
+        """The inputs of the configuration block that choose the branch."""
         meaning = f"{self.name}: TRUE {self.first}, FALSE {self.second}"
         return (
             Input(f"x{self.stem}{capitalized(self.first)}", "BOOL", "TRUE", meaning),
@@ -64,7 +64,7 @@ class BranchByte:
 
 @dataclass(frozen=True)
 class PeriodByte:
-    """A byte that holds the signed period number of an axis."""
+    """A byte with the signed period number of an axis."""
 
     byte: int
     index: int
@@ -83,7 +83,7 @@ class Block:
     interfaces: tuple[str, ...]
     inputs: tuple[Input, ...]
     fields: tuple[tuple[str, str], ...]
-    """The instance variables that are constants of the programs, with their types."""
+    """The instance variables that hold constants of the programs, with their types."""
     axes: tuple[Axis, ...]
     axis_fields: tuple[str, ...]
     branches: tuple[BranchByte, ...]
@@ -91,27 +91,27 @@ class Block:
     configuration_size: int
     freedom: str
     turning: str
-    """How much of the commanded rotation is followed: a value of `Turning`."""
+    """The part of the commanded rotation that the flange follows: a value of `Turning`."""
     refuses_flanges: bool
-    """Of an orientation kinematics: whether some flange cannot carry it."""
+    """Whether this is an orientation kinematics that some flange cannot carry."""
     rows: tuple[str, ...]
     margins: tuple[str, ...]
     computed: tuple[tuple[str, str], ...]
-    """Instance variables that Initialize assigns at its end, with the output of `setup` that each holds."""
+    """The instance variables that Initialize assigns at its end, each with the output of `setup` that it holds."""
     has_settings: bool
-    """Whether drives hand over their limits."""
+    """Whether drives pass their limits to the block."""
 
     def stored(self, program: Printed) -> list[tuple[str, str]]:
-        """Instance variables and their values, given the printed `setup`."""
+        """The instance variables and their values, given the text of `setup`."""
         return [(field, program.outputs[output]) for field, output in self.computed]
 
     @property
     def slots(self) -> int:
-        """How many solutions the branches tell apart."""
+        """The number of solutions that the branches distinguish."""
         return int(2 ** len(self.branches))
 
     def singular(self, program: Printed) -> str:
-        """The condition of a singular pose, given the printed margins."""
+        """The condition of a singular pose, given the text of the margins."""
         small = [f"ABS({program.outputs[m]}) < {literal(float(SINGULAR))}" for m in self.margins]
         return " OR ".join(f"({s})" for s in small) if len(small) > 1 else (small or ["FALSE"])[0]
 
@@ -159,7 +159,7 @@ def _computed(kinematics: Kinematics, interfaces: Sequence[str]) -> tuple[tuple[
 
 
 def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
-    """The programs that methods other than Initialize print."""
+    """The programs of all methods but Initialize."""
     found: Sequence[Program | None] = (
         kinematics.forward,
         kinematics.orientation,
@@ -172,14 +172,14 @@ def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
         kinematics.offset_branch,
         kinematics.offset_configuration,
         kinematics.compatible,
-        kinematics.carried,
+        kinematics.end_point_shift,
         kinematics.total_image,
     )
     return tuple(p for p in found if p is not None)
 
 
 def constants(kinematics: Kinematics) -> tuple[str, ...]:
-    """The neutral names of what Initialize stores: outputs of `setup` that a method reads."""
+    """The neutral names of the constants that Initialize stores: the outputs of `setup` that a method reads."""
     read = {symbol.name for program in programs_of(kinematics) for symbol in program.reads()}
     for joint in kinematics.mechanism.joints:
         read |= {f"{word}_{joint.key}" for word in ("unlimited", "lower", "upper")}
@@ -189,7 +189,7 @@ def constants(kinematics: Kinematics) -> tuple[str, ...]:
 
 
 def setup_of(kinematics: Kinematics, *, has_settings: bool) -> Program:
-    """What Initialize prints: where drives have settings, all but what follows from them."""
+    """The program of Initialize. Where drives pass their limits, AxisSettings computes what depends on these."""
     if not has_settings:
         return kinematics.setup
     assert kinematics.setup_less_windows is not None
@@ -197,7 +197,7 @@ def setup_of(kinematics: Kinematics, *, has_settings: bool) -> Program:
 
 
 def direct(kinematics: Kinematics, setup: Program) -> dict[str, str]:
-    """Temporaries of `setup` that are constants themselves: their names, and the outputs that hold them."""
+    """The values of `setup` that need no temporary variable, because an output holds them: name → output."""
     lets = {let.name.name for let in setup.lets()}
     stored = set(constants(kinematics))
     found: dict[str, str] = {}

@@ -1,4 +1,4 @@
-"""How CartesianToAxes and its offset variant call the private method that solves one branch."""
+"""The calls with which CartesianToAxes and its offset variant solve one branch by a private method."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 
 @dataclass(frozen=True)
 class Argument:
-    """A named argument of the call, besides the axes it writes."""
+    """A named argument of the call; the axes that the call writes are not among them."""
 
     name: str
     value: str
@@ -30,22 +30,22 @@ class Argument:
 
 @dataclass(frozen=True)
 class BranchCall:
-    """The private method, its call, and the choice among what it answers."""
+    """The private method, its call, and the choice among its solutions."""
 
     method: str
     signature: Signature
     arguments: tuple[Argument, ...]
     reads_matrix: bool
     admitted: tuple[str, ...]
-    """The lines of the condition under which a slot is solved."""
+    """The lines of the condition under which the branches of a slot are solved."""
     distance: tuple[str, ...]
-    """The lines that measure the distance to the reference."""
+    """The lines that compute the squared distance from the reference."""
     tie: str
-    """What squared distances tie within."""
+    """The difference up to which two squared distances count as equal."""
 
 
 def branch_call(public: Signature, program: Program, kinematics: Kinematics, block: Block) -> BranchCall:
-    """The call of one branch for a public method; the private one has the parameters that its program reads."""
+    """The call of one branch in a public method. The private method has the parameters that its program reads."""
     read = {symbol.name for symbol in program.reads()}
     axes, *constant = (p for p in public.parameters if p.name != "cd")
     reads_matrix = any(f"r{r}{c}" in read for r in (1, 2, 3) for c in (1, 2, 3))
@@ -81,11 +81,13 @@ def _tie(kinematics: Kinematics) -> str:
 
 
 def _distance(kinematics: Kinematics, block: Block, read: set[str]) -> tuple[str, ...]:
-    """The distance to the reference. Where the branch has not refused a reference that is no number, this does."""
+    """The lines that compute the distance from the reference. They refuse a reference that is no number, unless the
+    branch has done so.
+    """
     fields = {axis.name: axis.field for axis in block.axes}
     differences = [f"(candidate.{fields[j.name]} - aRef.{fields[j.name]})" for j in kinematics.distance_joints]
     if not differences:
-        return ()  # nothing to choose from
+        return ()  # one branch: there is nothing to choose
     first, *more = [f"{d}*{d}" for d in differences]
     lines = [f"distance := {first}", *(f"    + {term}" for term in more)]
     lines[-1] += ";"

@@ -1,4 +1,4 @@
-"""The comment of a function block: its description in reStructuredText, which the configurator shows."""
+"""The comment of a function block: its description in reStructuredText, which the SoftMotion configurator shows."""
 
 from __future__ import annotations
 
@@ -27,44 +27,38 @@ _MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "
 _PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 open"
 _BRANCH = "0 automatic, 3 where both solutions coincide"
 _READ = (
-    f"A commanded rotation may have few exact digits, as from REAL. Where its transpose times itself differs from the "
-    f"identity "
-    f"by more than {float(EXACT_ROTATION):g} it is repaired (z, the direction of the tool, is kept); by more than "
-    f"{float(ROTATION):g} it is refused."
+    f"A commanded rotation R may have few exact digits, as after conversion from REAL. Where R^T R differs from the "
+    f"identity by more than {float(EXACT_ROTATION):g}, R is repaired (z, the direction of the tool, is kept); by more "
+    f"than {float(ROTATION):g}, it is refused."
 )
 _NOT_READ = "The commanded rotation is not read."
 _COST_HEAD = ("Method", "Additions", "Multiplications", "Divisions", "Square roots", "Sines")
 _OPEN_TURN = (
     f"Without a commanded turn, an axis whose limits in the block are at most {ONE_TURN} degrees apart takes its one "
-    f"value "
-    "inside them, wherever the reference is. Any other axis takes the value nearest to the reference, and its limits "
-    "only "
-    f"refuse: they never choose another turn. So enter the limits of a range of up to {ONE_TURN} degrees in the "
-    f"block, too. For "
-    "an axis with a wider range command the turn of a point-to-point movement. Where another turn would be inside the "
-    "limits, "
-    "Diagnose says so, and iTurn is its number."
+    f"value inside them, wherever the reference is. Any other axis takes the value nearest to the reference, and its "
+    f"limits refuse but never choose another turn. So enter the limits of a range of up to {ONE_TURN} degrees in the "
+    "block, too. For an axis with a wider range command the turn of a point-to-point movement. Where another turn "
+    "would be inside the limits, Diagnose says so, and iTurn is its number."
 )
 _KINDS = {
     (True, False): "Position kinematics for a SoftMotion axis group. ",
     (False, True): "Orientation kinematics, to be combined with a position kinematics for a SoftMotion axis group. ",
     (False, False): "Kinematics for a SoftMotion axis group. ",
 }
-"""By whether it is a position kinematics, and whether an orientation kinematics."""
+"""The sentences on couplings, by whether it is a position kinematics, and whether it is an orientation kinematics."""
 _WITHOUT_LENGTH = (
-    f"where an axis is free: within {float(FREE_ANGLE):g} of your unit of length. The machine has no length to "
-    f"compare this "
-    "distance with: the margin is 1 everywhere else, and IsSingularity gives no warning before"
+    f"where an axis is not determined: within {float(FREE_ANGLE):g} of your unit of length. The machine has no "
+    "length with which this distance could be compared, so the margin is 1 everywhere else, and IsSingularity gives "
+    "no earlier warning"
 )
 _AUTOMATIC = (
-    "Automatic bytes take the solution nearest to the reference. They are meant for point-to-point movements; "
-    "limits refuse a solution, they never choose another one."
+    "Automatic bytes take the solution nearest to the reference. They are meant for point-to-point movements. "
+    "Limits refuse a solution and never choose another one."
 )
 _DRIVES = (
-    "The limits that SoftMotion hands over (AxisSettings) narrow those of the block: the range inside both decides "
-    "which turn "
-    "of an axis is taken, and which poses are refused. Where none are handed over, the limits of the block alone "
-    "decide."
+    "The limits that SoftMotion passes (AxisSettings) narrow those of the block: the range inside both decides which "
+    "turn of an axis is taken, and which poses are refused. Where SoftMotion passes none, the limits of the block "
+    "alone decide."
 )
 
 
@@ -104,7 +98,7 @@ def _parameters(block: Block) -> Iterator[Sequence[str]]:
 
 
 def _refused(kinematics: Kinematics) -> str:
-    """The sentence on the lengths that may not be 0, the value of a parameter that is not given."""
+    """The sentence that names the lengths that may not be 0, which is the value of an input that is not set."""
     lengths = [input_name(p) for p in kinematics.parameters if p.role in (Role.LENGTH, Role.SIGNED_LENGTH)]
     return f"A length has no default: Initialize refuses 0 for {', '.join(lengths)}. " if lengths else ""
 
@@ -143,7 +137,7 @@ def _workspace(kinematics: Kinematics) -> Iterator[str]:
     elif not bounds:
         yield from wrap(f"Every position that {limits} allow.", _WIDTH)
     else:
-        why = "Diagnose says which, and by how much if that has a measure"
+        why = "Diagnose says which of them, and by how much where that can be measured"
         yield from wrap(f"A pose inside {limits} is refused for these reasons only; {why}:", _WIDTH)
         yield ""
     for bound in bounds:
@@ -164,16 +158,15 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
     if (inverted := found.inverted) is not None:
         text += (
             f", inverse after forward {inverted.round_trip:.0e}, Jacobian against automatic differentiation "
-            f"{inverted.jacobian:.0e}; {inverted.solutions} solutions were found by multi-start root finding, each of "
-            f"them a "
-            "solution of these formulas"
+            f"{inverted.jacobian:.0e}; {inverted.solutions} solutions were found by multi-start root finding, and "
+            "each of them is a solution of these formulas"
         )
-    yield from wrap(f"{text}. No run on a controller.", _WIDTH)
+    yield from wrap(f"{text}. The block was not run on a controller.", _WIDTH)
     if inverted is not None and inverted.missed is not None:
         missed, total = inverted.missed
         text = (
-            f"A root scan is no proof: of {total} solutions, most of them close to where branches meet, "
-            f"it missed {missed}."
+            f"A root scan is no proof: of {total} solutions, most of them close to poses where branches meet, it "
+            f"missed {missed}."
         )
         yield from wrap(text, _WIDTH)
 
@@ -198,7 +191,7 @@ def _cost_row(row: tuple[str, Cost]) -> Sequence[str]:
 
 def _bound(bound: Bound) -> str:
     what = f"{bound.note[0].upper()}{bound.note[1:]}"
-    return f"{what}: at most {bound.limit} passes, all of which are counted; it stops as soon as it is done."
+    return f"{what}: at most {bound.limit} passes, all of which are counted; it stops as soon as it has converged."
 
 
 def _item(text: str) -> list[str]:
@@ -206,7 +199,7 @@ def _item(text: str) -> list[str]:
 
 
 def _table(head: Sequence[str], rows: Iterator[Sequence[str]]) -> list[str]:
-    """A simple table of reStructuredText; a long text in the last column goes on in lines without other columns."""
+    """A simple table in reStructuredText. A long text in the last column continues on lines of this column alone."""
     cells = [head, *rows]
     widths = [max(len(row[column]) for row in cells) for column in range(len(head) - 1)]
     widths[0] += (sum(widths) + len(widths)) % 2  # the last column begins at an even place, as every indentation does

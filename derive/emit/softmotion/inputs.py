@@ -44,7 +44,7 @@ def _value(parameter: Parameter) -> tuple[str, str]:
 
 
 def _range(parameter: Parameter) -> str:
-    """Half-open intervals as SoftMotion writes them; an end that is merely the largest input is infinite."""
+    """A range as SoftMotion writes half-open intervals; an end that is the largest allowed input is infinite."""
     largest = float(LARGEST)
     left, low = ("]", "-inf") if parameter.low <= -largest else ("[", f"{parameter.low:g}")
     right, high = ("[", "+inf") if parameter.high >= largest else ("]", f"{parameter.high:g}")

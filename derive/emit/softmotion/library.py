@@ -1,4 +1,4 @@
-"""Structured Text: a function block for every mechanism, and the objects they share."""
+"""Structured Text: a function block for every mechanism, and the objects that the blocks share."""
 
 from __future__ import annotations
 
@@ -50,14 +50,14 @@ _PREAMBLE = f"""\
 
 @dataclass(frozen=True)
 class StructuredTextFiles:
-    """The language: text, PLCopenXML and the import script, for a profile of the SoftMotion contract (its own if
-    `None`)."""
+    """The language: text, PLCopenXML and the import script, for a profile of the SoftMotion contract, the default
+    one if `None`."""
 
     profile: str | None = None
     name: ClassVar[str] = _FOLDER
 
     def __post_init__(self) -> None:
-        """Refuse a profile that the contract has not, before anything is derived."""
+        """Refuse a profile that the contract does not have, before anything is derived."""
         load(self.profile)
 
     def part(self, kinematics: Kinematics) -> Part | None:
@@ -93,7 +93,7 @@ class StructuredTextFiles:
 def _objects(
     parts: Sequence[Part], contract: Contract, templates: Environment
 ) -> Iterator[tuple[str, tuple[Object, ...]]]:
-    """The objects of every file, by its path without the ending."""
+    """The objects of every file, by the path without its ending."""
     rotation = rotation_function(contract)
     for path in sorted((TEMPLATES / _FOLDER / _SHARED).glob("*.st.j2")):
         text = templates.get_template(f"{_SHARED}/{path.name}").render(contract.spelling, rotation=rotation)
@@ -106,7 +106,7 @@ def _objects(
 def _self_tests(
     tests: Sequence[Part], contract: Contract, templates: Environment
 ) -> Iterator[tuple[str, tuple[Object, ...]]]:
-    """A self-test for every block that has vectors, and the program that runs all of them."""
+    """A self-test for every block that has test cases, and the program that runs all of them."""
     for test in tests:
         yield f"{SELF_TESTS}/{test['name']}", objects_of(test["text"])
     if tests:
@@ -115,7 +115,7 @@ def _self_tests(
 
 
 def _documents(objects: Mapping[str, Sequence[Object]]) -> Iterator[tuple[str, str]]:
-    """PLCopenXML: one file with everything, and one for every mechanism with what it needs."""
+    """The PLCopenXML files: one with all objects, and one for every mechanism with the objects that it needs."""
     yield "softkin", plcopen.document("Softkin", GENERATED, _by_folder(objects))
     for path in objects:
         if not path.startswith((f"{_SHARED}/", f"{SELF_TESTS}/")):

@@ -1,4 +1,4 @@
-"""The methods of a function block: which it has, what their programs read, and how they refuse."""
+"""The methods of a function block: which methods it has, the spelling of what they read, and their refusals."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _FIRST = (
 
 @dataclass(frozen=True)
 class Method:
-    """A method as text: its declaration with parameters, and its own variables with the statements."""
+    """A method as text: its declaration with parameters, and its local variables with the statements."""
 
     head: str
     text: str
@@ -59,25 +59,25 @@ class Method:
 
 @dataclass(frozen=True)
 class _Source:
-    """A method before it is text: its signature, its program, and the call of a branch it makes."""
+    """A method before it is written: its signature, its program, and its call of a branch."""
 
     signature: Signature
     program: Program | None = None
     call: BranchCall | None = None
     is_shared: bool = False
     search: FindRoot | None = None
-    """Of the methods that search for a root."""
+    """The search, for the methods that search for a root."""
 
 
 def methods_of(kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> tuple[Method, ...]:
-    """All methods in the order of the contract, private ones behind the method that calls them."""
+    """All methods in the order of the contract; a private method follows the method that calls it."""
     return tuple(
         _method(source, kinematics, block, contract, templates) for source in _sources(kinematics, block, contract)
     )
 
 
 def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
-    """How every free name of a program other than `setup` is spelled in a method."""
+    """The spelling in a method of every input of the programs other than `setup`."""
     spelled = {name: stored_name(name) for name in constants(kinematics)}
     for index, joint in enumerate(kinematics.mechanism.joints):
         spelled[joint.axis.name] = f"a.a{index}"
@@ -104,7 +104,7 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
         "AxesToConfiguration_Offset": kinematics.offset_configuration,
         "Jacobian": kinematics.jacobian,
         "IsCompatibleWithPosKin": kinematics.compatible,
-        "GetPositionFromOrientation3": kinematics.carried,
+        "GetPositionFromOrientation3": kinematics.end_point_shift,
         "GetOrientationImageTotal": kinematics.total_image,
         "GetOrientationImageWithOri": kinematics.image if kinematics.total_image else kinematics.projection,
     }
@@ -137,19 +137,19 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
 
 
 def _quotable(text: str) -> str:
-    """The text as it stands between the quotes of a string."""
+    """The text as it is written between the quotes of a string."""
     return text.replace("$", "$$").replace("'", "$'")
 
 
 def _explained(signature: Signature, *, turns: bool = False) -> Signature:
-    """With outputs that only Diagnose reads."""
+    """The signature with the further outputs that Diagnose reads."""
     outputs = [Parameter("VAR_OUTPUT", REASON, "INT"), Parameter("VAR_OUTPUT", MISSING, "LREAL")]
     outputs += [Parameter("VAR_OUTPUT", TURN, "INT")] if turns else []
     return replace(signature, parameters=(*signature.parameters, *outputs))
 
 
 def _shared(program: Program | None, kinematics: Kinematics, contract: Contract, ready: set[str]) -> Iterator[_Source]:
-    """The programs that a method is the first to call."""
+    """The shared programs that no earlier method calls."""
     called = shared([program]) if program is not None else ()
     for inner in (p for p in called if p.name not in ready):
         ready.add(inner.name)
@@ -159,7 +159,7 @@ def _shared(program: Program | None, kinematics: Kinematics, contract: Contract,
 
 
 def _names(block: Block, contract: Contract) -> list[str]:
-    """The public methods: of all implemented interfaces and our own, what a reader looks for first in front."""
+    """The public methods of the implemented interfaces, and those of the block itself; the most important are first."""
     names = [m for i in contract.closure(block.interfaces) for m in i.methods]
     names = list(dict.fromkeys([*names, *contract.own]))
     return sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))
@@ -171,7 +171,7 @@ def _check_limits(contract: Contract) -> Signature:
 
 
 def _end_point(public: Signature, contract: Contract) -> Signature:
-    """Where the end point is on a flange of known orientation."""
+    """The signature of the private method that finds the end point on a flange of known orientation."""
     flange = Parameter("VAR_IN_OUT CONSTANT", "mFlange", contract.spelling["types"]["matrix"])
     kept = (p for p in public.parameters if p.name != "oriInfo")
     ordered = sorted((*kept, flange), key=lambda p: p.name != "v")
@@ -218,7 +218,7 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
 
 
 def _positions(signature: Signature) -> dict[str, str]:
-    """The spelling of a commanded position and of a tool offset, by the parameters that hold them."""
+    """The spelling of the commanded position and of the tool offset, given the parameters that hold them."""
     names = {p.name for p in signature.parameters}
     point = "v_MCS" if "v_MCS" in names else "f.vT"
     spelled = {axis: f"{point}.d{axis.upper()}" for axis in "xyz"}
@@ -228,7 +228,7 @@ def _positions(signature: Signature) -> dict[str, str]:
 
 
 def _tidy(text: str) -> str:
-    """Without empty sections, and with single empty lines between paragraphs only."""
+    """The text without empty sections, and with at most one empty line between paragraphs."""
     text = re.sub(r"\n(VAR\n)\s*\n", r"\n\1", "\n" + text)
     text = re.sub(r"\n\s*\n(END_VAR|END_IF|END_FOR)", r"\n\1", text)
     text = re.sub(r"\nVAR\nEND_VAR(?=\n)", "", text)

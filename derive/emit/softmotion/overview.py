@@ -1,4 +1,4 @@
-"""The overview of the blocks: what each is, its axes, and the tools that SoftMotion lets it carry."""
+"""The overview of the blocks: the name of each, its axes, and the tools that SoftMotion accepts for it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def row_of(kinematics: Kinematics) -> dict[str, str]:
 
 
 def _tools(kinematics: Kinematics) -> str:
-    """Which offsets SMC_GroupSetTool takes: the flange's orientation must be known where the offset is removed."""
+    """The offsets that SMC_GroupSetTool accepts: to remove an offset, the orientation of the flange must be known."""
     if kinematics.mechanism.is_orientation:
         return "with a position block"
     if kinematics.mechanism.task.turning is Turning.DIRECTION:

@@ -1,4 +1,4 @@
-"""The pictures that descriptions of function blocks refer to: one PNG and one SVG for every mechanism."""
+"""The pictures in the descriptions of function blocks: one PNG and one SVG for every mechanism."""
 
 from __future__ import annotations
 

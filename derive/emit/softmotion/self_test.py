@@ -1,4 +1,4 @@
-"""The self-test of a function block: tables of calls and answers, and the program that runs all of them."""
+"""The self-test of a function block: tables of calls and expected answers, and the program that runs all self-tests."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from derive.kinematics.reference_cases import Bytes, Called, Case, Reals, SelfTe
 FOLDER = "selftest"
 PROGRAM = "PRG_SoftkinSelfTest"
 _TOLERANCE = 2e-6
-"""Of a number that is rounded to 6 decimals."""
+"""The tolerance of a number that is rounded to 6 decimals."""
 _NUMBERS = {status: number for number, status in enumerate(Status)}
 _NO_FRAME = (0.0,) * 12
 
 
 @dataclass(frozen=True)
 class Table:
-    """A constant array with its values, as many lines as they take."""
+    """A constant array with the lines of its values."""
 
     name: str
     type: str
@@ -33,7 +33,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Test:
-    """What the template of a self-test reads."""
+    """The values that the template of a self-test reads."""
 
     name: str
     block: str
@@ -42,7 +42,7 @@ class Test:
     fields: tuple[str, ...]
     bytes: int
     machines: tuple[tuple[tuple[str, str], ...], ...]
-    """For every machine the inputs that differ from one to another or from their defaults, with their values."""
+    """For every machine the values of the inputs that differ between machines, or from their defaults."""
     tables: tuple[Table, ...]
 
 
@@ -65,7 +65,7 @@ def test_of(kinematics: Kinematics, block: Block) -> Test | None:
 
 
 def _inputs(parameters: Sequence[Parameter], test: SelfTest) -> Iterator[tuple[tuple[str, str], ...]]:
-    """Every machine sets all inputs that any machine sets."""
+    """The inputs of every machine with their values: each machine sets all inputs that any machine sets."""
     spelled = [{p.name: _value(p, machine) for p in parameters} for machine in test.machines]
     given = [p for p in parameters if any(values[p.name] != parameter_input(p).default for values in spelled)]
     for values in spelled:
@@ -80,7 +80,7 @@ def _value(parameter: Parameter, machine: Mapping[str, float]) -> str:
 
 
 def _tables(cases: Sequence[Case], axes: int, size: int) -> Iterator[Table]:
-    """The cases, by rows of the tables behind them; every row of values stands once."""
+    """The table of cases, which refer to rows of the tables behind it; equal rows of values are stored once."""
     nothing = (0.0,) * axes
     poses: list[Reals] = list(dict.fromkeys(row or nothing for c in cases for row in (c.axes, c.reference)))
     frames: list[Reals] = list(dict.fromkeys(c.frame or _NO_FRAME for c in cases))
@@ -100,7 +100,7 @@ def _tables(cases: Sequence[Case], axes: int, size: int) -> Iterator[Table]:
 
 
 def _table(name: str, kind: str, rows: Sequence[Sequence[str]]) -> Table:
-    """A row in a line or more, none of them shared with another row."""
+    """A table in which every row begins on a new line."""
     lines = [line for row in rows for line in packed([f"{value}," for value in row])]
     lines[-1] = lines[-1].removesuffix(",")
     return Table(name, f"ARRAY[0..{len(rows) - 1}, 0..{len(rows[0]) - 1}] OF {kind}", tuple(lines))

@@ -1,4 +1,5 @@
-"""What a drive hands over of an axis, and what follows from it: the instance variables that AxisSettings writes."""
+"""The settings that a drive passes for an axis, and the values computed from them: the instance variables that
+AxisSettings writes."""
 
 from __future__ import annotations
 
@@ -8,23 +9,23 @@ from derive.description.joints import Joint
 from derive.emit.st.names import stored_name
 
 SETTINGS = "ISMKinematicAxisSettings"
-"""The interface with which SoftMotion hands over the limits of a drive."""
+"""The interface by which SoftMotion passes the limits of a drive."""
 
 
 @dataclass(frozen=True)
 class Settings:
-    """The names of one axis."""
+    """The names of the instance variables of one axis."""
 
     limited: str
     lower: str
     upper: str
-    """As handed over: whether there are limits (FALSE before the first call), and both."""
+    """As SoftMotion passes them: whether there are limits (FALSE before the first call), and both limits."""
     lowest: str
     highest: str
-    """What the limits of block and drive together allow."""
+    """The range that the limits of block and drive together allow."""
     single: str
     middle: str
-    """Whether one value is inside for every direction, and the middle; empty for an axis without turns."""
+    """Whether the range holds one value for every direction, and its middle; empty for an axis without turns."""
     own_unlimited: str
     own_lower: str
     own_upper: str
@@ -32,7 +33,7 @@ class Settings:
 
 
 def settings_of(joint: Joint) -> Settings:
-    """The names of an axis."""
+    """The names of the instance variables of an axis."""
     key = joint.key
     given = (stored_name(f"drive_{word}_{key}") for word in ("limited", "lower", "upper"))
     ends = (stored_name(f"{word}_{key}") for word in ("lowest", "highest"))

@@ -1,4 +1,4 @@
-"""The SoftMotion contract, read from its data: interfaces, signatures and spellings."""
+"""The SoftMotion contract, read from its data file: interfaces, signatures and spellings."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Signature:
     access: str = "PUBLIC"
 
     def head(self) -> str:
-        """The declaration, without the method's own variables."""
+        """The declaration of the method, without its local variables."""
         returns = f" : {self.returns}" if self.returns else ""
         lines = [f"METHOD {self.access} {self.name}{returns}"]
         for scope, parameters in groupby(self.parameters, key=lambda p: p.scope):
@@ -47,7 +47,7 @@ class Interface:
 
     name: str
     since: tuple[int, ...]
-    """The version of the oldest library whose documentation lists it."""
+    """The version of the oldest library whose documentation lists the interface."""
     extends: tuple[str, ...]
     properties: Mapping[str, str]
     methods: Mapping[str, Signature]
@@ -61,7 +61,7 @@ class Contract:
     own: Mapping[str, Signature]
     omits: frozenset[str]
     spelling: Mapping[str, Mapping[str, Any]]
-    """The other tables of the file: errors, types, enumerators and so on."""
+    """The other tables of the file: errors, types, enumerators and others."""
 
     @property
     def signatures(self) -> dict[str, Signature]:
@@ -72,7 +72,7 @@ class Contract:
         return found
 
     def available(self, name: str) -> str | None:
-        """The interface, or the nearest predecessor that the profile has."""
+        """The interface or, where the profile lacks it, the nearest predecessor that the profile has."""
         if name not in self.omits:
             return name
         bases = [self.available(base) for base in self.interfaces[name].extends]
@@ -86,7 +86,10 @@ class Contract:
 
 
 def load(profile: str | None = None, file: Path = _FILE) -> Contract:
-    """Read the contract for a profile, its own if `None`; raises `ValueError` for a profile it has not."""
+    """The contract for a profile, for that which the file names as its default if `None`.
+
+    Raises `ValueError` for a profile that the file does not have.
+    """
     data = tomllib.loads(file.read_text(encoding="utf-8"))
     name, profiles = profile or data["profile"], data["profiles"]
     if name not in profiles:

@@ -38,7 +38,7 @@ def literal(value: float) -> str:
 
 
 def is_size_test(condition: sp.Basic) -> bool:
-    """Whether a condition asks of an input that it is a number of reasonable size."""
+    """Whether a condition tests that an input is a number of reasonable size."""
     if not isinstance(condition, sp.Le) or condition.rhs != LARGEST or not isinstance(condition.lhs, sp.Abs):
         return False
     return bool(condition.lhs.args[0].is_Symbol)
@@ -59,13 +59,13 @@ def limits_of(expression: sp.Basic) -> tuple[sp.Expr, sp.Expr, sp.Expr] | None:
 
 
 class StructuredText(ExpressionPrinter):
-    """Spell an expression, given the spelling of every name in it."""
+    """Writes an expression, given the spelling of every name in it."""
 
     def __init__(self, names: Mapping[str, str]) -> None:
         self.names = names
 
     def print(self, expression: sp.Basic) -> str:
-        """The expression as text. The size of an input is tested by comparison: nothing else is safe."""
+        """The expression as text. The size of an input is tested by comparisons, which are defined for every input."""
         if is_size_test(expression):
             return f"Softkin_IsNumber({self.print(expression.lhs.args[0])})"
         if is_larger(expression):
@@ -75,7 +75,7 @@ class StructuredText(ExpressionPrinter):
         return super().print(expression)
 
     def name(self, symbol: sp.Symbol) -> str:
-        """A symbol's spelling."""
+        """The spelling of a symbol."""
         return self.names[symbol.name]
 
     def number(self, value: float) -> str:
@@ -90,13 +90,13 @@ class StructuredText(ExpressionPrinter):
         return f"{_FUNCTIONS[key]}({', '.join(arguments)})"
 
     def factor(self, expression: sp.Basic) -> str:
-        """A whole number as a real one."""
+        """A whole number converted to a real number."""
         return f"INT_TO_LREAL({self.whole(expression)})"
 
     def logic(self, word: str) -> str:
-        """Logical words."""
+        """The spelling of a logical word."""
         return word.upper()
 
     def comparison(self, operator: str) -> str:
-        """Equality has one sign, the opposite two that point apart."""
+        """The spelling of a comparison: `=` and `<>` for equality and its opposite."""
         return {"==": "=", "!=": "<>"}.get(operator, operator)

@@ -1,4 +1,4 @@
-"""Lines of Structured Text: indents, and long statements broken where they read well."""
+"""The layout of Structured Text: indents, and breaks in long statements where they read well."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from textwrap import wrap
 WIDTH = 110
 _INDENT = "  "
 INSIDE = len(_INDENT)
-"""By how much a line inside a choice is shorter."""
+"""The columns that an indent takes from a line inside an IF."""
 _CALL = re.compile(r"\w+\([^()]*\)")
 _PLAIN_WORD = re.compile(r"[a-z]+\b")
-"""A word that may begin a sentence with a capital: no name."""
+"""A word that is no name, so that it may begin a sentence with a capital letter."""
 _LONG_CONDITION = 45
 _LEAST_COMMENT = 30
-"""Columns of a comment beside a declaration, however long that is."""
+"""The fewest columns of a comment beside a declaration."""
 _BREAKS = (" + ", " - ", " AND ", " OR ")
 
 
 def indented(lines: Sequence[str]) -> list[str]:
-    """The lines, one step further in."""
+    """The lines, each with one more indent."""
     return [_INDENT + line if line else line for line in lines]
 
 
 def wrapped(statement: str, width: int = WIDTH - INSIDE) -> list[str]:
-    """The lines of a statement: broken before an operator or behind a comma, outermost parentheses first."""
+    """The lines of a statement, broken before an operator or behind a comma, first outside of all parentheses."""
     lines: list[str] = []
     margin = ""
     while len(margin) + len(statement) > width:
@@ -39,7 +39,7 @@ def wrapped(statement: str, width: int = WIDTH - INSIDE) -> list[str]:
 
 
 def packed(pieces: Sequence[str]) -> list[str]:
-    """Short pieces together on lines that leave room for an indent."""
+    """Lines of several short pieces each, which leave room for an indent."""
     lines: list[str] = []
     for piece in pieces:
         if lines and len(lines[-1]) + 1 + len(piece) <= WIDTH - 10:
@@ -50,12 +50,12 @@ def packed(pieces: Sequence[str]) -> list[str]:
 
 
 def assigned(target: str, value: str) -> str:
-    """`target := value;` in as many lines as it takes."""
+    """The lines of `target := value;`."""
     return "\n".join(wrapped(f"{target} := {value};"))
 
 
 def conjunction(head: str, parts: Sequence[str], tail: str) -> list[str]:
-    """`head (first) AND (second) tail`, one condition a line where they are long."""
+    """The lines of `head (first) AND (second) tail`; long conditions get a line each."""
     if len(parts) == 1:
         return wrapped(f"{head}{parts[0]}{tail}")
     bracketed = [part if _CALL.fullmatch(part) else f"({part})" for part in parts]
@@ -67,7 +67,7 @@ def conjunction(head: str, parts: Sequence[str], tail: str) -> list[str]:
 
 
 def commented(lines: Sequence[str], comment: str, width: int = WIDTH - INSIDE) -> list[str]:
-    """The lines with a comment beside the last one, or above where there is no room."""
+    """The lines with a comment beside the last one, or above the first one where there is no room."""
     if not comment:
         return list(lines)
     if len(lines) == 1 and len(f"{lines[0]}  // {comment}") <= width:
@@ -77,7 +77,7 @@ def commented(lines: Sequence[str], comment: str, width: int = WIDTH - INSIDE) -
 
 
 def beside(declaration: str, comment: str) -> list[str]:
-    """A declaration with its comment beside it, on further lines where it is long."""
+    """A declaration with its comment beside it; a long comment continues on further lines."""
     if not comment:
         return [declaration]
     margin = " " * (len(declaration) + 2 + len(declaration) % 2)
@@ -86,7 +86,7 @@ def beside(declaration: str, comment: str) -> list[str]:
 
 
 def case(label: int, target: str, text: str) -> list[str]:
-    """`label: target := 'text';`, on further lines where the text is long: a text cannot be broken."""
+    """The lines of `label: target := 'text';`. A long text gets a line of its own, because it cannot be broken."""
     head, value = f"{label}:", f"'{text}';"
     if len(f"{head} {target} := {value}") <= WIDTH - INSIDE:
         return [f"{head} {target} := {value}"]
@@ -96,7 +96,7 @@ def case(label: int, target: str, text: str) -> list[str]:
 
 
 def _place(text: str, width: int) -> int | None:
-    """The best place to break within a width: least nested, then furthest; the first one beyond if none fits."""
+    """The best place to break within a width: the least nested one, among equals the last; beyond if none fits."""
     places = list(_places(text))
     fitting = [(depth, -at) for at, depth in places if width // 4 < at <= width]
     if fitting:
@@ -105,7 +105,7 @@ def _place(text: str, width: int) -> int | None:
 
 
 def _places(text: str) -> Iterator[tuple[int, float]]:
-    """Where a line may end, and how deep that is: a product binds half a level more than a sum."""
+    """The places where a line may end, each with its depth: a product is half a level deeper than a sum."""
     depth = 0
     for at, character in enumerate(text):
         if character in "([":

@@ -1,4 +1,4 @@
-"""Systems of linear equations and iterations in Structured Text: fixed local arrays, a bounded loop left by EXIT."""
+"""Systems of linear equations and iterations in Structured Text: local arrays of fixed size, bounded loops, EXIT."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from derive.ir.program import Iterate, Solve, Statement
 
 _MATRIX, _RIGHT, _PASS, _CONVERGED = "coefficients", "unknowns", "iteration", "converged"
 LOCALS = (_MATRIX, _RIGHT, _PASS, _CONVERGED)
-"""The names that no temporary may have."""
+"""The names that no temporary variable may have."""
 
 
 def declarations(body: Iterable[Statement]) -> tuple[str, ...]:
-    """The variables that systems and loops need besides the temporaries."""
+    """The variables that systems and loops need besides the temporary variables of the program."""
     loops = [s for s in body if isinstance(s, Iterate)]
     systems = [s for s in body if isinstance(s, Solve)] + [i for s in loops for i in s.step if isinstance(i, Solve)]
     found = tuple(f"{name} : ARRAY[1..6, 1..6] OF LREAL;" for name in (_MATRIX, _RIGHT)) if systems else ()
@@ -24,7 +24,7 @@ def declarations(body: Iterable[Statement]) -> tuple[str, ...]:
 
 
 def solve_lines(system: Solve, printer: StructuredText) -> Iterator[str]:
-    """Fill the matrix and the right-hand sides, solve, and read what stands in their place."""
+    """The lines that fill the matrix and the right-hand sides, solve, and read the solution from the same arrays."""
     if system.size > 6 or system.columns > 6:
         raise ValueError("Softkin_Solve knows at most six unknowns and six right-hand sides")
     yield from _filled(_MATRIX, system.matrix, system.size, printer)
@@ -38,20 +38,22 @@ def solve_lines(system: Solve, printer: StructuredText) -> Iterator[str]:
 
 
 def elements(system: Solve) -> dict[str, str]:
-    """Where the solution stands, by the names of the unknowns."""
+    """The array elements that hold the solution, by the names of the unknowns."""
     return {
         n.name: f"{_RIGHT}[{k // system.columns + 1}, {k % system.columns + 1}]" for k, n in enumerate(system.names)
     }
 
 
 def kept(body: Sequence[Statement]) -> dict[str, str]:
-    """The unknowns that need no variables of their own: those of a system at the end, for several right-hand sides."""
+    """The unknowns that need no variables, because outputs read the array: those of a system with several right-hand
+    sides at the end of a program.
+    """
     last = body[-1] if body else None
     return elements(last) if isinstance(last, Solve) and last.columns > 1 else {}
 
 
 def loop_lines(loop: Iterate, step: Sequence[str], printer: StructuredText, refusal: Sequence[str]) -> Iterator[str]:
-    """The start, the bounded loop around the step, and the refusal where it never was done."""
+    """The lines of an iteration: the start, the bounded loop with the step, and the refusal if it does not converge."""
     yield from _assigned(loop.state, loop.start, printer)
     yield f"{_CONVERGED} := FALSE;"
     yield f"FOR {_PASS} := 1 TO {loop.limit} DO"

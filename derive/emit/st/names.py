@@ -1,4 +1,4 @@
-"""Names in Structured Text: words joined, prefixes at the interface, unique ignoring case."""
+"""Names in Structured Text: words are joined, inputs have prefixes, and no two names differ in case alone."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from derive.emit.st.reserved import reserved
 from derive.ir.types import Type
 
 _LETTERS = {"zc": "ZC"}
-"""Words that are letters of axes."""
+"""Words that stand for axes, and so are written in capital letters."""
 _NEUTRAL = re.compile(r"[a-z]+(_[a-z0-9]+)+")
 _PREFIX = {Role.FLAG: "x", Role.SIGN: "i"}
 
@@ -21,7 +21,7 @@ TEMPLATE_LOCALS = frozenset(
     relative rot rotation row single slot solution space status total tried
     """.split()
 )
-"""Variables that the templates of methods declare."""
+"""The variables that the templates of methods declare."""
 
 
 def joined(name: str) -> str:
@@ -51,7 +51,7 @@ def stored_name(name: str) -> str:
 
 
 def respelled(text: str, names: Mapping[str, str]) -> str:
-    """A sentence with the neutral names in it as they are spelled here, in ASCII."""
+    """A sentence in ASCII, in which every neutral name is replaced by its spelling."""
     return _NEUTRAL.sub(lambda found: names.get(found.group(), found.group()), text).replace("²", "^2")
 
 

@@ -1,4 +1,4 @@
-"""A program as statements of Structured Text: assignments, early returns, and the text of its outputs."""
+"""A program as statements of Structured Text: assignments, early returns, and the expressions of its outputs."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from derive.lowering.decided import decided
 from derive.lowering.scheduling import structured
 
 _SHORT = 72
-"""A selection that fits in this many columns stays on one line."""
+"""The most columns of a selection that stays on one line."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Printed:
     """A program in Structured Text."""
 
     variables: tuple[tuple[str, str], ...]
-    """Its temporaries, with their types."""
+    """Its temporary variables, with their types."""
     declarations: tuple[str, ...]
     """Further variables, with their types."""
     body: str
@@ -56,10 +56,10 @@ class Printed:
 def printed(
     program: Program, given: Mapping[str, str], stored: Mapping[str, str], taken: Iterable[str], refusal: Refusal
 ) -> Printed:
-    """Spell a program.
+    """A program in Structured Text.
 
-    `given` spells what it reads, `stored` those of its bindings that are instance variables; the others are
-    temporaries, and have none of the names in `taken`.
+    given: the spellings of the values that it reads; stored: those of the values that it binds to instance variables.
+    All other values are bound to temporary variables, whose names are not in `taken`.
     """
     items = structured(program)
     stored = {**stored, **kept(program.body)}
@@ -108,7 +108,9 @@ def _body(body: Sequence[Item], printer: StructuredText, refusal: Refusal, width
 
 
 def _sides(choice: If, printer: StructuredText, refusal: Refusal, width: int) -> Iterator[str]:
-    """A choice, each side with what it alone needs. Notes of what both bind stand above it."""
+    """The lines of a choice, each side with the values that it alone needs. A note on a value that both sides bind
+    stands above the choice.
+    """
 
     def side(items: Sequence[Item]) -> list[str]:
         return indented(list(_body(_unnoted(items, choice.names), printer, refusal, width - INSIDE)))
@@ -130,7 +132,7 @@ def _note_of(choice: If, names: Mapping[str, str]) -> str:
 
 
 def _unnoted(side: Sequence[Item], names: Sequence[sp.Symbol]) -> list[Item]:
-    """A side without the notes that stand above the choice."""
+    """One side of a choice, without the notes that stand above it."""
     return [replace(s, note="", turn_of="") if isinstance(s, Let) and s.name in names else s for s in side]
 
 
@@ -138,10 +140,11 @@ Kind = tuple[Status | str | None, object, bool]
 
 
 def _kind(statement: Item, printer: StructuredText) -> Kind:
-    """What statements in a row have in common that are printed together.
+    """The key by which consecutive statements are grouped and printed together.
 
-    Conditions that refuse alike, about the same subject, are one condition. Those on the size of inputs stay apart: AND
-    evaluates both sides, and what follows them is defined only where they hold. Selections by one condition are one IF.
+    Conditions with the same refusal and the same subject become one condition. Tests of the size of inputs stay
+    separate, because AND evaluates both sides, and what follows is defined only where these tests hold. Selections by
+    one condition become one IF.
     """
     if isinstance(statement, Solve | Iterate | Call | FindRoot | If):
         return None, statement, False
@@ -166,7 +169,7 @@ def _assignments(lets: Sequence[Let], printer: StructuredText, width: int) -> It
 
 
 def _choice(condition: str, lets: Sequence[Let], printer: StructuredText, width: int) -> list[str]:
-    """Selections by one condition: a single one that is short or between slight values as SEL, others as IF."""
+    """The lines of selections by one condition: SEL for a single one that is short or has simple values, else IF."""
     whole = [_assignment(let, let.value, printer) for let in lets]
     if len(lets) == 1 and (len(whole[0]) <= _SHORT or all(map(_is_slight, lets[0].value.args[1:]))):
         return wrapped(whole[0], width)
@@ -179,7 +182,7 @@ def _choice(condition: str, lets: Sequence[Let], printer: StructuredText, width:
 
 
 def _is_slight(value: sp.Expr) -> bool:
-    """Whether a value takes one operation at most, and no division."""
+    """Whether a value takes at most one operation, and no division."""
     inner = [a for a in value.args if a != -1]
     return isinstance(value, sp.Symbol | sp.Number | sp.Add | sp.Mul | Root) and all(_is_atom(a) for a in inner)
 

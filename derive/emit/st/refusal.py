@@ -1,4 +1,4 @@
-"""How a method ends where a condition of its program does not hold."""
+"""The refusals of a method: how it ends where a condition of its program does not hold."""
 
 from __future__ import annotations
 
@@ -15,32 +15,31 @@ from derive.ir.reason import OtherTurn
 from derive.report.reasons import Reasons
 
 REASON, MISSING, TURN = "iReason", "dMissing", "iTurn"
-"""The outputs of a method that explains its refusals: a number, for which Diagnose has the text, an amount, and the
-number of a
-turn that is inside."""
+"""The outputs of a method that explains its refusals: the number of a text of Diagnose, the missing amount, and the
+number of a turn that is inside the limits."""
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """The statements up to and with RETURN, for a method of that signature."""
+    """Writes the statements up to RETURN, for a method with a given signature."""
 
     signature: Signature
     errors: Mapping[str, str]
-    """The spelling of every status, by its name."""
+    """The spelling of every status, by the name of the status."""
     type: str
     """The type of an error."""
 
     def of(self, status: Status) -> tuple[str, ...]:
-        """Refuse with a status."""
+        """The lines that refuse with a status."""
         return self.answering(self.errors[status.name])
 
     def of_loop(self, loop: Iterate) -> tuple[str, ...]:
-        """Refuse where a loop was never left."""
+        """The lines that refuse where a loop is never left."""
         return self.of(loop.otherwise)
 
     def answering(self, error: str) -> tuple[str, ...]:
-        """Refuse with an error that an expression gives. What allows no pose is singular; any other question is
-        answered no.
+        """The lines that refuse with an error, given as an expression. IsSingularity then answers TRUE, and every other
+        method that returns BOOL answers FALSE.
         """
         if not self.signature.returns:
             return ("RETURN;",)
@@ -49,7 +48,7 @@ class Refusal:
         return (f"{self.signature.name} := {value};", "RETURN;")
 
     def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
-        """Refuse where conditions that refuse alike do not all hold."""
+        """The lines that refuse where conditions with the same refusal do not all hold."""
         parts = [printer.print(part) for r in requires for part in sp.ordered(sp.And.make_args(r.condition))]
         head = conjunction("IF NOT (", parts, ") THEN")
         return [*head, *indented(self.of(requires[0].otherwise)), "END_IF"]
@@ -57,18 +56,18 @@ class Refusal:
 
 @dataclass(frozen=True)
 class Explained(Refusal):
-    """The same for a method that also says why, and how much is missing."""
+    """Writes refusals for a method that also gives the reason and the missing amount."""
 
     reasons: Reasons
     texts: Sequence[str]
-    """All reasons of the block: the place of one, from 1, is its number."""
+    """All reasons of the block; the number of a reason is its position, counted from 1."""
 
     def of_loop(self, loop: Iterate) -> tuple[str, ...]:
-        """Refuse where a loop was never left."""
+        """The lines that refuse where a loop is never left."""
         return self._because(self.reasons.loop(loop), loop.otherwise)
 
     def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
-        """Every reason for itself."""
+        """The lines that refuse, for each reason separately."""
         return list(self._lines(requires, printer))
 
     def _lines(self, requires: Sequence[Require], printer: StructuredText) -> Iterator[str]:
@@ -80,7 +79,9 @@ class Explained(Refusal):
             yield "END_IF"
 
     def _numbered(self, plain: str, turns: Sequence[tuple[OtherTurn, str]], printer: StructuredText) -> Iterator[str]:
-        """The number of the reason: of the first axis that is inside on another turn, or the plain one."""
+        """The lines that set the number of the reason: that of the first axis with another turn inside its limits, else
+        the plain one.
+        """
         if not turns:
             yield f"{REASON} := {self._number(plain)};"
             return
@@ -101,6 +102,6 @@ class Explained(Refusal):
 
 
 def _one(word: str, ends: Sequence[sp.Expr], printer: StructuredText) -> str:
-    """The largest or the smallest of one or more ends."""
+    """The largest or the smallest of one or more limits."""
     texts = [printer.print(end) for end in ends]
     return f"{word}({', '.join(texts)})" if len(texts) > 1 else texts[0]

@@ -1,4 +1,4 @@
-"""Names that generated Structured Text may not declare, and the refusal of those that a description led to."""
+"""Names that generated Structured Text may not declare; a description that leads to one of them is refused."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _REMEDY = "choose another name for the mechanism, parameter, joint or branch tha
 
 @lru_cache
 def _lists() -> dict[str, tuple[str, frozenset[str], tuple[str, ...]]]:
-    """Every list of the file: what its names are, the names in small letters, and prefixes of names."""
+    """The lists of the file: what the names of a list are, the names in small letters, and prefixes of names."""
     data = tomllib.loads(_FILE.read_text(encoding="utf-8"))
     return {
         key: (d["meaning"], frozenset(d["names"].lower().split()), tuple(p.lower() for p in d.get("prefixes", ())))
@@ -26,12 +26,12 @@ def _lists() -> dict[str, tuple[str, frozenset[str], tuple[str, ...]]]:
 
 
 def reserved() -> frozenset[str]:
-    """Words of the language and macros, in small letters: no variable is spelled like one."""
+    """The words of the language and the macros, in small letters: no variable has such a name."""
     return _lists()["keywords"][1] | _lists()["macros"][1]
 
 
 def clash(name: str) -> str | None:
-    """What else a name means, or `None`."""
+    """The other meaning of a name, or `None`."""
     small = name.lower()
     for meaning, names, prefixes in _lists().values():
         if small in names or small.startswith(prefixes):
@@ -40,7 +40,7 @@ def clash(name: str) -> str | None:
 
 
 def refuse_clashes(files: Mapping[str, Sequence[Object]]) -> None:
-    """Raise `DescriptionError` for an object or a variable with a name that means something else, or that is taken."""
+    """Raise `DescriptionError` for an object or a variable whose name has another meaning, or is taken."""
     owners: dict[str, str] = {}
     for file, objects in files.items():
         for one in objects:
@@ -55,7 +55,7 @@ def refuse_clashes(files: Mapping[str, Sequence[Object]]) -> None:
 
 
 def _declared(objects: Iterable[Object]) -> Iterator[tuple[str, str]]:
-    """The object that declares, and the name. The names of methods are those of the contract."""
+    """Pairs of the declaring object and the declared name, except the names of methods, which the contract gives."""
     for one in objects:
         yield one.name, one.name
         for part in one.parts():

@@ -1,5 +1,5 @@
-"""The commanded rotation in Structured Text: the body of the function that all blocks call, and the texts of its
-reasons."""
+"""The repair of the commanded rotation in Structured Text: the body of the function that all blocks call, and the texts
+of its reasons."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ _ARRAY = "aElements"
 
 @dataclass(frozen=True)
 class RotationFunction:
-    """What the templates read."""
+    """The values that the templates read."""
 
     name: str
     program: Printed
     reasons: tuple[str, ...]
-    """The place of one, from 1, is its number."""
+    """The reasons; the number of a reason is its position, counted from 1."""
 
 
 def rotation_function(contract: Contract) -> RotationFunction:
-    """The function, spelled."""
+    """The function in Structured Text."""
     errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
     texts = rotation_texts()
     refusal = Explained(Signature(_FUNCTION, "BOOL", ()), errors, error, reasons_of_rotation(), texts)

@@ -1,7 +1,7 @@
-"""The search for a root in Structured Text: a private method around the two programs that it calls.
+"""The root scan in Structured Text: a private method that calls two programs.
 
-`FindRoot` is the same text for every mechanism, but for what is handed on; `TryAt` calls the trial at a place of a
-cell.
+`FindRoot` has the same text for every mechanism, except for the arguments that it passes on. `TryAt` evaluates the
+trial at a point of a cell.
 """
 
 from __future__ import annotations
@@ -46,19 +46,19 @@ SEARCH = {
     "gap": literal(cells.GAP),
     "flat": literal(cells.FLAT),
 }
-"""The constants of a search, as the text reads them."""
+"""The constants of a root scan, by the names in the text."""
 
 
 @dataclass(frozen=True)
 class SearchText:
-    """What the two methods are made of."""
+    """The parts of which the templates make the two methods."""
 
     given: tuple[str, ...]
-    """What a trial is given, as the search names it: its numbers."""
+    """The real arguments of a trial, as the scan names them."""
     chosen: tuple[str, ...]
-    """The same: its signs."""
+    """The signs among the arguments of a trial, as the scan names them."""
     columns: int
-    """How many numbers a trial says."""
+    """The number of results of a trial."""
     directions: int
     tried_outputs: tuple[str, ...]
     try_call: str
@@ -68,15 +68,15 @@ class SearchText:
 
 
 def search_in(program: Program) -> FindRoot | None:
-    """The search that a program is, if it is one."""
+    """The root scan, if a program consists of one; else None."""
     return next((s for s in program.body if isinstance(s, FindRoot)), None)
 
 
 def try_at_signature(search: FindRoot) -> Signature:
-    """The method that tries a place of a cell."""
+    """The signature of the method that evaluates the trial at a point of a cell."""
     inputs = {"dBase": "LREAL", "dScale": "LREAL", "xCurved": "BOOL", "dS": "LREAL", "iFreed": "INT", "dAngle": "LREAL"}
     numbers, signs = _given(search)
-    arrays = {"aGiven": (numbers, "LREAL"), "aSigns": (signs, "INT"), "aSaid": (search.trial.outputs, "LREAL")}
+    arrays = {"aGiven": (numbers, "LREAL"), "aSigns": (signs, "INT"), "aResults": (search.trial.outputs, "LREAL")}
     parameters = [Parameter("VAR_INPUT", name, kind) for name, kind in inputs.items()]
     sized = {name: f"ARRAY[1..{len(own)}] OF {kind}" for name, (own, kind) in arrays.items() if own}
     parameters += [Parameter("VAR_IN_OUT", name, kind) for name, kind in sized.items()]
@@ -112,13 +112,13 @@ def search_text(search: FindRoot) -> SearchText:
 
 
 def _given(search: FindRoot) -> tuple[list[str], list[str]]:
-    """The numbers and the signs that a trial is given."""
+    """The real arguments and the signs of a trial."""
     given = [s for s in search.given(search.trial) if s not in PLACE]
     return [joined(s.name) for s in given if not is_count(s)], [joined(s.name) for s in given if is_count(s)]
 
 
 def _arguments(search: FindRoot, program: Program, places: Mapping[str, str]) -> list[str]:
-    """What a program is given: a part of the place, or an argument of the search by its name."""
+    """The arguments of a program: a coordinate of the trial, or an argument of the scan by its name."""
     found = []
     for s in search.given(program):
         name = joined(s.name)

@@ -1,6 +1,7 @@
-"""Programs that several methods share: each is a private method, and a call of it is a statement.
+"""Programs that several methods share: each is a private method, and calling it is a statement.
 
-Its arguments are inputs, its outputs outputs. What stands in a structure (`a.a0`) is handed on with the whole of it.
+Its arguments are inputs and its results are outputs. A value in a structure (`a.a0`) is passed with the whole
+structure.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from derive.ir.program import Call, Program, Status
 from derive.ir.types import type_of
 
 OUTCOME = "outcome"
-"""The variable that holds what a call answered."""
+"""The variable that holds the error that a call returns."""
 
 
 def method_name(program: Program) -> str:
@@ -28,7 +29,7 @@ def method_name(program: Program) -> str:
 
 
 def signature_of(program: Program, spelled: Mapping[str, str], contract: Contract) -> Signature:
-    """The private method of a shared program, given the spelling of what all methods can read."""
+    """The signature of the private method of a shared program, given the spelling of what all methods can read."""
     parts = {spelled.get(s.name, s.name) for s in program.inputs}
     whole = {re.split(r"\W", text)[0] for text in parts if not text.isidentifier()}
     axes = contract.signatures["Jacobian"].parameters[1]
@@ -45,13 +46,13 @@ def signature_of(program: Program, spelled: Mapping[str, str], contract: Contrac
 
 
 def own_names(program: Program, spelled: Mapping[str, str]) -> dict[str, str]:
-    """How a shared program spells its arguments and outputs: they are parameters of its method."""
+    """The spelling of the arguments and the results of a shared program, which are parameters of its method."""
     own = [s.name for s in program.inputs if s.name not in spelled] + [o.name for o in program.outputs]
     return {name: joined(name) for name in own}
 
 
 def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterator[str]:
-    """Call the method, and hand its refusal on."""
+    """The lines that call the method, and pass on its refusal."""
     arguments = list(dict.fromkeys(_argument(name, value, printer) for name, value in call.given))
     results = [f"{joined(name.name)} => {printer.name(name)}" for name in call.names]
     yield from _packed(f"{OUTCOME} := {method_name(call.program)}(", arguments, results)
@@ -69,7 +70,7 @@ def _argument(name: sp.Symbol, value: sp.Expr, printer: StructuredText) -> str:
 
 
 def _packed(head: str, arguments: Sequence[str], results: Sequence[str]) -> list[str]:
-    """Inputs and outputs on lines of their own."""
+    """The lines of a call, with inputs and outputs on separate lines."""
     lines = [*packed([f"{a}," for a in arguments]), *packed([f"{r}," for r in results])]
     lines[-1] = lines[-1].removesuffix(",") + ");"
     return [head, *indented(indented(lines))]

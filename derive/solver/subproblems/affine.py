@@ -1,7 +1,7 @@
 """Affine:  k v + c = 0  with k never zero.
 
-One root, v = -c / k. Slope k. There is no degenerate case: an equation whose k can vanish is not taken. Where k is made
-of parameters alone, the machine is refused for which it vanishes.
+One root, v = -c / k. Determinant k. There is no degenerate case: an equation whose k can vanish is not taken. Where k
+is made of parameters alone, the machine is refused for which it vanishes.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def affine(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Bindin
         linear = linear_coefficients(equation.expression, unknowns)
         if linear is None or not problem.determines(linear[0][0]):
             continue
-        (slope,), rest = linear
+        (coefficient,), rest = linear
         note = f"{unknowns[0].name} from the {equation.label} equation, which is linear in it"
-        statements = (*equation.lets, Let(unknowns[0], sp.expand(-rest / slope), note))
-        yield Binding("affine", unknowns, statements, conditions=problem.conditions(slope))
+        statements = (*equation.lets, Let(unknowns[0], sp.expand(-rest / coefficient), note))
+        yield Binding("affine", unknowns, statements, conditions=problem.conditions(coefficient))

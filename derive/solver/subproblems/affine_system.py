@@ -1,8 +1,8 @@
 """Affine system:  M v = e  for two or three unknown lengths v in as many equations, with det M never zero.
 
-One root, by Cramer's rule. Slope det M. There is no degenerate case: equations whose slope can vanish are not taken. A
-single coefficient may vanish: a table turned by 90 degrees exchanges its axes. Where det M is made of parameters alone,
-the machine is refused for which it vanishes: two of its slides are parallel.
+One root, by Cramer's rule. Determinant det M. There is no degenerate case: equations whose determinant can vanish are not
+taken. A single coefficient may vanish: a table turned by 90 degrees exchanges its axes. Where det M is made of
+parameters alone, the machine is refused for which it vanishes: two of its slides are parallel.
 """
 
 from __future__ import annotations
@@ -47,16 +47,16 @@ def _solve(problem: Problem, equations: tuple[Equation, ...], unknowns: tuple[sp
         return None
     matrix = sp.Matrix([row[0] for row in rows if row is not None])
     rest = sp.Matrix([row[1] for row in rows if row is not None])
-    slope = problem.reduce(matrix.det(method="berkowitz"))
-    if not problem.determines(slope):
+    determinant = problem.reduce(matrix.det(method="berkowitz"))
+    if not problem.determines(determinant):
         return None
-    inverse = slope if slope in problem.signs or -slope in problem.signs else 1 / slope
+    inverse = determinant if determinant in problem.signs or -determinant in problem.signs else 1 / determinant
     values = [problem.tidy(v * inverse) for v in -_adjugate(problem, matrix) * rest]
     labels, names = ([str(v) for v in group] for group in ((e.label for e in equations), unknowns))
     note = f"{_listed(names)} from the {_listed(labels)} equations, {_WORDS[len(unknowns)]}"
     lets = (Let(unknowns[0], values[0], note), *map(Let, unknowns[1:], values[1:]))
     statements = (*(let for e in equations for let in e.lets), *lets)
-    return Binding(f"affine {_NAMES[len(unknowns)]}", unknowns, statements, conditions=problem.conditions(slope))
+    return Binding(f"affine {_NAMES[len(unknowns)]}", unknowns, statements, conditions=problem.conditions(determinant))
 
 
 def _adjugate(problem: Problem, matrix: sp.Matrix) -> sp.Matrix:

@@ -1,7 +1,7 @@
 """Direction:  cos u : sin u = along : across.
 
-One root. Where the measure (the length of the vector that turns) vanishes nothing determines u: it takes the value of
-the reference. Cosine and sine are divided by the length of (along, across) itself, so that sin^2 + cos^2 = 1 to
+One root. Where the conditioning (the length of the vector that turns) vanishes nothing determines u: it takes the value
+of the reference. Cosine and sine are divided by the length of (along, across) itself, so that sin^2 + cos^2 = 1 to
 rounding.
 """
 
@@ -37,17 +37,17 @@ def direction(
     *,
     along: sp.Expr,
     across: sp.Expr,
-    measure: sp.Expr,
+    conditioning: sp.Expr,
     note: str,
     is_length: bool = False,
     scale: sp.Expr | None = None,
 ) -> tuple[Statement, ...]:
-    """Bind cosine and sine of the angle; `measure` decides whether they are determined.
+    """Bind cosine and sine of the angle; `conditioning` decides whether they are determined.
 
-    `is_length`: the measure is the length of (along, across) itself. `scale`: what it is compared with, a length of the
-    machine.
+    `is_length`: the conditioning is the length of (along, across) itself. `scale`: the length of the machine with
+    which it is compared.
     """
-    determined = sp.Gt(measure, FREE_ANGLE * (problem.scale if scale is None else scale))
+    determined = sp.Gt(conditioning, FREE_ANGLE * (problem.scale if scale is None else scale))
     cos_free, sin_free = free_angle(problem, angle)
     names = [real(f"{word}_{angle.name}") for word in ("along", "across", "length")]
     cos_name, sin_name, length = names
@@ -56,7 +56,7 @@ def direction(
     return (
         Let(cos_name, along, note),
         Let(sin_name, across),
-        Let(length, Select(long_enough, measure if is_length else Root(square), sp.Integer(1))),
+        Let(length, Select(long_enough, conditioning if is_length else Root(square), sp.Integer(1))),
         Let(cosine(angle), Select(determined, cos_name / length, cos_free), AT_THE_SINGULARITY),
         Let(sine(angle), Select(determined, sin_name / length, sin_free)),
     )

@@ -2,9 +2,10 @@
 
 This is Paden and Kahan's subproblem 4 with a point that moves. Two roots: let h = |(a, b)| be the distance of the point
 from the axis of u, and s = sigma sqrt((h - e)(h + e)) how far ahead of the axis the point is. Then cos u = (a e - b s)
-/ h^2 and sin u = (b e + a s) / h^2. The radicand stays a product. Slope a sin u - b cos u = s: sigma is its sign.
+/ h^2 and sin u = (b e + a s) / h^2. The radicand stays a product. Determinant a sin u - b cos u = s: sigma is its sign.
 Guard: |e| <= h, else the point is closer to the axis than the lateral offset is long. Degenerate case: the point is on
-the axis, h = 0. It cannot be reached unless e is zero too, and then u is free. So h is the measure where e is zero.
+the axis, h = 0. It cannot be reached unless e is zero too, and then u is free. So h is the conditioning where e is
+zero.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.equations.problem import Binding, Equation, Legs, Measure, Problem, Slope
+from derive.equations.problem import Binding, Conditioning, Equation, Legs, Problem, StepDeterminant
 from derive.ir.constants import (
     BOUNDARY,
     FREE_ANGLE,
@@ -50,28 +51,28 @@ def aimed_at_point(problem: Problem, equation: Equation, angle: sp.Symbol, row: 
         f"distance_{angle.name}", along, across, note=f"distance of the point from the axis of {angle.name}"
     )
     scale = equation.scales.get(angle, problem.scale)
-    slope = Slope(angle, a * sine(angle) - b * cosine(angle), scale)
+    determinant = StepDeterminant(angle, a * sine(angle) - b * cosine(angle), scale)
     note = f"rotation by {angle.name} that points the arm at the point"
     if e == 0:
-        one_way = _only_way(problem, slope.value)
-        way = slope.sigma if one_way is None else one_way
+        one_way = _only_way(problem, determinant.value)
+        way = determinant.sigma if one_way is None else one_way
         ahead = Let(real(f"ahead_{angle.name}"), way * distance, _AHEAD)
         known = direction(
-            problem, angle, along=-way * across, across=way * along, measure=distance, note=note, is_length=True
+            problem, angle, along=-way * across, across=way * along, conditioning=distance, note=note, is_length=True
         )
-        measure = Measure(angle, distance, problem.scale)
+        conditioning = Conditioning(angle, distance, problem.scale)
         legs = Legs(ahead.name, distance**2, sp.Integer(0), distance, along, across)
-        with_legs = replace(slope, legs=legs) if one_way is None else None
-        return Binding("lateral", (angle,), (*naming.lets, ahead, *known), with_legs, measure)
+        with_legs = replace(determinant, legs=legs) if one_way is None else None
+        return Binding("lateral", (angle,), (*naming.lets, ahead, *known), with_legs, conditioning)
     beside = naming.named(e, f"beside_{angle.name}", "lateral offset of the arm")
-    return _beside(problem, angle, naming, (along, across, beside, distance), slope, note)
+    return _beside(problem, angle, naming, (along, across, beside, distance), determinant, note)
 
 
-def _only_way(problem: Problem, slope: sp.Expr) -> sp.Expr | None:
-    """The sign of the slope where an equation makes the slope equal or opposite to a positive length; else None."""
+def _only_way(problem: Problem, determinant: sp.Expr) -> sp.Expr | None:
+    """The sign of the determinant where an equation makes it equal or opposite to a positive length; else None."""
     for equation in problem.equations:
         for sign in (sp.Integer(1), sp.Integer(-1)):
-            if problem.is_positive(problem.reduce(equation.expression - sign * slope)):
+            if problem.is_positive(problem.reduce(equation.expression - sign * determinant)):
                 return sign * -1
     return None
 
@@ -81,7 +82,7 @@ def _beside(
     angle: sp.Symbol,
     naming: Naming,
     row: tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr],
-    slope: Slope,
+    determinant: StepDeterminant,
     note: str,
 ) -> Binding:
     along, across, beside, distance = row
@@ -98,10 +99,10 @@ def _beside(
         Let(rounding, BOUNDARY * shortest**2, "rounding error of a squared length"),
         Let(square, (distance - beside) * (distance + beside), "Pythagoras: square of the distance ahead of the axis"),
         Require(sp.Ge(square, -BOUNDARY * distance**2 - rounding), Status.UNREACHABLE, reason=reason),
-        Let(ahead, slope.sigma * Root(square), _AHEAD),
+        Let(ahead, determinant.sigma * Root(square), _AHEAD),
         Let(divisor, Select(determined, distance**2, sp.Integer(1))),
         Let(cosine(angle), Select(determined, cos_value, cos_free), f"{note}; {AT_THE_SINGULARITY}"),
         Let(sine(angle), Select(determined, sin_value, sin_free)),
     )
     legs = Legs(ahead, square, beside, distance, along, across)
-    return Binding("lateral", (angle,), statements, replace(slope, legs=legs), cosine_alone=True)
+    return Binding("lateral", (angle,), statements, replace(determinant, legs=legs), cosine_alone=True)

@@ -1,15 +1,15 @@
 """Pair:  a1 cos u + b1 sin u = e1,  a2 cos u + b2 sin u = e2.
 
-One root, by Cramer's rule. Slope D = a1 b2 - a2 b1. Two kinds are taken:
+One root, by Cramer's rule. Determinant D = a1 b2 - a2 b1. Two kinds are taken:
 
 * A rotation by u takes the vector (A, B) to (e1, e2): Paden and Kahan's subproblem 1. Here a1 = s b2 = A and a2 = -s b1
   = B;
   s is +1, or -1 where u turns the other way, or a sign that is a parameter of the machine.
   D = s (A^2 + B^2), cos u : sin u = A e1 + B e2 : s (A e2 - B e1).
-* Any other pair with a slope that never vanishes: divided by D.
+* Any other pair with a determinant that never vanishes: divided by D.
 
 In the first kind |(A, B)| must equal |(e1, e2)|. Where this length is always one nothing is divided. Where it
-can vanish, u is free there (degenerate case), and the length is its measure.
+can vanish, u is free there (degenerate case), and the length is its conditioning.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from itertools import combinations
 import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
-from derive.equations.problem import Binding, Equation, Measure, Problem
+from derive.equations.problem import Binding, Conditioning, Equation, Problem
 from derive.ir.program import Let
 from derive.ir.symbols import cosine, sine
 from derive.solver.subproblems.direction import direction
@@ -53,24 +53,26 @@ def _solve(problem: Problem, angle: sp.Symbol, used: tuple[Equation, Equation], 
     note = f"cosine and sine of {angle.name} from the {used[0].label} and {used[1].label} equations"
     naming = Naming(problem, used[0].lets + used[1].lets)
     e1, e2 = (naming.named(e, f"{u.label}_of_{angle.name}") for e, u in ((e1, used[0]), (e2, used[1])))
-    slope = problem.reduce(a1 * b2 - a2 * b1)
+    determinant = problem.reduce(a1 * b2 - a2 * b1)
     if sense is not None:
         along = naming.named(a1, f"arm_along_{angle.name}")
         across = naming.named(a2, f"arm_across_{angle.name}")
         cos_part = along * e1 + across * e2
         sin_part = sense * (along * e2 - across * e1)
-        if slope == sense:
+        if determinant == sense:
             return _bound(angle, naming, cos_part, sin_part, note)
         reach = naming.length("reach", e1, e2)
         scale = problem.scale_of(used[0])
         moved = "arm to its target point" if used[0].is_length else "machine's direction to the commanded one"
         note = f"rotation by {angle.name} that takes the {moved}"
-        known = direction(problem, angle, along=cos_part, across=sin_part, measure=reach, note=note, scale=scale)
-        measure, residual = Measure(angle, reach, scale), reach**2 - along**2 - across**2
-        return Binding("pair", (angle,), (*naming.lets, *known), measure=measure, residual=residual)
-    if not problem.is_never_zero(slope):
+        known = direction(problem, angle, along=cos_part, across=sin_part, conditioning=reach, note=note, scale=scale)
+        conditioning, residual = Conditioning(angle, reach, scale), reach**2 - along**2 - across**2
+        return Binding("pair", (angle,), (*naming.lets, *known), conditioning=conditioning, residual=residual)
+    if not problem.is_never_zero(determinant):
         return None
-    inverse = slope if slope**2 in (1, *(s**2 for s in problem.signs)) else 1 / slope  # ±1 is its own inverse
+    inverse = (
+        determinant if determinant**2 in (1, *(s**2 for s in problem.signs)) else 1 / determinant
+    )  # ±1 is its own inverse
     cos_value, sin_value = (problem.tidy(value * inverse) for value in (e1 * b2 - e2 * b1, a1 * e2 - a2 * e1))
     return _bound(angle, naming, cos_value, sin_value, note)
 

@@ -1,8 +1,8 @@
 """Polar:  f cos v = a,  f sin v = b  with both f and v unknown.
 
 v is the polar angle of (sigma a, sigma b), and f = sigma |(a, b)| the polar radius. Two roots, or one where f is known
-to be positive. Slope det = f: its sign is the branch. Where |(a, b)| vanishes v is free (degenerate case); it is the
-measure. f is an unknown length, or a product with the sine or cosine of another angle, which then becomes known.
+to be positive. Determinant f: its sign is the branch. Where |(a, b)| vanishes v is free (degenerate case); it is the
+conditioning. f is an unknown length, or a product with the sine or cosine of another angle, which then becomes known.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from itertools import permutations
 import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
-from derive.equations.problem import Binding, Equation, Measure, Problem, Slope
+from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
 from derive.ir.program import (
     Let,
 )
@@ -63,36 +63,38 @@ def _solve(
     b = naming.named(across[1], f"{across[0].label}_of_{angle.name}")
     distance = naming.length(f"radius_{angle.name}", a, b, note=f"polar coordinates: the radius at angle {angle.name}")
     note = f"polar coordinates: angle {angle.name} from the {along[0].label} and {across[0].label} equations"
-    sigma, slope = sp.Integer(1), None
+    sigma, determinant = sp.Integer(1), None
     if not _is_positive(problem, radius):
-        slope = Slope(angle, radius, problem.scale_of(along[0]))
-        sigma = slope.sigma
+        determinant = StepDeterminant(angle, radius, problem.scale_of(along[0]))
+        sigma = determinant.sigma
     known = direction(
         problem,
         angle,
         along=sigma * a,
         across=sigma * b,
-        measure=distance,
+        conditioning=distance,
         note=note,
         is_length=True,
         scale=problem.scale_of(along[0]),
     )
-    measure = _measure(problem, angle, radius, distance, problem.scale_of(along[0]))
+    conditioning = _conditioning(problem, angle, radius, distance, problem.scale_of(along[0]))
     if radius in problem.lengths:
         statements = (*naming.lets, Let(radius, sigma * distance), *known)
-        return Binding("polar", (radius, angle), statements, slope, measure)
+        return Binding("polar", (radius, angle), statements, determinant, conditioning)
     product = Equation(f"{angle.name} radius", radius - sigma * distance, is_length=along[0].is_length)
-    return Binding("polar", (angle,), (*naming.lets, *known), slope, measure, (product,))
+    return Binding("polar", (angle,), (*naming.lets, *known), determinant, conditioning, (product,))
 
 
-def _measure(problem: Problem, angle: sp.Symbol, radius: sp.Expr, distance: sp.Expr, scale: sp.Expr) -> Measure:
-    """For a product such as r sin(phi) the sine alone, which has no unit: the step that finds r has a measure of its
-    own.
+def _conditioning(
+    problem: Problem, angle: sp.Symbol, radius: sp.Expr, distance: sp.Expr, scale: sp.Expr
+) -> Conditioning:
+    """For a product such as r sin(phi) the sine alone, which has no unit: the step that finds r has its own
+    conditioning.
     """
     functions = [f for f in sp.Mul.make_args(radius) if f not in problem.lengths and f.is_Symbol]
     if len(functions) == 0 or len(functions) == len(sp.Mul.make_args(radius)):
-        return Measure(angle, distance, scale)
-    return Measure(angle, sp.Mul(*functions), sp.Integer(1))
+        return Conditioning(angle, distance, scale)
+    return Conditioning(angle, sp.Mul(*functions), sp.Integer(1))
 
 
 def _is_positive(problem: Problem, radius: sp.Expr) -> bool:

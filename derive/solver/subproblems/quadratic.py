@@ -1,8 +1,8 @@
 """Quadratic:  a v^2 + b v + c = 0  in an unknown length, with a never zero.
 
-Two roots, v = p + sigma root(D) with p = -b / 2a and the discriminant D = p^2 - c / a, kept factored. Slope 2 a (v -
-p): sigma is its sign times that of a. One root where a quantity known to be positive is a multiple of the slope. Guard:
-D >= 0; where it vanishes both roots meet (degenerate case).
+Two roots, v = p + sigma root(D) with p = -b / 2a and the discriminant D = p^2 - c / a, kept factored. Determinant
+2 a (v - p): sigma is its sign times that of a. One root where a quantity known to be positive is a multiple of the
+determinant. Guard: D >= 0; where it vanishes both roots meet (degenerate case).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
-from derive.equations.problem import Binding, Equation, Measure, Problem, Slope, sign_of
+from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant, sign_of
 from derive.ir.constants import (
     BOUNDARY,
 )
@@ -49,8 +49,8 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
     middle = naming.named(sp.cancel(-b / (2 * a)), f"middle_{unknown.name}")
     square = real(f"radicand_{unknown.name}")
     scale = equation.scales.get(unknown, 2 * problem.scale)
-    slope = sp.cancel(sp.diff(equation.expression, unknown) / a)
-    written_out = slope.xreplace({let.name: let.value for let in equation.lets})
+    determinant = sp.cancel(sp.diff(equation.expression, unknown) / a)
+    written_out = determinant.xreplace({let.name: let.value for let in equation.lets})
     known_sign = _known_sign(problem, written_out, unknown)
     sigma = sign_of(unknown) if known_sign is None else sp.Integer(known_sign)
     half = sp.cancel(scale / (2 * a))
@@ -65,17 +65,19 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
     )
     over = sp.cancel(scale / a)
     if known_sign is not None:
-        return Binding("quadratic", (unknown,), statements, measure=Measure(unknown, slope, over, "meet"))
-    return Binding("quadratic", (unknown,), statements, Slope(unknown, slope, over))
+        return Binding(
+            "quadratic", (unknown,), statements, conditioning=Conditioning(unknown, determinant, over, "meet")
+        )
+    return Binding("quadratic", (unknown,), statements, StepDeterminant(unknown, determinant, over))
 
 
-def _known_sign(problem: Problem, slope: sp.Expr, unknown: sp.Symbol) -> int | None:
-    """The sign of a slope that is a multiple of a positive quantity, with other unknowns eliminated by affine
+def _known_sign(problem: Problem, determinant: sp.Expr, unknown: sp.Symbol) -> int | None:
+    """The sign of a determinant that is a multiple of a positive quantity, with other unknowns eliminated by affine
     equations.
     """
     for quantity in problem.positive:
         value = _through(problem, quantity, unknown)
-        ratio = sp.cancel(slope / value) if value != 0 else sp.Integer(0)
+        ratio = sp.cancel(determinant / value) if value != 0 else sp.Integer(0)
         if ratio.is_number and ratio != 0:
             return 1 if ratio > 0 else -1
     return None

@@ -2,8 +2,8 @@
 
 Two roots, mirror images in the line or plane of the centres. Let n be normal to it, and p0 the foot of the
 perpendicular from P, seen from C_1: P = C_1 + p0 + sigma root(r_1^2 - |p0|^2) n / |n|. The only division is by |n|^2,
-which vanishes where the centres coincide or lie on a line: nothing determines P then, and the pose is refused. Slope:
-the determinant of the rod vectors P - C_i; its sign is sigma. Guard: the spheres intersect. Where they touch, both
+which vanishes where the centres coincide or lie on a line: nothing determines P then, and the pose is refused.
+Determinant: that of the rod vectors P - C_i; its sign is sigma. Guard: the spheres intersect. Where they touch, both
 roots meet (degenerate case).
 """
 
@@ -16,7 +16,7 @@ from itertools import combinations
 import sympy as sp
 
 from derive.algebra.normal_form import is_compound
-from derive.equations.problem import Binding, Equation, Problem, Slope, sign_of
+from derive.equations.problem import Binding, Equation, Problem, StepDeterminant, sign_of
 from derive.ir.constants import (
     BOUNDARY,
     FREE_ANGLE,
@@ -104,8 +104,8 @@ def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ..
         *(_named(statements, sp.Matrix(unknowns) - c, f"rod_{k}", unknowns) for k, c in enumerate(centres, 1))
     )
     scale = sp.Mul(*[_length(s.radius_square) for s in found])
-    slope = Slope(_ASSEMBLY, rods.det(), scale)
-    return Binding("spheres", unknowns, tuple(statements), slope)
+    determinant = StepDeterminant(_ASSEMBLY, rods.det(), scale)
+    return Binding("spheres", unknowns, tuple(statements), determinant)
 
 
 Parts = tuple[sp.Matrix, sp.Matrix, sp.Expr, sp.Expr | None]

@@ -4,8 +4,8 @@ Paden and Kahan's subproblem 4; where e is made of three sides of a triangle, th
 Two roots. Let h = |(a, b)|, C = e / h and S = sigma sqrt((h - e)(h + e)) / h, the cosine and sine of the angle between
 u and the direction of (a, b). Then cos u = (a C - b S) / h and sin u = (b C + a S) / h. The factors h - e and h + e
 stay products: expanded they lose half the digits. C and S come from these factors alone, whose ratio is the square of
-the tangent of half the angle: so C^2 + S^2 = 1 to rounding, whatever digits e has lost. Slope a sin u - b cos u = h S:
-sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution. Where it is 1 both roots meet
+the tangent of half the angle: so C^2 + S^2 = 1 to rounding, whatever digits e has lost. Determinant a sin u - b cos u =
+h S: sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution. Where it is 1 both roots meet
 (degenerate case). Where h can vanish, a pose is refused whose h is below 1e-9 of the length that it is compared with:
 the arm then has no length that u could turn.
 """
@@ -19,7 +19,7 @@ from functools import cache
 import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients, reduce_units
-from derive.equations.problem import Binding, Equation, Problem, Slope, sign_of
+from derive.equations.problem import Binding, Equation, Problem, StepDeterminant, sign_of
 from derive.ir.constants import (
     BOUNDARY,
     SHORTEST_LINK,
@@ -84,8 +84,8 @@ class _Amplitude:
     cos_unit: sp.Expr
     sin_unit: sp.Expr
     right: sp.Expr
-    slope: sp.Expr
-    slope_scale: sp.Expr
+    determinant: sp.Expr
+    determinant_scale: sp.Expr
     factors: tuple[sp.Expr, sp.Expr] | None = None
     """h - e and h + e, where they can be computed with fewer rounding errors than by these differences; else None."""
     is_signed: bool = False
@@ -98,12 +98,12 @@ def _amplitude(
     problem: Problem, equation: Equation, angle: sp.Symbol, a: sp.Expr, b: sp.Expr, e: sp.Expr
 ) -> _Amplitude:
     naming = Naming(problem, equation.lets)
-    slope = a * sine(angle) - b * cosine(angle)
+    determinant = a * sine(angle) - b * cosine(angle)
     common = sp.Mul(*[f for f in sp.Mul.make_args(sp.gcd(a, b)) if f.is_positive])  # it divides, and keeps every sign
     along, across = sp.cancel(a / common), sp.cancel(b / common)
     if along.is_number and across.is_number:
         size = sp.sqrt(along**2 + across**2)
-        return _Amplitude(naming, common * size, (), along / size, across / size, e, slope, common * size)
+        return _Amplitude(naming, common * size, (), along / size, across / size, e, determinant, common * size)
     if across == 0 and problem.is_never_zero(along):  # of either sign: sigma is then the sign of the sine
         length, one = common * along, sp.Integer(1)
         return _Amplitude(naming, length, (), one, sp.Integer(0), e, sine(angle), one, is_signed=not length.is_positive)
@@ -115,7 +115,7 @@ def _amplitude(
         right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, effective))
         length = common * effective
         return _Amplitude(
-            naming, length, (), along / effective, across / effective, right, slope, length, factors, told=told
+            naming, length, (), along / effective, across / effective, right, determinant, length, factors, told=told
         )
     aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
     divisor = real(f"divisor_{angle.name}")
@@ -131,7 +131,7 @@ def _amplitude(
         along / divisor,
         across / divisor,
         right,
-        slope,
+        determinant,
         equation.scales.get(angle, common * problem.scale),
         factors,
         told=told,
@@ -267,8 +267,8 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
             Let(cosine(angle), amplitude.cos_unit * cos_name - amplitude.sin_unit * sin_name, _ADDITION),
             Let(sine(angle), amplitude.sin_unit * cos_name + amplitude.cos_unit * sin_name),
         ]
-    slope = Slope(angle, amplitude.slope, amplitude.slope_scale, (length, right))
-    return Binding("trigonometric", (angle,), tuple(statements), slope, cosine_alone=True, yields_to_a_sum=True)
+    determinant = StepDeterminant(angle, amplitude.determinant, amplitude.determinant_scale, (length, right))
+    return Binding("trigonometric", (angle,), tuple(statements), determinant, cosine_alone=True, yields_to_a_sum=True)
 
 
 def _product(value: sp.Expr) -> sp.Expr:

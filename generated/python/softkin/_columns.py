@@ -28,17 +28,17 @@ _IDENTITY: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 @dataclass(frozen=True)
 class Poses:
-    """Poses and references."""
+    """Poses of a chunk, by columns, with their references."""
 
     count: int
     position: Vector
     rotation: Rotation
     reference: Reals
     refused: Codes
-    """The statuses of the rotations: one for all rows where none is read."""
+    """The statuses of the rotations; a single one where the mechanism reads none."""
 
     def at(self, rows: Rows, count: int) -> Poses:
-        """Those of some rows, that many."""
+        """The poses of some rows. count: the number of these rows."""
         (x, y, z), *cells = (tuple(_at(v, rows) for v in part) for part in (self.position, *self.rotation))
         (a, b, c), (d, e, f), (g, h, i) = cells
         reference = tuple(_at(v, rows) for v in self.reference)
@@ -51,7 +51,7 @@ class Table:
     def __init__(
         self, robot: Mechanism, positions: ArrayLike, rotations: ArrayLike | None, references: ArrayLike | None
     ) -> None:
-        """Raises BAD_INPUT for input that has not the form of a batch."""
+        """Raises BAD_INPUT for input that does not have the form of a batch."""
         width = len(robot.AXES)
         self._positions = numbers(positions, None, (3,), "positions")
         self.count = len(self._positions)
@@ -66,7 +66,7 @@ class Table:
             self._rotations = numbers(rotations, self.count, (3, 3), "rotations").reshape(self.count, 9)
 
     def at(self, rows: slice) -> Poses:
-        """Some rows, with rotations as they are used."""
+        """The poses of some rows, with repaired rotations."""
         x, y, z = columns(self._positions[rows])
         rotation, refused = _IDENTITY, np.zeros((), np.uint8)
         if self._rotations is not None:
@@ -100,14 +100,14 @@ class Configurations:
         return named
 
     def by_open_branches(self) -> Iterator[tuple[tuple[bool, ...], Mask]]:
-        """Which branches are left open, and the mask of the rows that leave open just these."""
+        """Every set of open branches that occurs, with the mask of the rows that leave exactly these branches open."""
         is_open = [(branch == AUTOMATIC) | (branch == COINCIDE) for branch in self.branches]
         number = sum([mask.astype(np.int64) << k for k, mask in enumerate(is_open)], np.zeros_like(self.are_bytes, int))
         for pattern in np.unique(number[self.are_bytes]).tolist():
             yield tuple(bool(pattern >> k & 1) for k in range(len(is_open))), self.are_bytes & (number == pattern)
 
     def at(self, rows: Rows) -> Configurations:
-        """Those of some rows."""
+        """The configurations of some rows."""
         if len(self.are_bytes) == 1:
             return self
         branches = tuple(branch[rows] for branch in self.branches)
@@ -115,7 +115,7 @@ class Configurations:
 
 
 def configurations(robot: Mechanism, codes: Integers) -> Configurations:
-    """The configurations in rows of numbers: 128 to 255 are the negative bytes."""
+    """The configurations in a table of numbers, where 128 to 255 stand for the negative bytes."""
     if _is_one_row(codes):
         codes = codes[:1]
     are_bytes = np.ones(len(codes), np.bool_)
@@ -129,7 +129,7 @@ def configurations(robot: Mechanism, codes: Integers) -> Configurations:
 
 
 def columns(values: Array) -> tuple[Array, ...]:
-    """The columns of a table, each in one piece."""
+    """The columns of a table, each contiguous in memory."""
     return tuple(np.ascontiguousarray(values.T))
 
 
@@ -147,5 +147,5 @@ def _codes_at(codes: Codes, rows: Rows) -> Codes:
 
 
 def _is_one_row(values: NDArray[np.float64] | Integers) -> bool:
-    """Whether one row stands for all: then every row is at the same place."""
+    """Whether one row stands for all: then all rows are at the same address."""
     return values.strides[0] == 0

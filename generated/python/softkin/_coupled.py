@@ -42,10 +42,10 @@ class Coupled(Mechanism):
     """A position kinematics with an orientation kinematics at its flange.
 
     Axes: those of the position kinematics, then those of the orientation kinematics; the bytes of the configuration
-    likewise. An axis or a byte of the second that has a name of the first is called `orientation <name>`.
-    An automatic choice counts the rotary axes of both; where they tie and only linear ones tell the branches of the
-    position kinematics apart, these.
-    The position is met or refused; of the rotation, the tool direction comes before the twist.
+    likewise. An axis or a byte of the second part with a name that the first part has is called `orientation <name>`.
+    An automatic choice counts the rotary axes of both; where they tie, and only linear axes distinguish the branches of
+    the position kinematics, it counts these.
+    The position is reached or refused; of the rotation, the tool direction comes before the twist.
     Limits and parameters are those of the parts, `position_part` and `orientation_part`. The Jacobian has all six rows.
     """
 
@@ -57,8 +57,8 @@ class Coupled(Mechanism):
     def __init__(self, position: Mechanism, orientation: OrientationKinematics) -> None:
         """Couple two mechanisms.
 
-        Raises INVALID_COUPLING for any other pair, and where a commanded frame would not determine the axes: where the
-        position axes turn the flange, they must be known before the offsets of the flange are.
+        Raises INVALID_COUPLING for any other pair, and where a commanded frame does not determine the axes: where the
+        position axes turn the flange, the end point on the flange must not depend on these axes.
         """
         _check(position, orientation)
         self.NAME = f"Coupled({position.NAME}, {orientation.NAME})"
@@ -74,7 +74,7 @@ class Coupled(Mechanism):
         self._describe(position, orientation)
 
     def _describe(self, first: Mechanism, second: Mechanism) -> None:
-        """Axes, bytes and margins of both."""
+        """Set the axes, the bytes and the margins of both parts."""
         self._count = count = len(first.AXES)
         self.AXES = first.AXES + _distinct(second.AXES, first.AXES)
         self.CONFIGURATION = first.CONFIGURATION + _distinct(second.CONFIGURATION, first.CONFIGURATION)
@@ -100,7 +100,7 @@ class Coupled(Mechanism):
         return f"Coupled({self.position_part!r}, {self.orientation_part!r})"
 
     def __reduce__(self) -> tuple[Callable[..., Mechanism], tuple[Mechanism, Mechanism]]:  # type: ignore[override]
-        """Copies and other processes build it again from its parts."""
+        """Copying and pickling couple the parts again."""
         return Coupled, (self.position_part, self.orientation_part)
 
     @property
@@ -112,7 +112,7 @@ class Coupled(Mechanism):
         return [i for i, byte in enumerate(self.CONFIGURATION) if byte.kind == "period"]
 
     def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Turns]:
-        """Branch bytes of both parts, and the turns of both."""
+        """The branch bytes and the commanded turns of both parts."""
         given = self.DEFAULT_CONFIGURATION if configuration is None else configuration
         found = bytes_of(given, len(self.CONFIGURATION))
         return tuple(found[i] for i in self._branch_bytes), tuple(found[i] for i in self._period_bytes)
@@ -121,21 +121,21 @@ class Coupled(Mechanism):
         first, turning = self.position_part.BRANCHES, len(self.position_part.PERIOD_AXES)
         return branches[:first] + periods[:turning] + branches[first:] + periods[turning:]
 
-    def _written(self, measures: Reals, axes: Reals) -> Configuration:
-        """The configuration of a pose: of the first part, then of the second."""
+    def _written(self, margins: Reals, axes: Reals) -> Configuration:
+        """The configuration of a pose: the bytes of the first part, then those of the second."""
         first, second, cut = self.position_part, self.orientation_part, self.position_part.BRANCHES
-        carried = first._written(measures[:cut], axes[: self._count])
-        return carried + second._written(measures[cut:], axes[self._count :])
+        carrier_bytes = first._written(margins[:cut], axes[: self._count])
+        return carrier_bytes + second._written(margins[cut:], axes[self._count :])
 
     def _forward(self, axes: Reals) -> Pose | Status:
-        carried = self.position_part._forward(axes[: self._count])
-        if isinstance(carried, Status):
-            return carried
+        carrier = self.position_part._forward(axes[: self._count])
+        if isinstance(carrier, Status):
+            return carrier
         own = self.orientation_part._forward(axes[self._count :])
         if isinstance(own, Status):
             return own
-        position, flange, measures = carried
-        return plus(position, turned(flange, own[0])), product(flange, own[1]), measures + own[2]
+        position, flange, margins = carrier
+        return plus(position, turned(flange, own[0])), product(flange, own[1]), margins + own[2]
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         flange = self.position_part._orientation(axes[: self._count])
@@ -147,7 +147,7 @@ class Coupled(Mechanism):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of both parts: those that reach the position, and those that turn in the frame of the flange."""
+        """The axes of both parts: those that reach the position, and those that orient the tool on the flange."""
         solve = self._position_first if self._flange is None else self._orientation_first
         axes = solve(position, rotation, *self._split(signs, turns, reference))
         return (
@@ -155,7 +155,7 @@ class Coupled(Mechanism):
         )
 
     def _split(self, signs: Signs, turns: Turns, reference: Reals) -> tuple[_Choice, _Choice]:
-        """The arguments of each part."""
+        """The signs, the turns and the reference of each part."""
         first, cut = self.position_part, len(self.position_part.PERIOD_AXES)
         carrier = signs[: first.BRANCHES], turns[:cut], reference[: self._count]
         return carrier, (signs[first.BRANCHES :], turns[cut:], reference[self._count :])
@@ -163,7 +163,7 @@ class Coupled(Mechanism):
     def _orientation_first(
         self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
     ) -> Reals | Diagnosis | Status:
-        """On a flange that keeps its orientation: first the orientation axes, then end point and position axes."""
+        """The axes where the flange keeps its orientation: first the orientation axes, then the position axes."""
         flange = self._flange
         assert flange is not None
         own = self.orientation_part._branch(_ORIGIN, seen_from(flange, rotation), *wrist)
@@ -178,8 +178,8 @@ class Coupled(Mechanism):
     def _position_first(
         self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
     ) -> Reals | Diagnosis | Status:
-        """On a flange that the position axes turn: in an allowed pair they do not depend on the orientation axes."""
-        shift = self.orientation_part._carried(rotation, *self._axis)
+        """The axes where the position axes turn the flange: in a pair that is allowed these come first."""
+        shift = self.orientation_part._end_point_shift(rotation, *self._axis)
         if isinstance(shift, Status):
             return shift
         axes = self.position_part._branch(plus(position, shift, -1.0), rotation, *carrier)
@@ -200,24 +200,24 @@ class Coupled(Mechanism):
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
-        carried = self.position_part._singularity(axes[: self._count])
-        if isinstance(carried, Status):
-            return carried
+        carrier = self.position_part._singularity(axes[: self._count])
+        if isinstance(carrier, Status):
+            return carrier
         own = self.orientation_part._singularity(axes[self._count :])
-        return own if isinstance(own, Status) else carried + own
+        return own if isinstance(own, Status) else carrier + own
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian: the flange moves the end point as a rigid body, the orientation axes relative to it."""
+        """The Jacobian: the flange moves the end point as a rigid body, and the orientation axes move it relatively."""
         first, second = axes[: self._count], axes[self._count :]
-        carried, own = self.position_part._twist(first), self.orientation_part._twist(second)
+        carrier, own = self.position_part._twist(first), self.orientation_part._twist(second)
         flange, end = self.position_part._orientation(first), self.orientation_part._forward(second)
-        for part in (carried, own, flange, end):
+        for part in (carrier, own, flange, end):
             if isinstance(part, Status):
                 return part
-        assert not (isinstance(carried, Status) or isinstance(own, Status))
+        assert not (isinstance(carrier, Status) or isinstance(own, Status))
         assert not (isinstance(flange, Status) or isinstance(end, Status))
         arm = turned(flange, end[0])
-        columns = [moved(column, arm) for column in zip(*carried, strict=True)]
+        columns = [moved(column, arm) for column in zip(*carrier, strict=True)]
         columns += [(*turned(flange, c[:3]), *turned(flange, c[3:])) for c in zip(*own, strict=True)]
         return tuple(zip(*columns, strict=True)) if columns else ((),) * len(TWIST)
 
@@ -225,7 +225,7 @@ class Coupled(Mechanism):
         return self._orientations
 
     def _array_programs(self) -> Programs:
-        """The programs of both parts on arrays, one after the other."""
+        """The programs on arrays, which run those of both parts one after the other."""
         from softkin._array_coupled import CoupledPrograms
 
         return CoupledPrograms(self.position_part, self.orientation_part, self._flange, self._axis)
@@ -252,7 +252,7 @@ def _check(position: Mechanism, orientation: Mechanism) -> None:
 
 
 def _of(part: Mechanism, refused: Diagnosis) -> Diagnosis:
-    """The reason, with the name of its part."""
+    """The reason with the name of the part that refuses."""
     return refused._replace(reason=f"{part.NAME}: {refused.reason}")
 
 
@@ -261,6 +261,6 @@ def _refused(message: str) -> KinematicsError:
 
 
 def _distinct(own: tuple[_Named, ...], others: tuple[_Named, ...]) -> tuple[_Named, ...]:
-    """Names made unique."""
+    """The axes or bytes of the second part, with names that the first part does not have."""
     taken = {other.name for other in others}
     return tuple(replace(one, name=f"orientation {one.name}") if one.name in taken else one for one in own)

@@ -113,9 +113,9 @@ def _vanishing(cells: Cells) -> At:
     return _places(cells.take(is_root), cells.low[is_root])
 
 
-def _vanishes(said: Reals) -> Flags:
+def _vanishes(results: Reals) -> Flags:
     """Whether a trial is at a root by its value alone. Where the guard vanishes, the value has half of its digits."""
-    value, guard = np.abs(said[:, VALUE]), said[:, GUARD]
+    value, guard = np.abs(results[:, VALUE]), results[:, GUARD]
     return np.asarray((value <= VANISHING) & (guard >= 0.0) | (value <= NEXT) & (np.abs(guard) <= VANISHING))
 
 
@@ -123,8 +123,8 @@ def _start(trial: Trial, start: Reals) -> At:
     """The starts that are roots themselves, as on a path that stands still."""
     rows = np.arange(len(start))
     place = At(rows, start, np.ones(len(rows), dtype=int), np.full(len(rows), -1), np.zeros(len(rows)))
-    said = trial(place)
-    is_root = _vanishes(said)
+    results = trial(place)
+    is_root = _vanishes(results)
     return At(rows[is_root], start[is_root], place.side[is_root], place.freed[is_root], place.angle[is_root])
 
 
@@ -254,7 +254,7 @@ def _all(places: Sequence[At]) -> At:
 
 
 _ROWS = 4096
-"""The number of rows at a time: the last rounds of a search have few cells, so that many rows share them."""
+"""The rows that are searched together: the last rounds of a search have few cells, so many rows share them."""
 Values = tuple[Any, ...]
 
 
@@ -287,7 +287,7 @@ def nearest_root(
 
 
 def _tried(says: Callable[[At], list[Any]]) -> Trial:
-    """A trial as a table."""
+    """The results of a trial as a table."""
     return lambda place: np.stack(says(place), axis=1) if len(place.rows) else np.zeros((0, 0))
 
 
@@ -306,7 +306,7 @@ def _finished(says: Callable[[At], list[Any]], count: int) -> Finish:
 def _of(
     program: Callable[[Values, Any], Values], given: Values, shape: tuple[int, ...], rows: Rows
 ) -> Callable[[At], list[Any]]:
-    """The outputs of a program at places, for these rows."""
+    """The outputs of a program at some places, for these rows."""
     fixed = [v if isinstance(v, str | float | int) else np.broadcast_to(v, shape).ravel()[rows] for v in given]
 
     def at(place: At) -> list[Any]:

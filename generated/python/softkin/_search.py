@@ -23,10 +23,10 @@ from softkin._types import (
 )
 
 _SAME = 2e-3
-"""Axes nearer than this (degrees, lengths) are one solution of a branch. Where the residual only touches zero, the
-scan finds the same root twice; and between two solutions of a branch there is one of another branch."""
+"""Axes that differ by less than this (degrees, lengths) are one solution of a branch: where the residual only touches
+zero, the scan finds the same root twice, and between two solutions of a branch there is one of another branch."""
 _COINCIDE = 1e-11
-"""A solution whose margin is smaller lies on both branches."""
+"""A solution with a smaller margin belongs to both branches."""
 
 
 class SearchedInverse(Mechanism):
@@ -35,14 +35,14 @@ class SearchedInverse(Mechanism):
     __slots__ = ()
 
     SIDES = 2
-    """The number of first branches that a scan is made for; it finds all solutions of the others."""
+    """One scan is made for each choice of this many first branches; it finds the solutions of all other branches."""
 
     def inverse_all(self, frame: FrameLike, reference: Numbers | None = None) -> Sequence[Solution]:
         """Every branch of the inverse, in fixed slots: branch 1 before branch 2, the first byte varies fastest.
 
-        A branch may have several solutions: `axes` is the one nearest to the reference along the joint that is scanned,
+        A branch may have several solutions: `axes` is the one nearest to the reference along the scanned joint, and
         `others` has the rest in this order. Solutions beyond limits are left out; periods are open, as in `inverse`.
-        A slot without axes has the status instead. Raises BAD_INPUT only for input that has not the form of a frame.
+        A slot without axes has a status. Raises BAD_INPUT only for input that does not have the form of a frame.
         """
         position, rows = self._pose(frame)
         near, rotation, every = self._near(reference), self._made(rows), slots((AUTOMATIC,) * self.BRANCHES)
@@ -63,7 +63,7 @@ class SearchedInverse(Mechanism):
         return tuple(self._solutions(slot, found.get(slot[1], [])) for slot in every)
 
     def _sort_in(self, found: dict[Signs, list[Reals]], axes: Reals | Status) -> None:
-        """A solution under the signs of its branch; where branches coincide, under those of both."""
+        """Add a solution under the signs of its branch; where branches coincide, under the signs of both."""
         pose = self._forward(axes) if not isinstance(axes, Status) else axes
         if isinstance(pose, Status) or isinstance(axes, Status):
             return
@@ -77,7 +77,7 @@ class SearchedInverse(Mechanism):
                 others.append(axes)
 
     def _solutions(self, slot: Slot, found: Sequence[Reals]) -> Solution:
-        """A slot with its solutions, nearest first."""
+        """The slot with its solutions inside the limits, the nearest one first."""
         allowed = [axes for axes in found if self._beyond_limits(axes) is None]
         first = self._solution(slot, allowed[0] if allowed else int(Status.UNREACHABLE))
         return first._replace(others=tuple(allowed[1:]))
@@ -105,4 +105,4 @@ class SearchedInverse(Mechanism):
 
     @abstractmethod
     def _from_joints(self, joints: Reals, turns: Turns, reference: Reals) -> Reals | Status:
-        """The axes of joints."""
+        """The axis values of joint values, on the commanded turns."""

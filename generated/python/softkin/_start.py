@@ -28,7 +28,7 @@ class IterativeForward(Mechanism):
     def forward(self, axes: Numbers, start: FrameLike | None = None) -> tuple[Frame, Configuration]:
         """The frame at axis values, and their configuration. Axis limits are not tested.
 
-        axes: one value an axis. start: a frame nearby, the one before on a path; without one, the home pose.
+        axes: one value for each axis. start: a frame nearby, as the previous one on a path; None is the home pose.
         Raises BAD_INPUT for invalid numbers, IMPOSSIBLE where no frame is found.
         """
         if start is None:
@@ -38,8 +38,8 @@ class IterativeForward(Mechanism):
         pose = self._forward_from(values, place, turn)
         if isinstance(pose, Status):
             self._fail("forward", pose, axes=values, position=place)
-        position, rows, measures = pose
-        return Frame(position, rows), self._written(measures, values)
+        position, rows, margins = pose
+        return Frame(position, rows), self._written(margins, values)
 
     def forward_batch(
         self, axes: ArrayLike, start: tuple[ArrayLike, ArrayLike] | None = None

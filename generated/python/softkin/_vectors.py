@@ -7,7 +7,7 @@ from softkin._types import Reals, Rotation, Vector
 
 
 def plus(first: Vector, second: Vector, sign: float = 1.0) -> Vector:
-    """The sum of two vectors, or with a sign of -1 their difference."""
+    """The sum of two vectors, or their difference for a sign of -1."""
     return first[0] + sign * second[0], first[1] + sign * second[1], first[2] + sign * second[2]
 
 
@@ -25,13 +25,13 @@ def product(first: Rotation, second: Rotation) -> Rotation:
 
 
 def seen_from(base: Rotation, rotation: Rotation) -> Rotation:
-    """A rotation in the frame of another one."""
+    """A rotation expressed in the frame of another rotation."""
     (a, b, c), (d, e, f), (g, h, i) = base
     return product(((a, d, g), (b, e, h), (c, f, i)), rotation)
 
 
 def moved(twist: Reals, arm: Vector) -> Reals:
-    """The twist of a body at the end of an arm."""
+    """The twist of a body, moved to the end of an arm that is fixed to the body."""
     x, y, z, about_x, about_y, about_z = twist
     x += about_y * arm[2] - about_z * arm[1]
     y += about_z * arm[0] - about_x * arm[2]

@@ -44,11 +44,11 @@ A6; without the offset it is always 1.
 
 The wrist byte is the sign of cos A5 for a spherical wrist, and the sign of sin A4 with a lateral offset.
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 8, as many as the inverse has.
-    A search is no proof: of 406 solutions, most of them next to where branches meet, it missed 0.
+    solutions found by a search from many starts: 8, each of which the inverse finds, too.
+    A root scan is no proof: of 406 solutions, most of them close to poses where branches meet, it missed 0.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -91,7 +91,7 @@ class Constants:
         a2_minus_effective_q3_tried = a2 - effective_q3_tried
         d4_by_effective_q3_tried = d4 / effective_q3_tried
         a3_by_effective_q3_tried = a3 / effective_q3_tried
-        part_of_fits = 0.5 * machine_scale * machine_scale / (sqrt(a3 * a3 + d4 * d4) * a2)
+        quotient_in_fits = 0.5 * machine_scale * machine_scale / (sqrt(a3 * a3 + d4 * d4) * a2)
         one_by_machine_scale = 1.0 / machine_scale
         self.d1, self.a1, self.a2, self.a3, self.d4, self.j6_offset_x, self.d6 = d1, a1, a2, a3, d4, j6_offset_x, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
@@ -100,7 +100,7 @@ class Constants:
         self.size_of_j6_offset_x, self.a2_plus_effective_q3_tried = size_of_j6_offset_x, a2_plus_effective_q3_tried
         self.a2_minus_effective_q3_tried = a2_minus_effective_q3_tried
         self.d4_by_effective_q3_tried = d4_by_effective_q3_tried
-        self.a3_by_effective_q3_tried, self.part_of_fits = a3_by_effective_q3_tried, part_of_fits
+        self.a3_by_effective_q3_tried, self.quotient_in_fits = a3_by_effective_q3_tried, quotient_in_fits
         self.one_by_machine_scale = one_by_machine_scale
 
 
@@ -312,14 +312,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         reach_tried = sqrt(
             wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
         )
-        part_of_one_less_cos_q3_tried = a2_plus_effective_q3_tried - reach_tried
-        part_of_one_less_cos_q3_tried_2 = a2_plus_effective_q3_tried + reach_tried
+        sum_in_one_less_cos_q3_tried = a2_plus_effective_q3_tried - reach_tried
+        sum_in_one_less_cos_q3_tried_2 = a2_plus_effective_q3_tried + reach_tried
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_tried = part_of_one_less_cos_q3_tried * part_of_one_less_cos_q3_tried_2
-        part_of_one_plus_cos_q3_tried = a2_minus_effective_q3_tried - reach_tried
-        part_of_one_plus_cos_q3_tried_2 = a2_minus_effective_q3_tried + reach_tried
+        one_less_cos_q3_tried = sum_in_one_less_cos_q3_tried * sum_in_one_less_cos_q3_tried_2
+        sum_in_one_plus_cos_q3_tried = a2_minus_effective_q3_tried - reach_tried
+        sum_in_one_plus_cos_q3_tried_2 = a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried * part_of_one_plus_cos_q3_tried_2
+        one_plus_cos_q3_tried = -sum_in_one_plus_cos_q3_tried * sum_in_one_plus_cos_q3_tried_2
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
@@ -335,11 +335,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             if reach_tried > 0.0
             else 0.0
         )
-        slope_one_less_cos_q3_tried = (
-            part_of_one_less_cos_q3_tried - part_of_one_less_cos_q3_tried_2
-        ) * slope_reach_tried
+        slope_one_less_cos_q3_tried = slope_reach_tried * (
+            sum_in_one_less_cos_q3_tried - sum_in_one_less_cos_q3_tried_2
+        )
         slope_one_plus_cos_q3_tried = (
-            part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried
+            sum_in_one_plus_cos_q3_tried_2 - sum_in_one_plus_cos_q3_tried
         ) * slope_reach_tried
         if sum_q3_tried > 0.0:
             divisor_of_cos_q3_tried = sum_q3_tried
@@ -387,7 +387,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             # rotation by q2 that takes the arm to its target point
             along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
             across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
-            part_of_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
+            sum_in_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
             slope_arm_along_q2_tried = a3 * slope_sin_q3_tried + d4 * slope_cos_q3_tried
             slope_arm_across_q2_tried = a3 * slope_cos_q3_tried - d4 * slope_sin_q3_tried
             slope_along_q2_tried = (
@@ -402,8 +402,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 - arm_along_q2_tried * slope_wrist_z_tried
                 - slope_arm_along_q2_tried * wrist_z_from_q1_tried
             )
-            if part_of_length_q2_tried > 0.0 and reach_tried > machine_scale_times_free_angle:
-                length_q2_tried = sqrt(part_of_length_q2_tried) if part_of_length_q2_tried > 0.0 else 0.0
+            if reach_tried > machine_scale_times_free_angle and sum_in_length_q2_tried > 0.0:
+                length_q2_tried = sqrt(sum_in_length_q2_tried) if sum_in_length_q2_tried > 0.0 else 0.0
                 slope_length_q2_tried = (
                     (across_q2_tried * slope_across_q2_tried + along_q2_tried * slope_along_q2_tried)
                     / (length_q2_tried if length_q2_tried > 0.0 else 1.0)
@@ -507,7 +507,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         a3_by_effective_q3_tried, d1, d4 = k.a3_by_effective_q3_tried, k.d1, k.d4
         d4_by_effective_q3_tried, d6, j6_offset_x = k.d4_by_effective_q3_tried, k.d6, k.j6_offset_x
         machine_scale_times_free_angle, one_by_machine_scale = k.machine_scale_times_free_angle, k.one_by_machine_scale
-        part_of_fits, size_of_j6_offset_x = k.part_of_fits, k.size_of_j6_offset_x
+        quotient_in_fits, size_of_j6_offset_x = k.quotient_in_fits, k.size_of_j6_offset_x
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # wrist centre: the last joints do not move this point
@@ -563,10 +563,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             # rotation by q2 that takes the arm to its target point
             along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
             across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
-            part_of_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
+            sum_in_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
             length_q2_tried = (
-                (sqrt(part_of_length_q2_tried) if part_of_length_q2_tried > 0.0 else 0.0)
-                if (part_of_length_q2_tried > 0.0) and (reach_tried > machine_scale_times_free_angle)
+                (sqrt(sum_in_length_q2_tried) if sum_in_length_q2_tried > 0.0 else 0.0)
+                if (reach_tried > machine_scale_times_free_angle) and (sum_in_length_q2_tried > 0.0)
                 else 1.0
             )
             cos_q2_tried = along_q2_tried / length_q2_tried
@@ -814,9 +814,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
             )
             step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
-            part_of_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
-            step_q2 = part_of_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
-            step_q3 = part_of_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
+            step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_q4 = (
                 multiplier_1 * rate_1_4
                 + multiplier_2 * rate_2_4
@@ -876,7 +876,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         fits = (
             (error <= 1e-10)
             and ((sin_q4 if size_of_j6_offset_x > 0.0 else cos_q5) * wanted_wrist >= -1e-6)
-            and (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * part_of_fits >= -1e-6)
+            and (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * quotient_in_fits >= -1e-6)
             and (wanted_elbow * (a3 * sin(q3) + cos(q3) * d4) * one_by_machine_scale >= -1e-6)
             and (wanted_shoulder * (a1 + a2 * sin_q2 + a3 * sin_q23 + d4 * cos_q23) * one_by_machine_scale >= -1e-6)
         )
@@ -967,7 +967,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _search_given(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Values | Status:
-        """What the search is given."""
+        """Arguments of the search."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         sigma_shoulder, sigma_elbow, sigma_wrist, sigma_crossing = signs
@@ -1005,7 +1005,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
 
     def _from_joints(self, joints: Reals, turns: Turns, reference: Reals) -> Reals | Status:
-        """The axes of joints."""
+        """The axis values of joint values."""
         q1, q2, q3, q4, q5, q6 = joints
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
@@ -1054,7 +1054,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         d4_by_effective_q3_tried, d6, j6_offset_x = k.d4_by_effective_q3_tried, k.d6, k.j6_offset_x
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
         offset_a5, offset_a6, one_by_machine_scale = k.offset_a5, k.offset_a6, k.one_by_machine_scale
-        part_of_fits, searched, size_of_j6_offset_x = k.part_of_fits, k.searched, k.size_of_j6_offset_x
+        quotient_in_fits, searched, size_of_j6_offset_x = k.quotient_in_fits, k.searched, k.size_of_j6_offset_x
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
@@ -1174,7 +1174,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 -(1.0 if branch_shoulder >= 0.0 else -1.0)
                 * (1.0 if margin_elbow_closed >= 0.0 else -1.0)
                 * determinant
-                * part_of_fits
+                * quotient_in_fits
             )
         else:
             branch_shoulder = one_by_machine_scale * (wrist_x_closed * cos_q1 + wrist_y_closed * sin_q1)
@@ -1238,7 +1238,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         sigma_shoulder, sigma_elbow, sigma_wrist, sigma_crossing = signs
@@ -1295,9 +1295,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 - reach_closed
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # without the offset there is no second crossing
+        # without an offset, only the first branch of the crossing has a solution
         if not (searched or (sigma_crossing > 0)):
-            return Diagnosis(Status.UNREACHABLE, "without the offset there is no second crossing", 0.0)
+            return Diagnosis(
+                Status.UNREACHABLE, "without an offset, only the first branch of the crossing has a solution", 0.0
+            )
         reference_a1 = (ref_a1 - offset_a1) * DEGREE
         reference_a2 = (ref_a2 - offset_a2) * DEGREE
         reference_a6 = (ref_a6 - offset_a6) * DEGREE
@@ -1369,8 +1371,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 across_q2_closed = (
                     arm_across_q2_closed * wrist_x_from_q1_closed - arm_along_q2_closed * wrist_z_from_q1_closed
                 )
-                part_of_length_q2_closed = across_q2_closed * across_q2_closed + along_q2_closed * along_q2_closed
-                length_q2_closed = sqrt(part_of_length_q2_closed) if part_of_length_q2_closed > 0.0 else 1.0
+                sum_in_length_q2_closed = across_q2_closed * across_q2_closed + along_q2_closed * along_q2_closed
+                length_q2_closed = sqrt(sum_in_length_q2_closed) if sum_in_length_q2_closed > 0.0 else 1.0
                 cos_q2_closed = along_q2_closed / length_q2_closed
                 sin_q2_closed = across_q2_closed / length_q2_closed
             else:
@@ -1479,7 +1481,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         k = self._constants
         a1, a2, a3, d1, d4, d6, j6_offset_x, offset_a1 = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        one_by_machine_scale, part_of_fits = k.one_by_machine_scale, k.part_of_fits
+        one_by_machine_scale, quotient_in_fits = k.one_by_machine_scale, k.quotient_in_fits
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
@@ -1573,7 +1575,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             ),
             (),
         )
-        margin_determinant = determinant * part_of_fits
+        margin_determinant = determinant * quotient_in_fits
         return (margin_determinant,)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:

@@ -35,10 +35,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     a branch at a singular pose, more: 101 additions, 155 multiplications, 19 divisions, 10 square roots, 22
     sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 8, as many as the inverse has.
+    solutions found by a search from many starts: 8, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -76,11 +76,11 @@ class Constants:
         size_q1_for_q3 = 2.0 * abs(a2 * a3)
         machine_scale_times_free_angle = 1e-11 * machine_scale
         size_q1_for_q3_times_rounding = 1e-12 * size_q1_for_q3
-        part_of_divisor_q6_q1_for_q3 = 9.999999e-13 * size_q1_for_q3
-        part_of_highest_q6_q1_for_q3 = 0.9999999 * size_q1_for_q3
+        product_in_divisor_q6_q1_for_q3 = 9.999999e-13 * size_q1_for_q3
+        product_in_highest_q6_q1_for_q3 = 0.9999999 * size_q1_for_q3
         machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
         machine_scale_times_rounding = 1e-12 * machine_scale
-        part_of_cos_q6 = 1.000000001 * size_q1_for_q3
+        product_in_cos_q6 = 1.000000001 * size_q1_for_q3
         a2_squared_plus_a3_squared = a2 * a2 + a3 * a3
         twice_d5 = 2.0 * d5
         d1_times_d5_times_2 = 2.0 * d1 * d5
@@ -91,10 +91,10 @@ class Constants:
         self.offset_a6, self.machine_scale, self.rounding_q1 = offset_a6, machine_scale, rounding_q1
         self.size_q1_for_q3, self.machine_scale_times_free_angle = size_q1_for_q3, machine_scale_times_free_angle
         self.size_q1_for_q3_times_rounding = size_q1_for_q3_times_rounding
-        self.part_of_divisor_q6_q1_for_q3 = part_of_divisor_q6_q1_for_q3
-        self.part_of_highest_q6_q1_for_q3 = part_of_highest_q6_q1_for_q3
+        self.product_in_divisor_q6_q1_for_q3 = product_in_divisor_q6_q1_for_q3
+        self.product_in_highest_q6_q1_for_q3 = product_in_highest_q6_q1_for_q3
         self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
-        self.machine_scale_times_rounding, self.part_of_cos_q6 = machine_scale_times_rounding, part_of_cos_q6
+        self.machine_scale_times_rounding, self.product_in_cos_q6 = machine_scale_times_rounding, product_in_cos_q6
         self.a2_squared_plus_a3_squared, self.twice_d5 = a2_squared_plus_a3_squared, twice_d5
         self.d1_times_d5_times_2, self.a2_plus_a3, self.a2_minus_a3 = d1_times_d5_times_2, a2_plus_a3, a2_minus_a3
 
@@ -344,7 +344,7 @@ class Ac6ThreeParallel(Mechanism):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         sigma_shoulder, sigma_elbow, sigma_wrist = signs
@@ -359,9 +359,9 @@ class Ac6ThreeParallel(Mechanism):
         machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, part_of_cos_q6 = k.offset_a6, k.part_of_cos_q6
-        part_of_divisor_q6_q1_for_q3 = k.part_of_divisor_q6_q1_for_q3
-        part_of_highest_q6_q1_for_q3, rounding_q1 = k.part_of_highest_q6_q1_for_q3, k.rounding_q1
+        offset_a6, product_in_cos_q6 = k.offset_a6, k.product_in_cos_q6
+        product_in_divisor_q6_q1_for_q3 = k.product_in_divisor_q6_q1_for_q3
+        product_in_highest_q6_q1_for_q3, rounding_q1 = k.product_in_highest_q6_q1_for_q3, k.rounding_q1
         single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
         single_a5, single_a6, size_q1_for_q3 = k.single_a5, k.single_a6, k.size_q1_for_q3
         size_q1_for_q3_times_rounding, twice_d5 = k.size_q1_for_q3_times_rounding, k.twice_d5
@@ -493,35 +493,35 @@ class Ac6ThreeParallel(Mechanism):
                     > 1e-12 * radius_q6_before_q1_for_q3 * radius_q6_before_q1_for_q3
                 )
                 if follows_q1_for_q3:
-                    part_of_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5 * wrist_z
-                    part_of_across_q6_q1_for_q3_2 = ahead_q1_before_q1_for_q3 * twice_d5 * cos_q5_before_q1_for_q3
-                    along_q6_q1_for_q3 = -part_of_across_q6_q1_for_q3 * r32 - part_of_across_q6_q1_for_q3_2 * r31
-                    across_q6_q1_for_q3 = part_of_across_q6_q1_for_q3_2 * r32 - part_of_across_q6_q1_for_q3 * r31
+                    sum_in_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5 * wrist_z
+                    product_in_across_q6_q1_for_q3 = ahead_q1_before_q1_for_q3 * twice_d5 * cos_q5_before_q1_for_q3
+                    along_q6_q1_for_q3 = -product_in_across_q6_q1_for_q3 * r31 - r32 * sum_in_across_q6_q1_for_q3
+                    across_q6_q1_for_q3 = product_in_across_q6_q1_for_q3 * r32 - r31 * sum_in_across_q6_q1_for_q3
                     swing_q6_q1_for_q3 = sqrt(
                         across_q6_q1_for_q3 * across_q6_q1_for_q3 + along_q6_q1_for_q3 * along_q6_q1_for_q3
                     )
                     # feasible arc: cosines of its ends
-                    if swing_q6_q1_for_q3 > part_of_divisor_q6_q1_for_q3:
+                    if swing_q6_q1_for_q3 > product_in_divisor_q6_q1_for_q3:
                         level_q6_q1_for_q3 = (
                             value_q1_for_q3
                             - across_q6_q1_for_q3 * sin_q6_before_q1_for_q3
                             - along_q6_q1_for_q3 * cos_q6_before_q1_for_q3
                         )
-                        part_of_highest_q6_q1_for_q3_2 = (
-                            part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3
+                        quotient_in_highest_q6_q1_for_q3 = (
+                            product_in_highest_q6_q1_for_q3 - level_q6_q1_for_q3
                         ) / swing_q6_q1_for_q3
                         highest_q6_q1_for_q3 = (
                             1.0
-                            if part_of_highest_q6_q1_for_q3_2 > 1.0
-                            else (-1.0 if part_of_highest_q6_q1_for_q3_2 < -1.0 else part_of_highest_q6_q1_for_q3_2)
+                            if quotient_in_highest_q6_q1_for_q3 > 1.0
+                            else (-1.0 if quotient_in_highest_q6_q1_for_q3 < -1.0 else quotient_in_highest_q6_q1_for_q3)
                         )
-                        part_of_lowest_q6_q1_for_q3 = (
-                            level_q6_q1_for_q3 + part_of_highest_q6_q1_for_q3
+                        quotient_in_lowest_q6_q1_for_q3 = (
+                            level_q6_q1_for_q3 + product_in_highest_q6_q1_for_q3
                         ) / swing_q6_q1_for_q3
                         lowest_q6_q1_for_q3 = (
                             1.0
-                            if -part_of_lowest_q6_q1_for_q3 > 1.0
-                            else (-1.0 if -part_of_lowest_q6_q1_for_q3 < -1.0 else -part_of_lowest_q6_q1_for_q3)
+                            if -quotient_in_lowest_q6_q1_for_q3 > 1.0
+                            else (-1.0 if -quotient_in_lowest_q6_q1_for_q3 < -1.0 else -quotient_in_lowest_q6_q1_for_q3)
                         )
                     else:
                         highest_q6_q1_for_q3 = 1.0
@@ -569,9 +569,9 @@ class Ac6ThreeParallel(Mechanism):
                             else near_along_q1_for_q3
                         )
                         near_side_q1_for_q3 = -1.0 if near_towards_q1_for_q3 < 0.0 else 1.0
-                        part_of_near_cos_q1_for_q3 = near_side_q1_for_q3 / near_radius_q1_for_q3
-                        near_cos_q1_for_q3 = -near_q_q1_for_q3 * part_of_near_cos_q1_for_q3
-                        near_sin_q1_for_q3 = near_p_q1_for_q3 * part_of_near_cos_q1_for_q3
+                        quotient_in_near_cos_q1_for_q3 = near_side_q1_for_q3 / near_radius_q1_for_q3
+                        near_cos_q1_for_q3 = -near_q_q1_for_q3 * quotient_in_near_cos_q1_for_q3
+                        near_sin_q1_for_q3 = near_p_q1_for_q3 * quotient_in_near_cos_q1_for_q3
                     else:
                         near_cos_q1_for_q3 = cos_q1_before_q1_for_q3
                         near_sin_q1_for_q3 = sin_q1_before_q1_for_q3
@@ -610,9 +610,9 @@ class Ac6ThreeParallel(Mechanism):
                                 else mirrored_along_q1_for_q3
                             )
                             mirrored_side_q1_for_q3 = -1.0 if mirrored_towards_q1_for_q3 < 0.0 else 1.0
-                            part_of_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3 / mirrored_radius_q1_for_q3
-                            mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3 * part_of_mirrored_cos_q1_for_q3
-                            mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3 * part_of_mirrored_cos_q1_for_q3
+                            quotient_in_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3 / mirrored_radius_q1_for_q3
+                            mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3 * quotient_in_mirrored_cos_q1_for_q3
+                            mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3 * quotient_in_mirrored_cos_q1_for_q3
                         else:
                             mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3
                             mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3
@@ -692,7 +692,7 @@ class Ac6ThreeParallel(Mechanism):
             sin_q6 = sin_q6_before_q6_of_q3
         else:
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
@@ -715,17 +715,17 @@ class Ac6ThreeParallel(Mechanism):
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3
                         - along_q6_of_q3 * cos_q6_before_q6_of_q3
                     )
-                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
+                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if part_of_highest_q6_of_q3 > 1.0
-                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
+                        if quotient_in_highest_q6_of_q3 > 1.0
+                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
                     )
-                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
+                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if -part_of_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
+                        if -quotient_in_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -750,14 +750,11 @@ class Ac6ThreeParallel(Mechanism):
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
-                part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
+                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
+                sum_in_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
-                    sqrt(
-                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
-                        + part_of_cost_q6_of_q3_2 * part_of_cost_q6_of_q3_2
-                    )
+                    sqrt(sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3 + sum_in_cost_q6_of_q3_2 * sum_in_cost_q6_of_q3_2)
                     * radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
@@ -1014,14 +1011,14 @@ class Ac6ThreeParallel(Mechanism):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference) or super().branches(frame, reference)  # near a fold one after the other
+        solve = self._all_trusted  # a separate statement is faster
+        return solve(frame, reference) or super().branches(frame, reference)  # near a fold, one branch after the other
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         found = solve(frame, signs, reference)
-        return super().branch(frame, signs, reference) if found == () else found  # near a fold with all that it takes
+        return super().branch(frame, signs, reference) if found == () else found  # near a fold, by the complete program
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         return self._finished(self._all_trusted, self._finish, position, rotation, reference)

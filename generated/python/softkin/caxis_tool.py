@@ -19,10 +19,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
 
 With an X or Y offset it can only be combined with a flange that keeps its orientation.
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 1, as many as the inverse has.
+    solutions found by a search from many starts: 1, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -142,7 +142,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         (turn_c,) = turns
         (ref_c,) = reference
@@ -208,17 +208,17 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         return ((-tool_y * cos_c - tool_x * sin_c,), (tool_x * cos_c - tool_y * sin_c,), (0.0,), (0.0,), (0.0,), (1.0,))
 
     def _compatible(self, flange_axis: Vector) -> Status:
-        """Whether a flange that turns can carry this."""
+        """Whether a flange that turns can carry this mechanism."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         k = self._constants
         tool_z, unmet_offset, unnoticed_shift = k.tool_z, k.unmet_offset, k.unnoticed_shift
         if not reasonable(flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         flange_along = flange_axis_z * tool_z  # the flange's part along the axis about which the flange turns
-        part_of_flange_offset = tool_z - flange_along * flange_axis_z
+        sum_in_flange_offset = tool_z - flange_along * flange_axis_z
         # distance of the flange's part from the axis about which the flange turns
         flange_offset = root(
-            part_of_flange_offset * part_of_flange_offset
+            sum_in_flange_offset * sum_in_flange_offset
             + flange_along * flange_along * (flange_axis_x * flange_axis_x + flange_axis_y * flange_axis_y)
         )
         # a part of the end point turns with the flange
@@ -226,8 +226,8 @@ class CAxisTool(OrientationKinematics, TwistChoice):
             return Status.INVALID_COUPLING
         return Status.OK
 
-    def _carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
-        """From a flange that turns to the end point."""
+    def _end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
+        """The vector from a flange that turns to the end point."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self._constants
@@ -238,7 +238,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         return (base_axis_x * flange_along, base_axis_y * flange_along, base_axis_z * flange_along)
 
     def _total_image(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> TotalImage | Status:
-        """The orientations on a flange, and how far the two axes are apart."""
+        """The orientations of the tool on a flange, and the sine of the angle between the two axes."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         if not reasonable(flange_axis_x, flange_axis_y, flange_axis_z):

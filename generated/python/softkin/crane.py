@@ -13,8 +13,8 @@ Configuration:
 
 Singularities:
     free_theta: type 1
-    free_phi: type 1; 1, and 0 where an axis is free, within 1e-11 of the unit of length: the machine has no
-    length that a distance from there could be compared with
+    free_phi: type 1; 0 within 1e-11 of the unit of length from where an axis is not determined, else 1: the
+    machine has no length with which this distance could be compared
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 6 additions, 6 multiplications, 1 divisions, 0 square roots, 4 sines
@@ -23,10 +23,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
 
 On the vertical the azimuth is the reference's; at the origin the polar angle is too.
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 1, as many as the inverse has.
+    solutions found by a search from many starts: 1, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -174,7 +174,7 @@ class Crane(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (turn_theta,) = turns
         _, ref_theta, ref_phi = reference
@@ -207,9 +207,9 @@ class Crane(OffsetKinematics):
             direction_y_phi = radius_theta
         else:
             reference_phi = (ref_phi - offset_phi) * DEGREE
-            part_of_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
-            direction_x_phi = cos(part_of_direction_y_phi)
-            direction_y_phi = sin(part_of_direction_y_phi)
+            value_in_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
+            direction_x_phi = cos(value_in_direction_y_phi)
+            direction_y_phi = sin(value_in_direction_y_phi)
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0) / DEGREE
         return (axis_r, axis_theta, axis_phi)
 
@@ -334,13 +334,13 @@ class Crane(OffsetKinematics):
             direction_y_phi = radius_theta
         else:
             reference_phi = (ref_phi - offset_phi) * DEGREE
-            part_of_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
-            direction_x_phi = cos(part_of_direction_y_phi)
-            direction_y_phi = sin(part_of_direction_y_phi)
+            value_in_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
+            direction_x_phi = cos(value_in_direction_y_phi)
+            direction_y_phi = sin(value_in_direction_y_phi)
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0) / DEGREE
         return (axis_r, axis_theta, axis_phi)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
@@ -383,9 +383,9 @@ class Crane(OffsetKinematics):
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
-            part_of_direction_y_phi = nearest_on_arc((ref_phi - offset_phi) * DEGREE, 90.0 * DEGREE, 90.0 * DEGREE)
-            direction_x_phi = cos(part_of_direction_y_phi)
-            direction_y_phi = sin(part_of_direction_y_phi)
+            value_in_direction_y_phi = nearest_on_arc((ref_phi - offset_phi) * DEGREE, 90.0 * DEGREE, 90.0 * DEGREE)
+            direction_x_phi = cos(value_in_direction_y_phi)
+            direction_y_phi = sin(value_in_direction_y_phi)
         return (
             offset_r + radius_phi,
             offset_theta + arctan2(direction_y_theta, direction_x_theta) * RADIAN,

@@ -28,10 +28,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 90 additions, 74 multiplications, 21 divisions, 6 square roots, 3 sines
     inverse, all 8 branches open: 713 additions, 592 multiplications, 168 divisions, 48 square roots, 24 sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 8, as many as the inverse has.
+    solutions found by a search from many starts: 8, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -156,30 +156,30 @@ class Constants:
         cos_azimuth_1_times_tcp_radius_1 = tcp_radius_1 * cos_azimuth_1
         cos_azimuth_2_times_tcp_radius_2 = tcp_radius_2 * cos_azimuth_2
         cos_azimuth_3_times_tcp_radius_3 = tcp_radius_3 * cos_azimuth_3
-        part_of_normal_divisor = 1e-22 * outer_arm_1 * outer_arm_1 * outer_arm_1 * outer_arm_1
+        product_in_normal_divisor = 1e-22 * outer_arm_1 * outer_arm_1 * outer_arm_1 * outer_arm_1
         outer_arm_1_squared = outer_arm_1 * outer_arm_1
         outer_arm_1_squared_times_rounding = 1e-12 * outer_arm_1 * outer_arm_1
         inner_arm_1_times_shortest_link = 1e-9 * inner_arm_1
         inner_arm_2_times_shortest_link = 1e-9 * inner_arm_2
         inner_arm_3_times_shortest_link = 1e-9 * inner_arm_3
-        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
         inner_arm_1_times_sin_azimuth_1 = inner_arm_1 * sin_azimuth_1
-        part_of_pivot_1_y = base_radius_1 * sin_azimuth_1 - sin_azimuth_1_times_tcp_radius_1
+        sum_in_pivot_1_y = base_radius_1 * sin_azimuth_1 - sin_azimuth_1_times_tcp_radius_1
         inner_arm_2_times_sin_azimuth_2 = inner_arm_2 * sin_azimuth_2
-        part_of_pivot_2_y = base_radius_2 * sin_azimuth_2 - sin_azimuth_2_times_tcp_radius_2
+        sum_in_pivot_2_y = base_radius_2 * sin_azimuth_2 - sin_azimuth_2_times_tcp_radius_2
         inner_arm_3_times_sin_azimuth_3 = inner_arm_3 * sin_azimuth_3
-        part_of_pivot_3_y = base_radius_3 * sin_azimuth_3 - sin_azimuth_3_times_tcp_radius_3
+        sum_in_pivot_3_y = base_radius_3 * sin_azimuth_3 - sin_azimuth_3_times_tcp_radius_3
         cos_azimuth_1_times_inner_arm_1 = inner_arm_1 * cos_azimuth_1
-        part_of_pivot_1_x = base_radius_1 * cos_azimuth_1 - cos_azimuth_1_times_tcp_radius_1
+        sum_in_pivot_1_x = base_radius_1 * cos_azimuth_1 - cos_azimuth_1_times_tcp_radius_1
         cos_azimuth_2_times_inner_arm_2 = inner_arm_2 * cos_azimuth_2
-        part_of_pivot_2_x = base_radius_2 * cos_azimuth_2 - cos_azimuth_2_times_tcp_radius_2
+        sum_in_pivot_2_x = base_radius_2 * cos_azimuth_2 - cos_azimuth_2_times_tcp_radius_2
         cos_azimuth_3_times_inner_arm_3 = inner_arm_3 * cos_azimuth_3
-        part_of_pivot_3_x = base_radius_3 * cos_azimuth_3 - cos_azimuth_3_times_tcp_radius_3
+        sum_in_pivot_3_x = base_radius_3 * cos_azimuth_3 - cos_azimuth_3_times_tcp_radius_3
         outer_arm_1_squared_times_half = 0.5 * outer_arm_1 * outer_arm_1
-        part_of_projection_2 = outer_arm_1_squared_times_half - 0.5 * outer_arm_2 * outer_arm_2
-        part_of_projection_3 = outer_arm_1_squared_times_half - 0.5 * outer_arm_3 * outer_arm_3
-        part_of_type2_rods_coplanar = assembly_sign / (outer_arm_1 * outer_arm_2 * outer_arm_3)
-        part_of_margin_rods_coplanar = outer_arm_1 * outer_arm_2 * outer_arm_3
+        sum_in_projection_2 = outer_arm_1_squared_times_half - 0.5 * outer_arm_2 * outer_arm_2
+        sum_in_projection_3 = outer_arm_1_squared_times_half - 0.5 * outer_arm_3 * outer_arm_3
+        quotient_in_type2_rods_coplanar = assembly_sign / (outer_arm_1 * outer_arm_2 * outer_arm_3)
+        product_in_margin_rods_coplanar = outer_arm_1 * outer_arm_2 * outer_arm_3
         twice_cos_azimuth_1 = 2.0 * cos_azimuth_1
         twice_sin_azimuth_1 = 2.0 * sin_azimuth_1
         twice_inner_arm_1 = 2.0 * inner_arm_1
@@ -209,30 +209,26 @@ class Constants:
         self.cos_azimuth_1_times_tcp_radius_1 = cos_azimuth_1_times_tcp_radius_1
         self.cos_azimuth_2_times_tcp_radius_2 = cos_azimuth_2_times_tcp_radius_2
         self.cos_azimuth_3_times_tcp_radius_3 = cos_azimuth_3_times_tcp_radius_3
-        self.part_of_normal_divisor, self.outer_arm_1_squared = part_of_normal_divisor, outer_arm_1_squared
+        self.product_in_normal_divisor, self.outer_arm_1_squared = product_in_normal_divisor, outer_arm_1_squared
         self.outer_arm_1_squared_times_rounding = outer_arm_1_squared_times_rounding
         self.inner_arm_1_times_shortest_link = inner_arm_1_times_shortest_link
         self.inner_arm_2_times_shortest_link = inner_arm_2_times_shortest_link
         self.inner_arm_3_times_shortest_link = inner_arm_3_times_shortest_link
-        self.part_of_determinant_divisor = part_of_determinant_divisor
-        self.inner_arm_1_times_sin_azimuth_1 = inner_arm_1_times_sin_azimuth_1
-        self.part_of_pivot_1_y = part_of_pivot_1_y
-        self.inner_arm_2_times_sin_azimuth_2 = inner_arm_2_times_sin_azimuth_2
-        self.part_of_pivot_2_y = part_of_pivot_2_y
-        self.inner_arm_3_times_sin_azimuth_3 = inner_arm_3_times_sin_azimuth_3
-        self.part_of_pivot_3_y = part_of_pivot_3_y
-        self.cos_azimuth_1_times_inner_arm_1 = cos_azimuth_1_times_inner_arm_1
-        self.part_of_pivot_1_x = part_of_pivot_1_x
-        self.cos_azimuth_2_times_inner_arm_2 = cos_azimuth_2_times_inner_arm_2
-        self.part_of_pivot_2_x = part_of_pivot_2_x
-        self.cos_azimuth_3_times_inner_arm_3 = cos_azimuth_3_times_inner_arm_3
-        self.part_of_pivot_3_x, self.part_of_projection_2 = part_of_pivot_3_x, part_of_projection_2
-        self.part_of_projection_3, self.part_of_type2_rods_coplanar = part_of_projection_3, part_of_type2_rods_coplanar
-        self.part_of_margin_rods_coplanar, self.twice_cos_azimuth_1 = part_of_margin_rods_coplanar, twice_cos_azimuth_1
-        self.twice_sin_azimuth_1, self.twice_inner_arm_1 = twice_sin_azimuth_1, twice_inner_arm_1
-        self.twice_cos_azimuth_2, self.twice_sin_azimuth_2 = twice_cos_azimuth_2, twice_sin_azimuth_2
-        self.twice_inner_arm_2, self.twice_cos_azimuth_3 = twice_inner_arm_2, twice_cos_azimuth_3
-        self.twice_sin_azimuth_3, self.twice_inner_arm_3 = twice_sin_azimuth_3, twice_inner_arm_3
+        self.product_in_determinant_divisor = product_in_determinant_divisor
+        self.inner_arm_1_times_sin_azimuth_1, self.sum_in_pivot_1_y = inner_arm_1_times_sin_azimuth_1, sum_in_pivot_1_y
+        self.inner_arm_2_times_sin_azimuth_2, self.sum_in_pivot_2_y = inner_arm_2_times_sin_azimuth_2, sum_in_pivot_2_y
+        self.inner_arm_3_times_sin_azimuth_3, self.sum_in_pivot_3_y = inner_arm_3_times_sin_azimuth_3, sum_in_pivot_3_y
+        self.cos_azimuth_1_times_inner_arm_1, self.sum_in_pivot_1_x = cos_azimuth_1_times_inner_arm_1, sum_in_pivot_1_x
+        self.cos_azimuth_2_times_inner_arm_2, self.sum_in_pivot_2_x = cos_azimuth_2_times_inner_arm_2, sum_in_pivot_2_x
+        self.cos_azimuth_3_times_inner_arm_3, self.sum_in_pivot_3_x = cos_azimuth_3_times_inner_arm_3, sum_in_pivot_3_x
+        self.sum_in_projection_2, self.sum_in_projection_3 = sum_in_projection_2, sum_in_projection_3
+        self.quotient_in_type2_rods_coplanar = quotient_in_type2_rods_coplanar
+        self.product_in_margin_rods_coplanar = product_in_margin_rods_coplanar
+        self.twice_cos_azimuth_1, self.twice_sin_azimuth_1 = twice_cos_azimuth_1, twice_sin_azimuth_1
+        self.twice_inner_arm_1, self.twice_cos_azimuth_2 = twice_inner_arm_1, twice_cos_azimuth_2
+        self.twice_sin_azimuth_2, self.twice_inner_arm_2 = twice_sin_azimuth_2, twice_inner_arm_2
+        self.twice_cos_azimuth_3, self.twice_sin_azimuth_3 = twice_cos_azimuth_3, twice_sin_azimuth_3
+        self.twice_inner_arm_3 = twice_inner_arm_3
         self.inner_arm_1_times_sin_azimuth_1_times_2 = inner_arm_1_times_sin_azimuth_1_times_2
         self.cos_azimuth_1_times_inner_arm_1_times_2 = cos_azimuth_1_times_inner_arm_1_times_2
         self.inner_arm_2_times_sin_azimuth_2_times_2 = inner_arm_2_times_sin_azimuth_2_times_2
@@ -404,20 +400,20 @@ class DeltaP3CType3(OffsetKinematics):
         offset_a2, offset_a3, outer_arm_1 = k.offset_a2, k.offset_a3, k.outer_arm_1
         outer_arm_1_squared = k.outer_arm_1_squared
         outer_arm_1_squared_times_rounding, outer_arm_2 = k.outer_arm_1_squared_times_rounding, k.outer_arm_2
-        outer_arm_3, part_of_normal_divisor = k.outer_arm_3, k.part_of_normal_divisor
-        part_of_pivot_1_x, part_of_pivot_1_y = k.part_of_pivot_1_x, k.part_of_pivot_1_y
-        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
-        part_of_pivot_3_x, part_of_pivot_3_y = k.part_of_pivot_3_x, k.part_of_pivot_3_y
-        part_of_projection_2, part_of_projection_3 = k.part_of_projection_2, k.part_of_projection_3
+        outer_arm_3, product_in_normal_divisor = k.outer_arm_3, k.product_in_normal_divisor
         sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
+        sum_in_pivot_1_x, sum_in_pivot_1_y = k.sum_in_pivot_1_x, k.sum_in_pivot_1_y
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        sum_in_pivot_3_x, sum_in_pivot_3_y = k.sum_in_pivot_3_x, k.sum_in_pivot_3_y
+        sum_in_projection_2, sum_in_projection_3 = k.sum_in_projection_2, k.sum_in_projection_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
+        pivot_1_y = sum_in_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
+        pivot_2_y = sum_in_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
         pivot_1_z = -inner_arm_1 * sin_a1
@@ -426,7 +422,7 @@ class DeltaP3CType3(OffsetKinematics):
         centre_1_to_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
+        pivot_3_y = sum_in_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
         centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
         pivot_3_z = -inner_arm_3 * sin_a3
@@ -434,26 +430,26 @@ class DeltaP3CType3(OffsetKinematics):
         # normal to the plane of the centres
         normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
         # rod 1: centre about which it swings
-        pivot_1_x = part_of_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
+        pivot_1_x = sum_in_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
         # rod 2: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
+        pivot_2_x = sum_in_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         # rod 3: centre about which it swings
-        pivot_3_x = part_of_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
+        pivot_3_x = sum_in_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5 * (
+        projection_2 = sum_in_projection_2 + 0.5 * (
             centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
         )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5 * (
+        projection_3 = sum_in_projection_3 + 0.5 * (
             centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
         )
         one_by_normal_square = 1.0 / normal_square
@@ -480,14 +476,14 @@ class DeltaP3CType3(OffsetKinematics):
         x = foot_x + pivot_1_x + height_by_normal * normal_x
         y = foot_y + pivot_1_y + height_by_normal * normal_y
         z = foot_z + pivot_1_z + height_by_normal * normal_z
-        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
-        span_1_y = y - part_of_pivot_1_y
+        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_y = y - sum_in_pivot_1_y
         branch_knee_1 = ((-span_1_x * cos_azimuth_1 - span_1_y * sin_azimuth_1) * sin_a1 - z * cos_a1) / outer_arm_1
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = y - part_of_pivot_2_y
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - sum_in_pivot_2_y
         branch_knee_2 = ((-span_2_x * cos_azimuth_2 - span_2_y * sin_azimuth_2) * sin_a2 - z * cos_a2) / outer_arm_2
-        span_3_x = x - part_of_pivot_3_x  # rod 3: known part of its vector
-        span_3_y = y - part_of_pivot_3_y
+        span_3_x = x - sum_in_pivot_3_x  # rod 3: known part of its vector
+        span_3_y = y - sum_in_pivot_3_y
         branch_knee_3 = ((-span_3_x * cos_azimuth_3 - span_3_y * sin_azimuth_3) * sin_a3 - z * cos_a3) / outer_arm_3
         return (
             (x, y, z),
@@ -507,19 +503,19 @@ class DeltaP3CType3(OffsetKinematics):
         inner_arm_3_times_sin_azimuth_3, offset_a1 = k.inner_arm_3_times_sin_azimuth_3, k.offset_a1
         offset_a2, offset_a3, outer_arm_1_squared = k.offset_a2, k.offset_a3, k.outer_arm_1_squared
         outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
-        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
-        part_of_pivot_1_y, part_of_pivot_2_x = k.part_of_pivot_1_y, k.part_of_pivot_2_x
-        part_of_pivot_2_y, part_of_pivot_3_x = k.part_of_pivot_2_y, k.part_of_pivot_3_x
-        part_of_pivot_3_y, part_of_projection_2 = k.part_of_pivot_3_y, k.part_of_projection_2
-        part_of_projection_3 = k.part_of_projection_3
+        product_in_normal_divisor, sum_in_pivot_1_x = k.product_in_normal_divisor, k.sum_in_pivot_1_x
+        sum_in_pivot_1_y, sum_in_pivot_2_x = k.sum_in_pivot_1_y, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y, sum_in_pivot_3_x = k.sum_in_pivot_2_y, k.sum_in_pivot_3_x
+        sum_in_pivot_3_y, sum_in_projection_2 = k.sum_in_pivot_3_y, k.sum_in_projection_2
+        sum_in_projection_3 = k.sum_in_projection_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
+        pivot_1_y = sum_in_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
+        pivot_2_y = sum_in_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
         pivot_1_z = -inner_arm_1 * sin_a1
@@ -528,7 +524,7 @@ class DeltaP3CType3(OffsetKinematics):
         centre_1_to_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
+        pivot_3_y = sum_in_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
         centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
         pivot_3_z = -inner_arm_3 * sin_a3
@@ -536,26 +532,26 @@ class DeltaP3CType3(OffsetKinematics):
         # normal to the plane of the centres
         normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
         # rod 1: centre about which it swings
-        pivot_1_x = part_of_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
+        pivot_1_x = sum_in_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
         # rod 2: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
+        pivot_2_x = sum_in_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         # rod 3: centre about which it swings
-        pivot_3_x = part_of_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
+        pivot_3_x = sum_in_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5 * (
+        projection_2 = sum_in_projection_2 + 0.5 * (
             centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
         )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5 * (
+        projection_3 = sum_in_projection_3 + 0.5 * (
             centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
         )
         one_by_normal_square = 1.0 / normal_square
@@ -582,7 +578,7 @@ class DeltaP3CType3(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
         turn_a1, turn_a2, turn_a3 = turns
@@ -599,25 +595,25 @@ class DeltaP3CType3(OffsetKinematics):
         inner_arm_3_times_sin_azimuth_3, mid_a1, mid_a2 = k.inner_arm_3_times_sin_azimuth_3, k.mid_a1, k.mid_a2
         mid_a3, min_type2_margin, offset_a1, offset_a2 = k.mid_a3, k.min_type2_margin, k.offset_a1, k.offset_a2
         offset_a3, outer_arm_1, outer_arm_1_squared = k.offset_a3, k.outer_arm_1, k.outer_arm_1_squared
-        outer_arm_2, outer_arm_3, part_of_pivot_1_x = k.outer_arm_2, k.outer_arm_3, k.part_of_pivot_1_x
-        part_of_pivot_1_y, part_of_pivot_2_x = k.part_of_pivot_1_y, k.part_of_pivot_2_x
-        part_of_pivot_2_y, part_of_pivot_3_x = k.part_of_pivot_2_y, k.part_of_pivot_3_x
-        part_of_pivot_3_y, part_of_type2_rods_coplanar = k.part_of_pivot_3_y, k.part_of_type2_rods_coplanar
-        sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
-        single_a1, single_a2, single_a3 = k.single_a1, k.single_a2, k.single_a3
+        outer_arm_2, outer_arm_3 = k.outer_arm_2, k.outer_arm_3
+        quotient_in_type2_rods_coplanar, sin_azimuth_1 = k.quotient_in_type2_rods_coplanar, k.sin_azimuth_1
+        sin_azimuth_2, sin_azimuth_3, single_a1, single_a2 = k.sin_azimuth_2, k.sin_azimuth_3, k.single_a1, k.single_a2
+        single_a3, sum_in_pivot_1_x, sum_in_pivot_1_y = k.single_a3, k.sum_in_pivot_1_x, k.sum_in_pivot_1_y
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        sum_in_pivot_3_x, sum_in_pivot_3_y = k.sum_in_pivot_3_x, k.sum_in_pivot_3_y
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
-        span_1_y = y - part_of_pivot_1_y
+        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_y = y - sum_in_pivot_1_y
         along_a1 = span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1
         z_squared = z * z
         effective_a1 = root(z_squared + along_a1 * along_a1)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        part_of_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
+        sum_in_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
         # square of the third side of the triangle
-        third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
+        third_square_a1 = (outer_arm_1 + sum_in_third_square_a1) * (outer_arm_1 - sum_in_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
@@ -645,16 +641,16 @@ class DeltaP3CType3(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = y - part_of_pivot_2_y
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - sum_in_pivot_2_y
         along_a2 = span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2
         effective_a2 = root(z_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        part_of_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
+        sum_in_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
         # square of the third side of the triangle
-        third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
+        third_square_a2 = (outer_arm_2 + sum_in_third_square_a2) * (outer_arm_2 - sum_in_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
@@ -682,16 +678,16 @@ class DeltaP3CType3(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        span_3_x = x - part_of_pivot_3_x  # rod 3: known part of its vector
-        span_3_y = y - part_of_pivot_3_y
+        span_3_x = x - sum_in_pivot_3_x  # rod 3: known part of its vector
+        span_3_y = y - sum_in_pivot_3_y
         along_a3 = span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3
         effective_a3 = root(z_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        part_of_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
+        sum_in_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
         # square of the third side of the triangle
-        third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
+        third_square_a3 = (outer_arm_3 + sum_in_third_square_a3) * (outer_arm_3 - sum_in_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
@@ -746,16 +742,18 @@ class DeltaP3CType3(OffsetKinematics):
         sin_a3 = (along_a3 * sin_swing_a3 - z * cos_swing_a3) / effective_a3
         pivot_3_z = -inner_arm_3 * sin_a3
         rod_3_z = z - pivot_3_z
-        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+        type2_rods_coplanar = -quotient_in_type2_rods_coplanar * (
             (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
             + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_coplanar: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -802,21 +800,21 @@ class DeltaP3CType3(OffsetKinematics):
         offset_a2, offset_a3, outer_arm_1 = k.offset_a2, k.offset_a3, k.outer_arm_1
         outer_arm_1_squared = k.outer_arm_1_squared
         outer_arm_1_squared_times_rounding, outer_arm_2 = k.outer_arm_1_squared_times_rounding, k.outer_arm_2
-        outer_arm_3, part_of_margin_rods_coplanar = k.outer_arm_3, k.part_of_margin_rods_coplanar
-        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
-        part_of_pivot_1_y, part_of_pivot_2_x = k.part_of_pivot_1_y, k.part_of_pivot_2_x
-        part_of_pivot_2_y, part_of_pivot_3_x = k.part_of_pivot_2_y, k.part_of_pivot_3_x
-        part_of_pivot_3_y, part_of_projection_2 = k.part_of_pivot_3_y, k.part_of_projection_2
-        part_of_projection_3, sin_azimuth_1, sin_azimuth_2 = k.part_of_projection_3, k.sin_azimuth_1, k.sin_azimuth_2
-        sin_azimuth_3 = k.sin_azimuth_3
+        outer_arm_3, product_in_margin_rods_coplanar = k.outer_arm_3, k.product_in_margin_rods_coplanar
+        product_in_normal_divisor, sin_azimuth_1 = k.product_in_normal_divisor, k.sin_azimuth_1
+        sin_azimuth_2, sin_azimuth_3, sum_in_pivot_1_x = k.sin_azimuth_2, k.sin_azimuth_3, k.sum_in_pivot_1_x
+        sum_in_pivot_1_y, sum_in_pivot_2_x = k.sum_in_pivot_1_y, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y, sum_in_pivot_3_x = k.sum_in_pivot_2_y, k.sum_in_pivot_3_x
+        sum_in_pivot_3_y, sum_in_projection_2 = k.sum_in_pivot_3_y, k.sum_in_projection_2
+        sum_in_projection_3 = k.sum_in_projection_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
+        pivot_1_y = sum_in_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
+        pivot_2_y = sum_in_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
         pivot_1_z = -inner_arm_1 * sin_a1
@@ -825,7 +823,7 @@ class DeltaP3CType3(OffsetKinematics):
         centre_1_to_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
+        pivot_3_y = sum_in_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
         centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
         pivot_3_z = -inner_arm_3 * sin_a3
@@ -833,26 +831,26 @@ class DeltaP3CType3(OffsetKinematics):
         # normal to the plane of the centres
         normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
         # rod 1: centre about which it swings
-        pivot_1_x = part_of_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
+        pivot_1_x = sum_in_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
         # rod 2: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
+        pivot_2_x = sum_in_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         # rod 3: centre about which it swings
-        pivot_3_x = part_of_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
+        pivot_3_x = sum_in_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5 * (
+        projection_2 = sum_in_projection_2 + 0.5 * (
             centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
         )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5 * (
+        projection_3 = sum_in_projection_3 + 0.5 * (
             centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
         )
         one_by_normal_square = 1.0 / normal_square
@@ -878,19 +876,19 @@ class DeltaP3CType3(OffsetKinematics):
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         x = foot_x + pivot_1_x + height_by_normal * normal_x
-        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
         y = foot_y + pivot_1_y + height_by_normal * normal_y
-        span_1_y = y - part_of_pivot_1_y
+        span_1_y = y - sum_in_pivot_1_y
         margin_stretched_1 = (
             (-span_1_x * cos_azimuth_1 - span_1_y * sin_azimuth_1) * sin_a1 - z * cos_a1
         ) / outer_arm_1
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = y - part_of_pivot_2_y
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - sum_in_pivot_2_y
         margin_stretched_2 = (
             (-span_2_x * cos_azimuth_2 - span_2_y * sin_azimuth_2) * sin_a2 - z * cos_a2
         ) / outer_arm_2
-        span_3_x = x - part_of_pivot_3_x  # rod 3: known part of its vector
-        span_3_y = y - part_of_pivot_3_y
+        span_3_x = x - sum_in_pivot_3_x  # rod 3: known part of its vector
+        span_3_y = y - sum_in_pivot_3_y
         margin_stretched_3 = (
             (-span_3_x * cos_azimuth_3 - span_3_y * sin_azimuth_3) * sin_a3 - z * cos_a3
         ) / outer_arm_3
@@ -907,7 +905,7 @@ class DeltaP3CType3(OffsetKinematics):
             rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * rod_1_y
             + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
-        ) / part_of_margin_rods_coplanar
+        ) / product_in_margin_rods_coplanar
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, margin_rods_coplanar)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -933,28 +931,28 @@ class DeltaP3CType3(OffsetKinematics):
         inner_arm_3_times_sin_azimuth_3_times_2, offset_a1 = k.inner_arm_3_times_sin_azimuth_3_times_2, k.offset_a1
         offset_a2, offset_a3, outer_arm_1_squared = k.offset_a2, k.offset_a3, k.outer_arm_1_squared
         outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
-        part_of_determinant_divisor, part_of_normal_divisor = k.part_of_determinant_divisor, k.part_of_normal_divisor
-        part_of_pivot_1_x, part_of_pivot_1_y = k.part_of_pivot_1_x, k.part_of_pivot_1_y
-        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
-        part_of_pivot_3_x, part_of_pivot_3_y = k.part_of_pivot_3_x, k.part_of_pivot_3_y
-        part_of_projection_2, part_of_projection_3 = k.part_of_projection_2, k.part_of_projection_3
-        sin_azimuth_1, sin_azimuth_1_times_tcp_radius_1 = k.sin_azimuth_1, k.sin_azimuth_1_times_tcp_radius_1
-        sin_azimuth_2, sin_azimuth_2_times_tcp_radius_2 = k.sin_azimuth_2, k.sin_azimuth_2_times_tcp_radius_2
-        sin_azimuth_3, sin_azimuth_3_times_tcp_radius_3 = k.sin_azimuth_3, k.sin_azimuth_3_times_tcp_radius_3
-        tcp_radius_1, tcp_radius_2, tcp_radius_3 = k.tcp_radius_1, k.tcp_radius_2, k.tcp_radius_3
-        twice_cos_azimuth_1, twice_cos_azimuth_2 = k.twice_cos_azimuth_1, k.twice_cos_azimuth_2
-        twice_cos_azimuth_3, twice_inner_arm_1 = k.twice_cos_azimuth_3, k.twice_inner_arm_1
-        twice_inner_arm_2, twice_inner_arm_3 = k.twice_inner_arm_2, k.twice_inner_arm_3
-        twice_sin_azimuth_1, twice_sin_azimuth_2 = k.twice_sin_azimuth_1, k.twice_sin_azimuth_2
-        twice_sin_azimuth_3 = k.twice_sin_azimuth_3
+        product_in_determinant_divisor = k.product_in_determinant_divisor
+        product_in_normal_divisor, sin_azimuth_1 = k.product_in_normal_divisor, k.sin_azimuth_1
+        sin_azimuth_1_times_tcp_radius_1, sin_azimuth_2 = k.sin_azimuth_1_times_tcp_radius_1, k.sin_azimuth_2
+        sin_azimuth_2_times_tcp_radius_2, sin_azimuth_3 = k.sin_azimuth_2_times_tcp_radius_2, k.sin_azimuth_3
+        sin_azimuth_3_times_tcp_radius_3, sum_in_pivot_1_x = k.sin_azimuth_3_times_tcp_radius_3, k.sum_in_pivot_1_x
+        sum_in_pivot_1_y, sum_in_pivot_2_x = k.sum_in_pivot_1_y, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y, sum_in_pivot_3_x = k.sum_in_pivot_2_y, k.sum_in_pivot_3_x
+        sum_in_pivot_3_y, sum_in_projection_2 = k.sum_in_pivot_3_y, k.sum_in_projection_2
+        sum_in_projection_3, tcp_radius_1, tcp_radius_2 = k.sum_in_projection_3, k.tcp_radius_1, k.tcp_radius_2
+        tcp_radius_3, twice_cos_azimuth_1 = k.tcp_radius_3, k.twice_cos_azimuth_1
+        twice_cos_azimuth_2, twice_cos_azimuth_3 = k.twice_cos_azimuth_2, k.twice_cos_azimuth_3
+        twice_inner_arm_1, twice_inner_arm_2 = k.twice_inner_arm_1, k.twice_inner_arm_2
+        twice_inner_arm_3, twice_sin_azimuth_1 = k.twice_inner_arm_3, k.twice_sin_azimuth_1
+        twice_sin_azimuth_2, twice_sin_azimuth_3 = k.twice_sin_azimuth_2, k.twice_sin_azimuth_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
+        pivot_1_y = sum_in_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
+        pivot_2_y = sum_in_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
         pivot_1_z = -inner_arm_1 * sin_a1
@@ -963,7 +961,7 @@ class DeltaP3CType3(OffsetKinematics):
         centre_1_to_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
+        pivot_3_y = sum_in_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
         centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
         pivot_3_z = -inner_arm_3 * sin_a3
@@ -971,26 +969,26 @@ class DeltaP3CType3(OffsetKinematics):
         # normal to the plane of the centres
         normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
         # rod 1: centre about which it swings
-        pivot_1_x = part_of_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
+        pivot_1_x = sum_in_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
         # rod 2: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
+        pivot_2_x = sum_in_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         # rod 3: centre about which it swings
-        pivot_3_x = part_of_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
+        pivot_3_x = sum_in_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5 * (
+        projection_2 = sum_in_projection_2 + 0.5 * (
             centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
         )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5 * (
+        projection_3 = sum_in_projection_3 + 0.5 * (
             centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
         )
         one_by_normal_square = 1.0 / normal_square
@@ -1015,67 +1013,67 @@ class DeltaP3CType3(OffsetKinematics):
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
         x = foot_x + pivot_1_x + height_by_normal * normal_x
-        part_of_slope_1_by_y = base_radius_1 + inner_arm_1 * cos_a1
-        slope_1_by_x = 2.0 * (cos_azimuth_1_times_tcp_radius_1 + x) - part_of_slope_1_by_y * twice_cos_azimuth_1
+        sum_in_slope_1_by_y = base_radius_1 + inner_arm_1 * cos_a1
+        slope_1_by_x = 2.0 * (cos_azimuth_1_times_tcp_radius_1 + x) - sum_in_slope_1_by_y * twice_cos_azimuth_1
         y = foot_y + pivot_1_y + height_by_normal * normal_y
-        slope_1_by_y = 2.0 * (sin_azimuth_1_times_tcp_radius_1 + y) - part_of_slope_1_by_y * twice_sin_azimuth_1
+        slope_1_by_y = 2.0 * (sin_azimuth_1_times_tcp_radius_1 + y) - sum_in_slope_1_by_y * twice_sin_azimuth_1
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         twice_z = 2.0 * z
         slope_1_by_z = twice_z + twice_inner_arm_1 * sin_a1
-        part_of_slope_2_by_x = base_radius_2 + inner_arm_2 * cos_a2
-        slope_2_by_y = 2.0 * (sin_azimuth_2_times_tcp_radius_2 + y) - part_of_slope_2_by_x * twice_sin_azimuth_2
+        sum_in_slope_2_by_x = base_radius_2 + inner_arm_2 * cos_a2
+        slope_2_by_y = 2.0 * (sin_azimuth_2_times_tcp_radius_2 + y) - sum_in_slope_2_by_x * twice_sin_azimuth_2
         slope_2_by_z = twice_z + twice_inner_arm_2 * sin_a2
-        part_of_slope_3_by_y = base_radius_3 + inner_arm_3 * cos_a3
-        slope_3_by_y = 2.0 * (sin_azimuth_3_times_tcp_radius_3 + y) - part_of_slope_3_by_y * twice_sin_azimuth_3
+        sum_in_slope_3_by_y = base_radius_3 + inner_arm_3 * cos_a3
+        slope_3_by_y = 2.0 * (sin_azimuth_3_times_tcp_radius_3 + y) - sum_in_slope_3_by_y * twice_sin_azimuth_3
         slope_3_by_z = twice_z + twice_inner_arm_3 * sin_a3
-        part_of_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
-        slope_2_by_x = 2.0 * (cos_azimuth_2_times_tcp_radius_2 + x) - part_of_slope_2_by_x * twice_cos_azimuth_2
-        slope_3_by_x = 2.0 * (cos_azimuth_3_times_tcp_radius_3 + x) - part_of_slope_3_by_y * twice_cos_azimuth_3
-        part_of_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
-        part_of_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        slope_2_by_x = 2.0 * (cos_azimuth_2_times_tcp_radius_2 + x) - sum_in_slope_2_by_x * twice_cos_azimuth_2
+        slope_3_by_x = 2.0 * (cos_azimuth_3_times_tcp_radius_3 + x) - sum_in_slope_3_by_y * twice_cos_azimuth_3
+        sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = (
-            part_of_determinant * slope_1_by_x
-            + part_of_determinant_2 * slope_1_by_y
-            + part_of_determinant_3 * slope_1_by_z
+            slope_1_by_x * sum_in_determinant
+            + slope_1_by_y * sum_in_determinant_2
+            + slope_1_by_z * sum_in_determinant_3
         )
         # nothing controls the plate
-        if not (abs(determinant) > part_of_determinant_divisor):
+        if not (abs(determinant) > product_in_determinant_divisor):
             return Status.IMPOSSIBLE
-        tcp_radius_1_minus_part_of_slope_1_by_y = tcp_radius_1 - part_of_slope_1_by_y
+        tcp_radius_1_minus_sum_in_slope_1_by_y = tcp_radius_1 - sum_in_slope_1_by_y
         slope_1_by_a1 = (
-            (x + tcp_radius_1_minus_part_of_slope_1_by_y * cos_azimuth_1) * cos_azimuth_1_times_inner_arm_1_times_2
-            + inner_arm_1_times_sin_azimuth_1_times_2 * (y + tcp_radius_1_minus_part_of_slope_1_by_y * sin_azimuth_1)
+            (x + tcp_radius_1_minus_sum_in_slope_1_by_y * cos_azimuth_1) * cos_azimuth_1_times_inner_arm_1_times_2
+            + inner_arm_1_times_sin_azimuth_1_times_2 * (y + tcp_radius_1_minus_sum_in_slope_1_by_y * sin_azimuth_1)
         ) * sin_a1 + (z - pivot_1_z) * twice_inner_arm_1 * cos_a1
         one_by_determinant_divisor = 1.0 / determinant
-        part = one_by_determinant_divisor * slope_1_by_a1
-        tcp_radius_2_minus_part_of_slope_2_by_x = tcp_radius_2 - part_of_slope_2_by_x
+        shared_product = one_by_determinant_divisor * slope_1_by_a1
+        tcp_radius_2_minus_sum_in_slope_2_by_x = tcp_radius_2 - sum_in_slope_2_by_x
         slope_2_by_a2 = (
-            (x + tcp_radius_2_minus_part_of_slope_2_by_x * cos_azimuth_2) * cos_azimuth_2_times_inner_arm_2_times_2
-            + inner_arm_2_times_sin_azimuth_2_times_2 * (y + tcp_radius_2_minus_part_of_slope_2_by_x * sin_azimuth_2)
+            (x + tcp_radius_2_minus_sum_in_slope_2_by_x * cos_azimuth_2) * cos_azimuth_2_times_inner_arm_2_times_2
+            + inner_arm_2_times_sin_azimuth_2_times_2 * (y + tcp_radius_2_minus_sum_in_slope_2_by_x * sin_azimuth_2)
         ) * sin_a2 + (z - pivot_2_z) * twice_inner_arm_2 * cos_a2
-        part_2 = one_by_determinant_divisor * slope_2_by_a2
-        tcp_radius_3_minus_part_of_slope_3_by_y = tcp_radius_3 - part_of_slope_3_by_y
+        shared_product_2 = one_by_determinant_divisor * slope_2_by_a2
+        tcp_radius_3_minus_sum_in_slope_3_by_y = tcp_radius_3 - sum_in_slope_3_by_y
         slope_3_by_a3 = (
-            (x + tcp_radius_3_minus_part_of_slope_3_by_y * cos_azimuth_3) * cos_azimuth_3_times_inner_arm_3_times_2
-            + inner_arm_3_times_sin_azimuth_3_times_2 * (y + tcp_radius_3_minus_part_of_slope_3_by_y * sin_azimuth_3)
+            (x + tcp_radius_3_minus_sum_in_slope_3_by_y * cos_azimuth_3) * cos_azimuth_3_times_inner_arm_3_times_2
+            + inner_arm_3_times_sin_azimuth_3_times_2 * (y + tcp_radius_3_minus_sum_in_slope_3_by_y * sin_azimuth_3)
         ) * sin_a3 + (z - pivot_3_z) * twice_inner_arm_3 * cos_a3
-        part_3 = one_by_determinant_divisor * slope_3_by_a3
+        shared_product_3 = one_by_determinant_divisor * slope_3_by_a3
         return (
             (
-                -part * part_of_determinant,
-                part_2 * (slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y),
-                (slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z) * part_3,
+                -shared_product * sum_in_determinant,
+                shared_product_2 * (slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y),
+                (slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z) * shared_product_3,
             ),
             (
-                -part * part_of_determinant_2,
-                (slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z) * part_2,
-                part_3 * (slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x),
+                -shared_product * sum_in_determinant_2,
+                (slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z) * shared_product_2,
+                shared_product_3 * (slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x),
             ),
             (
-                -part * part_of_determinant_3,
-                part_2 * (slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x),
-                (slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y) * part_3,
+                -shared_product * sum_in_determinant_3,
+                shared_product_2 * (slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x),
+                (slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y) * shared_product_3,
             ),
         )
 
@@ -1104,18 +1102,18 @@ class DeltaP3CType3(OffsetKinematics):
         inner_arm_3_times_sin_azimuth_3, mid_a1, mid_a2 = k.inner_arm_3_times_sin_azimuth_3, k.mid_a1, k.mid_a2
         mid_a3, min_type2_margin, offset_a1, offset_a2 = k.mid_a3, k.min_type2_margin, k.offset_a1, k.offset_a2
         offset_a3, outer_arm_1, outer_arm_1_squared = k.offset_a3, k.outer_arm_1, k.outer_arm_1_squared
-        outer_arm_2, outer_arm_3, part_of_pivot_1_x = k.outer_arm_2, k.outer_arm_3, k.part_of_pivot_1_x
-        part_of_pivot_1_y, part_of_pivot_2_x = k.part_of_pivot_1_y, k.part_of_pivot_2_x
-        part_of_pivot_2_y, part_of_pivot_3_x = k.part_of_pivot_2_y, k.part_of_pivot_3_x
-        part_of_pivot_3_y, part_of_type2_rods_coplanar = k.part_of_pivot_3_y, k.part_of_type2_rods_coplanar
-        sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
-        single_a1, single_a2, single_a3 = k.single_a1, k.single_a2, k.single_a3
+        outer_arm_2, outer_arm_3 = k.outer_arm_2, k.outer_arm_3
+        quotient_in_type2_rods_coplanar, sin_azimuth_1 = k.quotient_in_type2_rods_coplanar, k.sin_azimuth_1
+        sin_azimuth_2, sin_azimuth_3, single_a1, single_a2 = k.sin_azimuth_2, k.sin_azimuth_3, k.single_a1, k.single_a2
+        single_a3, sum_in_pivot_1_x, sum_in_pivot_1_y = k.single_a3, k.sum_in_pivot_1_x, k.sum_in_pivot_1_y
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        sum_in_pivot_3_x, sum_in_pivot_3_y = k.sum_in_pivot_3_x, k.sum_in_pivot_3_y
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # position of the flange: the point less its offset
-        span_1_x = flange_x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = flange_x - sum_in_pivot_1_x  # rod 1: known part of its vector
         flange_y = y - point_y  # position of the flange: the point less its offset
-        span_1_y = flange_y - part_of_pivot_1_y
+        span_1_y = flange_y - sum_in_pivot_1_y
         along_a1 = span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1
         flange_z = z - point_z  # position of the flange: the point less its offset
         flange_z_squared = flange_z * flange_z
@@ -1123,9 +1121,9 @@ class DeltaP3CType3(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        part_of_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
+        sum_in_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
         # square of the third side of the triangle
-        third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
+        third_square_a1 = (outer_arm_1 + sum_in_third_square_a1) * (outer_arm_1 - sum_in_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
@@ -1153,16 +1151,16 @@ class DeltaP3CType3(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = flange_y - part_of_pivot_2_y
+        span_2_x = flange_x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = flange_y - sum_in_pivot_2_y
         along_a2 = span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2
         effective_a2 = root(flange_z_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        part_of_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
+        sum_in_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
         # square of the third side of the triangle
-        third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
+        third_square_a2 = (outer_arm_2 + sum_in_third_square_a2) * (outer_arm_2 - sum_in_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
@@ -1190,16 +1188,16 @@ class DeltaP3CType3(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        span_3_x = flange_x - part_of_pivot_3_x  # rod 3: known part of its vector
-        span_3_y = flange_y - part_of_pivot_3_y
+        span_3_x = flange_x - sum_in_pivot_3_x  # rod 3: known part of its vector
+        span_3_y = flange_y - sum_in_pivot_3_y
         along_a3 = span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3
         effective_a3 = root(flange_z_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        part_of_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
+        sum_in_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
         # square of the third side of the triangle
-        third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
+        third_square_a3 = (outer_arm_3 + sum_in_third_square_a3) * (outer_arm_3 - sum_in_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
@@ -1254,16 +1252,18 @@ class DeltaP3CType3(OffsetKinematics):
         sin_a3 = (along_a3 * sin_swing_a3 - flange_z * cos_swing_a3) / effective_a3
         pivot_3_z = -inner_arm_3 * sin_a3
         rod_3_z = flange_z - pivot_3_z
-        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+        type2_rods_coplanar = -quotient_in_type2_rods_coplanar * (
             (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
             + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_coplanar: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -1282,7 +1282,7 @@ class DeltaP3CType3(OffsetKinematics):
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
@@ -1296,20 +1296,20 @@ class DeltaP3CType3(OffsetKinematics):
         offset_a2, offset_a3, outer_arm_1 = k.offset_a2, k.offset_a3, k.outer_arm_1
         outer_arm_1_squared = k.outer_arm_1_squared
         outer_arm_1_squared_times_rounding, outer_arm_2 = k.outer_arm_1_squared_times_rounding, k.outer_arm_2
-        outer_arm_3, part_of_normal_divisor = k.outer_arm_3, k.part_of_normal_divisor
-        part_of_pivot_1_x, part_of_pivot_1_y = k.part_of_pivot_1_x, k.part_of_pivot_1_y
-        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
-        part_of_pivot_3_x, part_of_pivot_3_y = k.part_of_pivot_3_x, k.part_of_pivot_3_y
-        part_of_projection_2, part_of_projection_3 = k.part_of_projection_2, k.part_of_projection_3
+        outer_arm_3, product_in_normal_divisor = k.outer_arm_3, k.product_in_normal_divisor
         sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
+        sum_in_pivot_1_x, sum_in_pivot_1_y = k.sum_in_pivot_1_x, k.sum_in_pivot_1_y
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        sum_in_pivot_3_x, sum_in_pivot_3_y = k.sum_in_pivot_3_x, k.sum_in_pivot_3_y
+        sum_in_projection_2, sum_in_projection_3 = k.sum_in_projection_2, k.sum_in_projection_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
+        pivot_1_y = sum_in_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
+        pivot_2_y = sum_in_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
         pivot_1_z = -inner_arm_1 * sin_a1
@@ -1318,7 +1318,7 @@ class DeltaP3CType3(OffsetKinematics):
         centre_1_to_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
+        pivot_3_y = sum_in_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
         centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
         pivot_3_z = -inner_arm_3 * sin_a3
@@ -1326,26 +1326,26 @@ class DeltaP3CType3(OffsetKinematics):
         # normal to the plane of the centres
         normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
         # rod 1: centre about which it swings
-        pivot_1_x = part_of_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
+        pivot_1_x = sum_in_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
         # rod 2: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
+        pivot_2_x = sum_in_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         # rod 3: centre about which it swings
-        pivot_3_x = part_of_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
+        pivot_3_x = sum_in_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5 * (
+        projection_2 = sum_in_projection_2 + 0.5 * (
             centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
         )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5 * (
+        projection_3 = sum_in_projection_3 + 0.5 * (
             centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
         )
         one_by_normal_square = 1.0 / normal_square
@@ -1371,19 +1371,19 @@ class DeltaP3CType3(OffsetKinematics):
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
         flange_z = foot_z + pivot_1_z + height_by_normal * normal_z
         flange_x = foot_x + pivot_1_x + height_by_normal * normal_x
-        span_1_x = flange_x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = flange_x - sum_in_pivot_1_x  # rod 1: known part of its vector
         flange_y = foot_y + pivot_1_y + height_by_normal * normal_y
-        span_1_y = flange_y - part_of_pivot_1_y
+        span_1_y = flange_y - sum_in_pivot_1_y
         branch_knee_1 = (
             (-span_1_x * cos_azimuth_1 - span_1_y * sin_azimuth_1) * sin_a1 - flange_z * cos_a1
         ) / outer_arm_1
-        span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = flange_y - part_of_pivot_2_y
+        span_2_x = flange_x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = flange_y - sum_in_pivot_2_y
         branch_knee_2 = (
             (-span_2_x * cos_azimuth_2 - span_2_y * sin_azimuth_2) * sin_a2 - flange_z * cos_a2
         ) / outer_arm_2
-        span_3_x = flange_x - part_of_pivot_3_x  # rod 3: known part of its vector
-        span_3_y = flange_y - part_of_pivot_3_y
+        span_3_x = flange_x - sum_in_pivot_3_x  # rod 3: known part of its vector
+        span_3_y = flange_y - sum_in_pivot_3_y
         branch_knee_3 = (
             (-span_3_x * cos_azimuth_3 - span_3_y * sin_azimuth_3) * sin_a3 - flange_z * cos_a3
         ) / outer_arm_3
@@ -1391,7 +1391,7 @@ class DeltaP3CType3(OffsetKinematics):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -39,10 +39,10 @@ The inverse tests the lengths of the legs and the cones of their joints, max_ang
 max_angle_platform_joint. A cone is about the leg at the home pose: choose the home pose where the joints are
 in the middle of their range. It does not test whether legs touch each other: exclude that by the limits.
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-10,
-    solutions that a search from many starts finds: 1, as many as the inverse has.
+    solutions found by a search from many starts: 1, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -962,7 +962,7 @@ class Hexapod(IterativeForward):
         return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ())
 
     def _forward_from(self, axes: Reals, start_position: Vector, start_rotation: Rotation) -> Pose | Status:
-        """The same, found from a given start."""
+        """Position, rotation and the signed margin of every branch, found from a given start."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         start_x, start_y, start_z = start_position
         (start_r11, start_r12, start_r13), (start_r21, start_r22, start_r23), (start_r31, start_r32, start_r33) = (
@@ -1036,7 +1036,7 @@ class Hexapod(IterativeForward):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         k = self._constants
@@ -1304,11 +1304,13 @@ class Hexapod(IterativeForward):
         )
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
         determinant = determinant_of_spans / (l1 * l2 * l3 * l4 * l5 * l6)
-        # rods_dependent: the other assembly mode, or too near to losing the plate
+        # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         if not (assembly_sign * determinant >= min_type2_margin):
             missing = min_type2_margin - assembly_sign * determinant
             return Diagnosis(
-                Status.UNREACHABLE, "rods_dependent: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_dependent: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         axis_l1 = l1 + offset_l1
         axis_l2 = l2 + offset_l2
@@ -1809,7 +1811,7 @@ class Hexapod(IterativeForward):
         divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
         determinant = determinant_of_spans / (divisor_1 * divisor_2 * divisor_3 * divisor_4 * divisor_5 * divisor_6)
-        # rods_dependent: the other assembly mode, or too near to losing the plate
+        # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         if not (assembly_sign * determinant >= min_type2_margin):
             return None
         return (l1 + offset_l1, l2 + offset_l2, l3 + offset_l3, l4 + offset_l4, l5 + offset_l5, l6 + offset_l6)

@@ -24,10 +24,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 48 additions, 41 multiplications, 14 divisions, 4 square roots, 2 sines
     inverse, all 4 branches open: 189 additions, 164 multiplications, 56 divisions, 16 square roots, 8 sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 2, as many as the inverse has.
+    solutions found by a search from many starts: 2, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -95,11 +95,11 @@ class Constants:
         radius_2 = link_length_2 * link_length_4 / link_length_3
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = (-1.0 if e_right else 1.0) if not swap_xy else (1.0 if e_right else -1.0)
-        part_of_normal_divisor = 1e-22 * link_length_2 * link_length_2
+        product_in_normal_divisor = 1e-22 * link_length_2 * link_length_2
         link_length_2_squared_times_rounding = 1e-12 * link_length_2 * link_length_2
         link_length_2_plus_radius_2 = link_length_2 + radius_2
         link_length_2_minus_radius_2 = link_length_2 - radius_2
-        part_of_foot_fraction = link_length_2_minus_radius_2 * link_length_2_plus_radius_2
+        product_in_foot_fraction = link_length_2_minus_radius_2 * link_length_2_plus_radius_2
         machine_scale_times_plane = 1e-6 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_5_times_shortest_link = 1e-9 * link_length_5
@@ -108,49 +108,51 @@ class Constants:
         link_length_2_by_link_length_3 = link_length_2 / link_length_3
         link_length_2_times_link_length_4 = link_length_2 * link_length_4
         link_length_2_plus_link_length_3 = link_length_2 + link_length_3
-        part_of_branch_w = link_length_1 * link_length_2_plus_link_length_3
-        part_of_pivot_rear_x = link_length_1 + link_length_1 * link_length_3 / link_length_2
-        part_of_scaled_pivot_rear_y = link_length_2 * part_of_pivot_rear_x / link_length_3
-        part_of_scaled_pivot_rear_y_2 = link_length_2 * link_length_5 / link_length_3
+        product_in_branch_w = link_length_1 * link_length_2_plus_link_length_3
+        sum_in_pivot_rear_x = link_length_1 + link_length_1 * link_length_3 / link_length_2
+        quotient_in_scaled_pivot_rear_y = link_length_2 * sum_in_pivot_rear_x / link_length_3
+        quotient_in_scaled_pivot_rear_y_2 = link_length_2 * link_length_5 / link_length_3
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_5_minus_link_length_4 = link_length_5 - link_length_4
         link_length_4_plus_link_length_5 = link_length_4 + link_length_5
-        part_of_type2_arms_aligned = assembly_sign * link_length_3 / (link_length_4 * link_length_2 * link_length_2)
-        part_of_along_a2 = link_length_1 * link_length_2_plus_link_length_3 / link_length_2
-        part_of_margin_arms_aligned = link_length_3 / (link_length_4 * link_length_2 * link_length_2)
+        quotient_in_type2_arms_aligned = assembly_sign * link_length_3 / (link_length_4 * link_length_2 * link_length_2)
+        quotient_in_along_a2 = link_length_1 * link_length_2_plus_link_length_3 / link_length_2
+        quotient_in_margin_arms_aligned = link_length_3 / (link_length_4 * link_length_2 * link_length_2)
         twice_link_length_1 = 2.0 * link_length_1
         link_length_3_by_link_length_2_plus_one = 1.0 + link_length_3_by_link_length_2
-        part_of_slope_2_by_x = link_length_1 * link_length_3_by_link_length_2_plus_one
+        product_in_slope_2_by_x = link_length_1 * link_length_3_by_link_length_2_plus_one
         link_length_3_times_2_by_link_length_2 = 2.0 * link_length_3 / link_length_2
-        part_of_slope_2_by_a1 = 2.0 * link_length_1 * link_length_3_by_link_length_2_plus_one
+        product_in_slope_2_by_a1 = 2.0 * link_length_1 * link_length_3_by_link_length_2_plus_one
         twice_link_length_5 = 2.0 * link_length_5
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
         self.link_length_5, self.swap_xy, self.offset_a1, self.offset_a2 = link_length_5, swap_xy, offset_a1, offset_a2
         self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
-        self.part_of_normal_divisor = part_of_normal_divisor
+        self.product_in_normal_divisor = product_in_normal_divisor
         self.link_length_2_squared_times_rounding = link_length_2_squared_times_rounding
         self.link_length_2_plus_radius_2 = link_length_2_plus_radius_2
         self.link_length_2_minus_radius_2 = link_length_2_minus_radius_2
-        self.part_of_foot_fraction, self.machine_scale_times_plane = part_of_foot_fraction, machine_scale_times_plane
+        self.product_in_foot_fraction = product_in_foot_fraction
+        self.machine_scale_times_plane = machine_scale_times_plane
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_5_times_shortest_link = link_length_5_times_shortest_link
         self.link_length_3_by_link_length_2 = link_length_3_by_link_length_2
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
         self.link_length_2_by_link_length_3 = link_length_2_by_link_length_3
         self.link_length_2_times_link_length_4 = link_length_2_times_link_length_4
-        self.part_of_branch_w, self.part_of_pivot_rear_x = part_of_branch_w, part_of_pivot_rear_x
-        self.part_of_scaled_pivot_rear_y = part_of_scaled_pivot_rear_y
-        self.part_of_scaled_pivot_rear_y_2 = part_of_scaled_pivot_rear_y_2
+        self.product_in_branch_w, self.sum_in_pivot_rear_x = product_in_branch_w, sum_in_pivot_rear_x
+        self.quotient_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y
+        self.quotient_in_scaled_pivot_rear_y_2 = quotient_in_scaled_pivot_rear_y_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4
         self.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5
-        self.part_of_type2_arms_aligned, self.part_of_along_a2 = part_of_type2_arms_aligned, part_of_along_a2
-        self.part_of_margin_arms_aligned, self.twice_link_length_1 = part_of_margin_arms_aligned, twice_link_length_1
-        self.part_of_slope_2_by_x = part_of_slope_2_by_x
+        self.quotient_in_type2_arms_aligned = quotient_in_type2_arms_aligned
+        self.quotient_in_along_a2 = quotient_in_along_a2
+        self.quotient_in_margin_arms_aligned = quotient_in_margin_arms_aligned
+        self.twice_link_length_1, self.product_in_slope_2_by_x = twice_link_length_1, product_in_slope_2_by_x
         self.link_length_3_times_2_by_link_length_2 = link_length_3_times_2_by_link_length_2
-        self.part_of_slope_2_by_a1, self.twice_link_length_5 = part_of_slope_2_by_a1, twice_link_length_5
+        self.product_in_slope_2_by_a1, self.twice_link_length_5 = product_in_slope_2_by_a1, twice_link_length_5
 
 
 class KinType12XY(OffsetKinematics):
@@ -261,9 +263,10 @@ class KinType12XY(OffsetKinematics):
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
         link_length_3_by_link_length_2, offset_a1 = k.link_length_3_by_link_length_2, k.offset_a1
-        offset_a2, part_of_branch_w, part_of_foot_fraction = k.offset_a2, k.part_of_branch_w, k.part_of_foot_fraction
-        part_of_normal_divisor, part_of_scaled_pivot_rear_y = k.part_of_normal_divisor, k.part_of_scaled_pivot_rear_y
-        part_of_scaled_pivot_rear_y_2, swap_xy = k.part_of_scaled_pivot_rear_y_2, k.swap_xy
+        offset_a2, product_in_branch_w = k.offset_a2, k.product_in_branch_w
+        product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
+        quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
+        quotient_in_scaled_pivot_rear_y_2, swap_xy = k.quotient_in_scaled_pivot_rear_y_2, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -275,9 +278,9 @@ class KinType12XY(OffsetKinematics):
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
+        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2
+        scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_y
@@ -292,7 +295,7 @@ class KinType12XY(OffsetKinematics):
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
-        normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
+        normal_divisor = normal_square if normal_square > product_in_normal_divisor else 1.0
         between_centres = sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0  # distance between the centres
         one_by_normal_square = 1.0 / normal_divisor
         # square of the height over the line of the centres
@@ -305,7 +308,7 @@ class KinType12XY(OffsetKinematics):
             * one_by_normal_square
         )
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5 * (normal_divisor + part_of_foot_fraction) * one_by_normal_square
+        foot_fraction = 0.5 * (normal_divisor + product_in_foot_fraction) * one_by_normal_square
         foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
@@ -320,14 +323,14 @@ class KinType12XY(OffsetKinematics):
             span_upper_x = x
             span_upper_y = y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
+        if not (normal_square > product_in_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         branch_t = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / link_length_2
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
         branch_w = (
-            (part_of_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
-            + (part_of_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
+            (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
+            + (product_in_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
         ) / link_length_2_times_link_length_4
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_t, branch_w))
 
@@ -338,9 +341,9 @@ class KinType12XY(OffsetKinematics):
         link_length_1, link_length_2_minus_radius_2 = k.link_length_1, k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding, offset_a1 = k.link_length_2_squared_times_rounding, k.offset_a1
-        offset_a2, part_of_normal_divisor = k.offset_a2, k.part_of_normal_divisor
-        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
-        part_of_scaled_pivot_rear_y_2, swap_xy = k.part_of_scaled_pivot_rear_y_2, k.swap_xy
+        offset_a2, product_in_normal_divisor = k.offset_a2, k.product_in_normal_divisor
+        quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
+        quotient_in_scaled_pivot_rear_y_2, swap_xy = k.quotient_in_scaled_pivot_rear_y_2, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -352,9 +355,9 @@ class KinType12XY(OffsetKinematics):
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
+        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2
+        scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_y
@@ -370,7 +373,7 @@ class KinType12XY(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -390,7 +393,7 @@ class KinType12XY(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_t, sigma_w = signs
         turn_a1, turn_a2 = turns
@@ -405,10 +408,11 @@ class KinType12XY(OffsetKinematics):
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        part_of_along_a2, part_of_scaled_pivot_rear_y = k.part_of_along_a2, k.part_of_scaled_pivot_rear_y
-        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
-        part_of_type2_arms_aligned, single_a1, single_a2 = k.part_of_type2_arms_aligned, k.single_a1, k.single_a2
-        swap_xy = k.swap_xy
+        quotient_in_along_a2 = k.quotient_in_along_a2
+        quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
+        quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
+        quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
+        single_a2, swap_xy = k.single_a2, k.swap_xy
         if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -445,9 +449,9 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         pivot_upper_y = -link_length_1 * cos_a1
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - part_of_along_a2 * sin_a1
+        along_a2 = span_rear_x - quotient_in_along_a2 * sin_a1
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        across_a2 = part_of_along_a2 * cos_a1 - span_rear_y
+        across_a2 = quotient_in_along_a2 * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -468,9 +472,9 @@ class KinType12XY(OffsetKinematics):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
+        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2
+        scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
@@ -517,12 +521,14 @@ class KinType12XY(OffsetKinematics):
         rod_1_y = y - centre_1_y
         rod_2_x = x - centre_2_x
         rod_2_y = y - centre_2_y
-        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        type2_arms_aligned = quotient_in_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "arms_aligned: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -557,10 +563,11 @@ class KinType12XY(OffsetKinematics):
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
         link_length_3_by_link_length_2, offset_a1 = k.link_length_3_by_link_length_2, k.offset_a1
-        offset_a2, part_of_branch_w, part_of_foot_fraction = k.offset_a2, k.part_of_branch_w, k.part_of_foot_fraction
-        part_of_margin_arms_aligned, part_of_normal_divisor = k.part_of_margin_arms_aligned, k.part_of_normal_divisor
-        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
-        part_of_scaled_pivot_rear_y_2, swap_xy = k.part_of_scaled_pivot_rear_y_2, k.swap_xy
+        offset_a2, product_in_branch_w = k.offset_a2, k.product_in_branch_w
+        product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
+        quotient_in_margin_arms_aligned = k.quotient_in_margin_arms_aligned
+        quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
+        quotient_in_scaled_pivot_rear_y_2, swap_xy = k.quotient_in_scaled_pivot_rear_y_2, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -572,9 +579,9 @@ class KinType12XY(OffsetKinematics):
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
+        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2
+        scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_y
@@ -589,7 +596,7 @@ class KinType12XY(OffsetKinematics):
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
-        normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
+        normal_divisor = normal_square if normal_square > product_in_normal_divisor else 1.0
         between_centres = sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0  # distance between the centres
         one_by_normal_square = 1.0 / normal_divisor
         # square of the height over the line of the centres
@@ -602,7 +609,7 @@ class KinType12XY(OffsetKinematics):
             * one_by_normal_square
         )
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5 * (normal_divisor + part_of_foot_fraction) * one_by_normal_square
+        foot_fraction = 0.5 * (normal_divisor + product_in_foot_fraction) * one_by_normal_square
         foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
@@ -617,20 +624,20 @@ class KinType12XY(OffsetKinematics):
             span_upper_x = x
             span_upper_y = y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
+        if not (normal_square > product_in_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         margin_stretched_1 = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / link_length_2
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
         margin_stretched_2 = (
-            (part_of_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
-            + (part_of_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
+            (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
+            + (product_in_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
         ) / link_length_2_times_link_length_4
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
         rod_2_x = x - centre_2_x
         rod_2_y = y - centre_2_y
-        margin_arms_aligned = part_of_margin_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
+        margin_arms_aligned = quotient_in_margin_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         return (margin_stretched_1, margin_stretched_2, margin_arms_aligned)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -646,9 +653,9 @@ class KinType12XY(OffsetKinematics):
         link_length_3_times_2_by_link_length_2 = k.link_length_3_times_2_by_link_length_2
         link_length_5 = k.link_length_5
         machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
-        offset_a2, part_of_foot_fraction = k.offset_a2, k.part_of_foot_fraction
-        part_of_normal_divisor, part_of_pivot_rear_x = k.part_of_normal_divisor, k.part_of_pivot_rear_x
-        part_of_slope_2_by_a1, part_of_slope_2_by_x = k.part_of_slope_2_by_a1, k.part_of_slope_2_by_x
+        offset_a2, product_in_foot_fraction = k.offset_a2, k.product_in_foot_fraction
+        product_in_normal_divisor, product_in_slope_2_by_a1 = k.product_in_normal_divisor, k.product_in_slope_2_by_a1
+        product_in_slope_2_by_x, sum_in_pivot_rear_x = k.product_in_slope_2_by_x, k.sum_in_pivot_rear_x
         swap_xy, twice_link_length_1, twice_link_length_5 = k.swap_xy, k.twice_link_length_1, k.twice_link_length_5
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -668,17 +675,17 @@ class KinType12XY(OffsetKinematics):
         cos_a2 = cos(a2)
         cos_a2_times_link_length_5 = link_length_5 * cos_a2
         # rod rear: centre about which it swings
-        pivot_rear_x = part_of_pivot_rear_x * sin_a1 - cos_a2_times_link_length_5
+        pivot_rear_x = sum_in_pivot_rear_x * sin_a1 - cos_a2_times_link_length_5
         sin_a2 = sin(a2)
         link_length_5_times_sin_a2 = link_length_5 * sin_a2
-        pivot_rear_y = link_length_5_times_sin_a2 + part_of_pivot_rear_x * cos_a1
+        pivot_rear_y = link_length_5_times_sin_a2 + sum_in_pivot_rear_x * cos_a1
         centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x) * link_length_2_by_link_length_3
         centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
         centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y) * link_length_2_by_link_length_3
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
-        normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
+        normal_divisor = normal_square if normal_square > product_in_normal_divisor else 1.0
         between_centres = sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0  # distance between the centres
         one_by_normal_square = 1.0 / normal_divisor
         # square of the height over the line of the centres
@@ -693,7 +700,7 @@ class KinType12XY(OffsetKinematics):
         twice_link_length_1_times_sin_a1 = twice_link_length_1 * sin_a1
         twice_link_length_1_times_cos_a1 = twice_link_length_1 * cos_a1
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5 * (normal_divisor + part_of_foot_fraction) * one_by_normal_square
+        foot_fraction = 0.5 * (normal_divisor + product_in_foot_fraction) * one_by_normal_square
         foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
@@ -703,33 +710,35 @@ class KinType12XY(OffsetKinematics):
         y = centre_1_y + foot_y + centre_1_to_2_x * height_by_normal
         twice_y = 2.0 * y
         link_length_3_by_link_length_2_times_x = link_length_3_by_link_length_2 * x
-        part_of_slope_2_by_y = cos_a2_times_link_length_5 - part_of_slope_2_by_x * sin_a1
-        part_of_slope_2_by_x_2 = part_of_slope_2_by_y - link_length_3_by_link_length_2_times_x
-        part_of_slope_2_by_y_2 = link_length_5_times_sin_a2 + part_of_slope_2_by_x * cos_a1
-        part_of_slope_2_by_x_3 = link_length_3_by_link_length_2_times_x + part_of_slope_2_by_y_2
+        sum_in_slope_2_by_y = cos_a2_times_link_length_5 - product_in_slope_2_by_x * sin_a1
+        sum_in_slope_2_by_x = sum_in_slope_2_by_y - link_length_3_by_link_length_2_times_x
+        sum_in_slope_2_by_y_2 = link_length_5_times_sin_a2 + product_in_slope_2_by_x * cos_a1
+        sum_in_slope_2_by_x_2 = link_length_3_by_link_length_2_times_x + sum_in_slope_2_by_y_2
         link_length_3_by_link_length_2_times_y = link_length_3_by_link_length_2 * y
-        part_of_slope_2_by_y_3 = link_length_3_by_link_length_2_times_y + part_of_slope_2_by_y_2
-        part_of_slope_2_by_y_4 = part_of_slope_2_by_y - link_length_3_by_link_length_2_times_y
+        sum_in_slope_2_by_y_3 = link_length_3_by_link_length_2_times_y + sum_in_slope_2_by_y_2
+        sum_in_slope_2_by_y_4 = sum_in_slope_2_by_y - link_length_3_by_link_length_2_times_y
         if swap_xy:
             slope_1_by_x = twice_link_length_1_times_cos_a1 + twice_x
             slope_1_by_y = twice_link_length_1_times_sin_a1 + twice_y
             slope_1_by_a1 = twice_link_length_1 * ((y - pivot_upper_x) * cos_a1 + (pivot_upper_y - x) * sin_a1)
-            slope_2_by_a1 = (-part_of_slope_2_by_y_4 * cos_a1 - part_of_slope_2_by_x_3 * sin_a1) * part_of_slope_2_by_a1
-            slope_2_by_a2 = twice_link_length_5 * (part_of_slope_2_by_x_3 * cos_a2 - part_of_slope_2_by_y_4 * sin_a2)
+            slope_2_by_a1 = (
+                -sum_in_slope_2_by_y_4 * cos_a1 - sum_in_slope_2_by_x_2 * sin_a1
+            ) * product_in_slope_2_by_a1
+            slope_2_by_a2 = twice_link_length_5 * (sum_in_slope_2_by_x_2 * cos_a2 - sum_in_slope_2_by_y_4 * sin_a2)
         else:
             slope_1_by_x = twice_link_length_1_times_sin_a1 + twice_x
             slope_1_by_y = twice_link_length_1_times_cos_a1 + twice_y
             slope_1_by_a1 = twice_link_length_1 * ((x - pivot_upper_x) * cos_a1 + (pivot_upper_y - y) * sin_a1)
-            slope_2_by_a1 = (-part_of_slope_2_by_x_2 * cos_a1 - part_of_slope_2_by_y_3 * sin_a1) * part_of_slope_2_by_a1
-            slope_2_by_a2 = twice_link_length_5 * (part_of_slope_2_by_y_3 * cos_a2 - part_of_slope_2_by_x_2 * sin_a2)
+            slope_2_by_a1 = (-sum_in_slope_2_by_x * cos_a1 - sum_in_slope_2_by_y_3 * sin_a1) * product_in_slope_2_by_a1
+            slope_2_by_a2 = twice_link_length_5 * (sum_in_slope_2_by_y_3 * cos_a2 - sum_in_slope_2_by_x * sin_a2)
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
+        if not (normal_square > product_in_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         slope_2_by_x = (
-            -(-part_of_slope_2_by_x_3 if swap_xy else part_of_slope_2_by_x_2) * link_length_3_times_2_by_link_length_2
+            -(-sum_in_slope_2_by_x_2 if swap_xy else sum_in_slope_2_by_x) * link_length_3_times_2_by_link_length_2
         )
         slope_2_by_y = (
-            -(part_of_slope_2_by_y_4 if swap_xy else -part_of_slope_2_by_y_3) * link_length_3_times_2_by_link_length_2
+            -(sum_in_slope_2_by_y_4 if swap_xy else -sum_in_slope_2_by_y_3) * link_length_3_times_2_by_link_length_2
         )
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x
@@ -772,10 +781,11 @@ class KinType12XY(OffsetKinematics):
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        part_of_along_a2, part_of_scaled_pivot_rear_y = k.part_of_along_a2, k.part_of_scaled_pivot_rear_y
-        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
-        part_of_type2_arms_aligned, single_a1, single_a2 = k.part_of_type2_arms_aligned, k.single_a1, k.single_a2
-        swap_xy = k.swap_xy
+        quotient_in_along_a2 = k.quotient_in_along_a2
+        quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
+        quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
+        quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
+        single_a2, swap_xy = k.single_a2, k.swap_xy
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -814,9 +824,9 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         pivot_upper_y = -link_length_1 * cos_a1
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - part_of_along_a2 * sin_a1
+        along_a2 = span_rear_x - quotient_in_along_a2 * sin_a1
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        across_a2 = part_of_along_a2 * cos_a1 - span_rear_y
+        across_a2 = quotient_in_along_a2 * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -837,9 +847,9 @@ class KinType12XY(OffsetKinematics):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
+        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2
+        scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
@@ -886,12 +896,14 @@ class KinType12XY(OffsetKinematics):
         rod_1_y = flange_y - centre_1_y
         rod_2_x = flange_x - centre_2_x
         rod_2_y = flange_y - centre_2_y
-        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        type2_arms_aligned = quotient_in_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "arms_aligned: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -905,7 +917,7 @@ class KinType12XY(OffsetKinematics):
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
@@ -915,9 +927,10 @@ class KinType12XY(OffsetKinematics):
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
         link_length_3_by_link_length_2, offset_a1 = k.link_length_3_by_link_length_2, k.offset_a1
-        offset_a2, part_of_branch_w, part_of_foot_fraction = k.offset_a2, k.part_of_branch_w, k.part_of_foot_fraction
-        part_of_normal_divisor, part_of_scaled_pivot_rear_y = k.part_of_normal_divisor, k.part_of_scaled_pivot_rear_y
-        part_of_scaled_pivot_rear_y_2, swap_xy = k.part_of_scaled_pivot_rear_y_2, k.swap_xy
+        offset_a2, product_in_branch_w = k.offset_a2, k.product_in_branch_w
+        product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
+        quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
+        quotient_in_scaled_pivot_rear_y_2, swap_xy = k.quotient_in_scaled_pivot_rear_y_2, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -929,9 +942,9 @@ class KinType12XY(OffsetKinematics):
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
+        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2
+        scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_y
@@ -946,7 +959,7 @@ class KinType12XY(OffsetKinematics):
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
-        normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
+        normal_divisor = normal_square if normal_square > product_in_normal_divisor else 1.0
         between_centres = sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0  # distance between the centres
         one_by_normal_square = 1.0 / normal_divisor
         # square of the height over the line of the centres
@@ -959,7 +972,7 @@ class KinType12XY(OffsetKinematics):
             * one_by_normal_square
         )
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5 * (normal_divisor + part_of_foot_fraction) * one_by_normal_square
+        foot_fraction = 0.5 * (normal_divisor + product_in_foot_fraction) * one_by_normal_square
         foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
@@ -974,20 +987,20 @@ class KinType12XY(OffsetKinematics):
             span_upper_x = flange_x
             span_upper_y = flange_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
+        if not (normal_square > product_in_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         branch_t = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / link_length_2
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
         branch_w = (
-            (part_of_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
-            + (part_of_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
+            (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
+            + (product_in_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
         ) / link_length_2_times_link_length_4
         return (branch_t, branch_w)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -24,10 +24,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 46 additions, 34 multiplications, 14 divisions, 4 square roots, 2 sines
     inverse, all 4 branches open: 181 additions, 136 multiplications, 56 divisions, 16 square roots, 8 sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 4, as many as the inverse has.
+    solutions found by a search from many starts: 4, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -65,7 +65,7 @@ class Constants:
         machine_scale = displacement + inner_arm + outer_arm + tcp_displacement
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = 1.0 if tcp_above else -1.0
-        part_of_normal_divisor = 1e-22 * outer_arm * outer_arm
+        product_in_normal_divisor = 1e-22 * outer_arm * outer_arm
         twice_outer_arm = 2.0 * outer_arm
         outer_arm_squared_times_rounding = 1e-12 * outer_arm * outer_arm
         machine_scale_times_plane = 1e-6 * machine_scale
@@ -77,10 +77,10 @@ class Constants:
         assembly_sign_by_outer_arm_squared = assembly_sign / (outer_arm * outer_arm)
         outer_arm_squared = outer_arm * outer_arm
         twice_inner_arm = 2.0 * inner_arm
-        part_of_slope_1_by_x = 2.0 * tcp_displacement - 2.0 * displacement
+        sum_in_slope_1_by_x = 2.0 * tcp_displacement - 2.0 * displacement
         self.inner_arm, self.outer_arm, self.offset_a1, self.offset_a2 = inner_arm, outer_arm, offset_a1, offset_a2
         self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
-        self.part_of_normal_divisor, self.twice_outer_arm = part_of_normal_divisor, twice_outer_arm
+        self.product_in_normal_divisor, self.twice_outer_arm = product_in_normal_divisor, twice_outer_arm
         self.outer_arm_squared_times_rounding = outer_arm_squared_times_rounding
         self.machine_scale_times_plane = machine_scale_times_plane
         self.inner_arm_times_shortest_link = inner_arm_times_shortest_link
@@ -90,7 +90,7 @@ class Constants:
         self.inner_arm_plus_outer_arm = inner_arm_plus_outer_arm
         self.assembly_sign_by_outer_arm_squared = assembly_sign_by_outer_arm_squared
         self.outer_arm_squared, self.twice_inner_arm = outer_arm_squared, twice_inner_arm
-        self.part_of_slope_1_by_x = part_of_slope_1_by_x
+        self.sum_in_slope_1_by_x = sum_in_slope_1_by_x
 
 
 class P2CType1(OffsetKinematics):
@@ -197,7 +197,7 @@ class P2CType1(OffsetKinematics):
         k = self._constants
         assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm, outer_arm_squared_times_rounding = k.outer_arm, k.outer_arm_squared_times_rounding
-        part_of_normal_divisor = k.part_of_normal_divisor
+        product_in_normal_divisor = k.product_in_normal_divisor
         tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -217,7 +217,7 @@ class P2CType1(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -250,7 +250,7 @@ class P2CType1(OffsetKinematics):
         k = self._constants
         inner_arm, offset_a1, offset_a2 = k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
-        part_of_normal_divisor = k.part_of_normal_divisor
+        product_in_normal_divisor = k.product_in_normal_divisor
         tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -270,7 +270,7 @@ class P2CType1(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -290,7 +290,7 @@ class P2CType1(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2 = signs
         turn_a1, turn_a2 = turns
@@ -374,11 +374,13 @@ class P2CType1(OffsetKinematics):
         pivot_2_y = -inner_arm * sin_a2
         rod_2_y = y - pivot_2_y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "arms_aligned: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -410,7 +412,7 @@ class P2CType1(OffsetKinematics):
         assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm, outer_arm_squared = k.outer_arm, k.outer_arm_squared
         outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
-        part_of_normal_divisor = k.part_of_normal_divisor
+        product_in_normal_divisor = k.product_in_normal_divisor
         tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -430,7 +432,7 @@ class P2CType1(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -469,7 +471,7 @@ class P2CType1(OffsetKinematics):
         assembly_sign, inner_arm = k.assembly_sign, k.inner_arm
         machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
         offset_a2, outer_arm_squared_times_rounding = k.offset_a2, k.outer_arm_squared_times_rounding
-        part_of_normal_divisor, part_of_slope_1_by_x = k.part_of_normal_divisor, k.part_of_slope_1_by_x
+        product_in_normal_divisor, sum_in_slope_1_by_x = k.product_in_normal_divisor, k.sum_in_slope_1_by_x
         tcp_displacement_minus_displacement, twice_inner_arm = k.tcp_displacement_minus_displacement, k.twice_inner_arm
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
@@ -490,7 +492,7 @@ class P2CType1(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -510,12 +512,12 @@ class P2CType1(OffsetKinematics):
         height_by_normal = root(height_square / normal_square) * assembly_sign
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         twice_x = 2.0 * x
-        slope_1_by_x = twice_x + twice_inner_arm * cos_a1 - part_of_slope_1_by_x
+        slope_1_by_x = twice_x + twice_inner_arm * cos_a1 - sum_in_slope_1_by_x
         foot_y = 0.5 * centre_1_to_2_y
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         twice_y = 2.0 * y
         slope_1_by_y = twice_y + twice_inner_arm * sin_a1
-        slope_2_by_x = part_of_slope_1_by_x + twice_x - twice_inner_arm * cos_a2
+        slope_2_by_x = sum_in_slope_1_by_x + twice_x - twice_inner_arm * cos_a2
         slope_2_by_y = twice_y + twice_inner_arm * sin_a2
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x
@@ -625,11 +627,13 @@ class P2CType1(OffsetKinematics):
         pivot_2_y = -inner_arm * sin_a2
         rod_2_y = flange_y - pivot_2_y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "arms_aligned: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -643,13 +647,13 @@ class P2CType1(OffsetKinematics):
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
         assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm, outer_arm_squared_times_rounding = k.outer_arm, k.outer_arm_squared_times_rounding
-        part_of_normal_divisor = k.part_of_normal_divisor
+        product_in_normal_divisor = k.product_in_normal_divisor
         tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -669,7 +673,7 @@ class P2CType1(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -698,7 +702,7 @@ class P2CType1(OffsetKinematics):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

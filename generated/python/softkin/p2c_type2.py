@@ -24,10 +24,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 46 additions, 34 multiplications, 14 divisions, 4 square roots, 2 sines
     inverse, all 4 branches open: 181 additions, 136 multiplications, 56 divisions, 16 square roots, 8 sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 3, as many as the inverse has.
+    solutions found by a search from many starts: 3, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -69,31 +69,31 @@ class Constants:
         machine_scale = displacement + inner_arm + outer_arm + tcp_link_distance
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = 1.0 if tcp_above else -1.0
-        part_of_normal_divisor = 1e-22 * outer_arm * outer_arm
+        product_in_normal_divisor = 1e-22 * outer_arm * outer_arm
         twice_outer_arm = 2.0 * outer_arm
         outer_arm_squared_times_rounding = 1e-12 * outer_arm * outer_arm
         machine_scale_times_plane = 1e-6 * machine_scale
         inner_arm_times_shortest_link = 1e-9 * inner_arm
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
-        part_of_pivot_1_x = 0.5 * tcp_link_distance - displacement
+        sum_in_pivot_1_x = 0.5 * tcp_link_distance - displacement
         inner_arm_plus_outer_arm = inner_arm + outer_arm
         inner_arm_minus_outer_arm = inner_arm - outer_arm
         assembly_sign_by_outer_arm_squared = assembly_sign / (outer_arm * outer_arm)
         outer_arm_squared = outer_arm * outer_arm
         twice_inner_arm = 2.0 * inner_arm
-        part_of_slope_1_by_x = tcp_link_distance - 2.0 * displacement
+        sum_in_slope_1_by_x = tcp_link_distance - 2.0 * displacement
         self.inner_arm, self.outer_arm, self.offset_a1, self.offset_a2 = inner_arm, outer_arm, offset_a1, offset_a2
         self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
-        self.part_of_normal_divisor, self.twice_outer_arm = part_of_normal_divisor, twice_outer_arm
+        self.product_in_normal_divisor, self.twice_outer_arm = product_in_normal_divisor, twice_outer_arm
         self.outer_arm_squared_times_rounding = outer_arm_squared_times_rounding
         self.machine_scale_times_plane = machine_scale_times_plane
         self.inner_arm_times_shortest_link = inner_arm_times_shortest_link
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
-        self.part_of_pivot_1_x, self.inner_arm_plus_outer_arm = part_of_pivot_1_x, inner_arm_plus_outer_arm
+        self.sum_in_pivot_1_x, self.inner_arm_plus_outer_arm = sum_in_pivot_1_x, inner_arm_plus_outer_arm
         self.inner_arm_minus_outer_arm = inner_arm_minus_outer_arm
         self.assembly_sign_by_outer_arm_squared = assembly_sign_by_outer_arm_squared
         self.outer_arm_squared, self.twice_inner_arm = outer_arm_squared, twice_inner_arm
-        self.part_of_slope_1_by_x = part_of_slope_1_by_x
+        self.sum_in_slope_1_by_x = sum_in_slope_1_by_x
 
 
 class P2CType2(OffsetKinematics):
@@ -200,17 +200,17 @@ class P2CType2(OffsetKinematics):
         k = self._constants
         assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm, outer_arm_squared_times_rounding = k.outer_arm, k.outer_arm_squared_times_rounding
-        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
+        product_in_normal_divisor, sum_in_pivot_1_x = k.product_in_normal_divisor, k.sum_in_pivot_1_x
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = part_of_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -220,7 +220,7 @@ class P2CType2(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -241,9 +241,9 @@ class P2CType2(OffsetKinematics):
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         foot_y = 0.5 * centre_1_to_2_y
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
-        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
         branch_knee_1 = (y * cos_a1 - span_1_x * sin_a1) / outer_arm
-        span_2_x = part_of_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
         branch_knee_2 = (span_2_x * sin_a2 - y * cos_a2) / outer_arm
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_knee_1, branch_knee_2))
 
@@ -253,17 +253,17 @@ class P2CType2(OffsetKinematics):
         k = self._constants
         inner_arm, offset_a1, offset_a2 = k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
-        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
+        product_in_normal_divisor, sum_in_pivot_1_x = k.product_in_normal_divisor, k.sum_in_pivot_1_x
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = part_of_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -273,7 +273,7 @@ class P2CType2(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -293,7 +293,7 @@ class P2CType2(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2 = signs
         turn_a1, turn_a2 = turns
@@ -303,15 +303,15 @@ class P2CType2(OffsetKinematics):
         inner_arm_minus_outer_arm, inner_arm_plus_outer_arm = k.inner_arm_minus_outer_arm, k.inner_arm_plus_outer_arm
         inner_arm_times_shortest_link = k.inner_arm_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
-        min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        part_of_pivot_1_x, single_a1, single_a2 = k.part_of_pivot_1_x, k.single_a1, k.single_a2
+        min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
+        single_a2, sum_in_pivot_1_x = k.single_a2, k.sum_in_pivot_1_x
         if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
         y_squared = y * y
         effective_a1 = root(y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
@@ -336,7 +336,7 @@ class P2CType2(OffsetKinematics):
                 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = part_of_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
         effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -377,11 +377,13 @@ class P2CType2(OffsetKinematics):
         pivot_2_y = inner_arm * sin_a2
         rod_2_y = y - pivot_2_y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "arms_aligned: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -413,17 +415,17 @@ class P2CType2(OffsetKinematics):
         assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm, outer_arm_squared = k.outer_arm, k.outer_arm_squared
         outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
-        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
+        product_in_normal_divisor, sum_in_pivot_1_x = k.product_in_normal_divisor, k.sum_in_pivot_1_x
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = part_of_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -433,7 +435,7 @@ class P2CType2(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -454,9 +456,9 @@ class P2CType2(OffsetKinematics):
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
-        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
         margin_stretched_1 = (y * cos_a1 - span_1_x * sin_a1) / outer_arm
-        span_2_x = part_of_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
         margin_stretched_2 = (span_2_x * sin_a2 - y * cos_a2) / outer_arm
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
@@ -472,18 +474,18 @@ class P2CType2(OffsetKinematics):
         assembly_sign, inner_arm = k.assembly_sign, k.inner_arm
         machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
         offset_a2, outer_arm_squared_times_rounding = k.offset_a2, k.outer_arm_squared_times_rounding
-        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
-        part_of_slope_1_by_x, twice_inner_arm = k.part_of_slope_1_by_x, k.twice_inner_arm
+        product_in_normal_divisor, sum_in_pivot_1_x = k.product_in_normal_divisor, k.sum_in_pivot_1_x
+        sum_in_slope_1_by_x, twice_inner_arm = k.sum_in_slope_1_by_x, k.twice_inner_arm
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = part_of_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -493,7 +495,7 @@ class P2CType2(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -513,12 +515,12 @@ class P2CType2(OffsetKinematics):
         height_by_normal = root(height_square / normal_square) * assembly_sign
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         twice_x = 2.0 * x
-        slope_1_by_x = twice_x - part_of_slope_1_by_x - twice_inner_arm * cos_a1
+        slope_1_by_x = twice_x - sum_in_slope_1_by_x - twice_inner_arm * cos_a1
         foot_y = 0.5 * centre_1_to_2_y
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         twice_y = 2.0 * y
         slope_1_by_y = twice_y - twice_inner_arm * sin_a1
-        slope_2_by_x = part_of_slope_1_by_x + twice_x - twice_inner_arm * cos_a2
+        slope_2_by_x = sum_in_slope_1_by_x + twice_x - twice_inner_arm * cos_a2
         slope_2_by_y = twice_y - twice_inner_arm * sin_a2
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x
@@ -552,8 +554,8 @@ class P2CType2(OffsetKinematics):
         inner_arm_minus_outer_arm, inner_arm_plus_outer_arm = k.inner_arm_minus_outer_arm, k.inner_arm_plus_outer_arm
         inner_arm_times_shortest_link = k.inner_arm_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
-        min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        part_of_pivot_1_x, single_a1, single_a2 = k.part_of_pivot_1_x, k.single_a1, k.single_a2
+        min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
+        single_a2, sum_in_pivot_1_x = k.single_a2, k.sum_in_pivot_1_x
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -561,7 +563,7 @@ class P2CType2(OffsetKinematics):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_x = x - point_x  # position of the flange: the point less its offset
-        span_1_x = flange_x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = flange_x - sum_in_pivot_1_x  # rod 1: known part of its vector
         flange_y = y - point_y  # position of the flange: the point less its offset
         flange_y_squared = flange_y * flange_y
         effective_a1 = root(flange_y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
@@ -587,7 +589,7 @@ class P2CType2(OffsetKinematics):
                 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = flange_x + part_of_pivot_1_x  # rod 2: known part of its vector
+        span_2_x = flange_x + sum_in_pivot_1_x  # rod 2: known part of its vector
         effective_a2 = root(flange_y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -628,11 +630,13 @@ class P2CType2(OffsetKinematics):
         pivot_2_y = inner_arm * sin_a2
         rod_2_y = flange_y - pivot_2_y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "arms_aligned: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -646,23 +650,23 @@ class P2CType2(OffsetKinematics):
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
         assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm, outer_arm_squared_times_rounding = k.outer_arm, k.outer_arm_squared_times_rounding
-        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
+        product_in_normal_divisor, sum_in_pivot_1_x = k.product_in_normal_divisor, k.sum_in_pivot_1_x
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = part_of_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - part_of_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -672,7 +676,7 @@ class P2CType2(OffsetKinematics):
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -693,15 +697,15 @@ class P2CType2(OffsetKinematics):
         flange_y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
         flange_x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
-        span_1_x = flange_x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = flange_x - sum_in_pivot_1_x  # rod 1: known part of its vector
         branch_knee_1 = (flange_y * cos_a1 - span_1_x * sin_a1) / outer_arm
-        span_2_x = flange_x + part_of_pivot_1_x  # rod 2: known part of its vector
+        span_2_x = flange_x + sum_in_pivot_1_x  # rod 2: known part of its vector
         branch_knee_2 = (span_2_x * sin_a2 - flange_y * cos_a2) / outer_arm
         return (branch_knee_1, branch_knee_2)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -22,10 +22,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 22 additions, 9 multiplications, 0 divisions, 2 square roots, 0 sines
     inverse, all 4 branches open: 85 additions, 36 multiplications, 0 divisions, 8 square roots, 0 sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 2, as many as the inverse has.
+    solutions found by a search from many starts: 2, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -71,28 +71,30 @@ class Constants:
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = 1.0 if tcp_above else -1.0
         centre_1_to_2_y_squared = centre_1_to_2_y * centre_1_to_2_y
-        part_of_normal_divisor = 1e-22 * arm_length_1 * arm_length_1
+        product_in_normal_divisor = 1e-22 * arm_length_1 * arm_length_1
         arm_length_1_squared_times_rounding = 1e-12 * arm_length_1 * arm_length_1
         arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
-        part_of_foot_fraction = arm_length_1_minus_arm_length_2 * arm_length_1_plus_arm_length_2
+        product_in_foot_fraction = arm_length_1_minus_arm_length_2 * arm_length_1_plus_arm_length_2
         machine_scale_times_plane = 1e-6 * machine_scale
         arm_length_2_squared_times_rounding = 1e-12 * arm_length_2 * arm_length_2
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
-        part_of_type2_arms_aligned = assembly_sign / (arm_length_1 * arm_length_2)
+        quotient_in_type2_arms_aligned = assembly_sign / (arm_length_1 * arm_length_2)
         arm_length_1_times_arm_length_2 = arm_length_1 * arm_length_2
         self.arm_length_1, self.arm_length_2, self.rail_y_1 = arm_length_1, arm_length_2, rail_y_1
         self.rail_y_2, self.tcp_offset_1, self.tcp_offset_2 = rail_y_2, tcp_offset_1, tcp_offset_2
         self.offset_a1, self.offset_a2, self.min_type2_margin, self.tie = offset_a1, offset_a2, min_type2_margin, tie
         self.centre_1_to_2_y, self.assembly_sign = centre_1_to_2_y, assembly_sign
-        self.centre_1_to_2_y_squared, self.part_of_normal_divisor = centre_1_to_2_y_squared, part_of_normal_divisor
+        self.centre_1_to_2_y_squared = centre_1_to_2_y_squared
+        self.product_in_normal_divisor = product_in_normal_divisor
         self.arm_length_1_squared_times_rounding = arm_length_1_squared_times_rounding
         self.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2
         self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
-        self.part_of_foot_fraction, self.machine_scale_times_plane = part_of_foot_fraction, machine_scale_times_plane
+        self.product_in_foot_fraction = product_in_foot_fraction
+        self.machine_scale_times_plane = machine_scale_times_plane
         self.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
-        self.part_of_type2_arms_aligned = part_of_type2_arms_aligned
+        self.quotient_in_type2_arms_aligned = quotient_in_type2_arms_aligned
         self.arm_length_1_times_arm_length_2 = arm_length_1_times_arm_length_2
 
 
@@ -195,7 +197,7 @@ class P2XType1(OffsetKinematics):
         arm_length_1_squared_times_rounding, arm_length_2 = k.arm_length_1_squared_times_rounding, k.arm_length_2
         assembly_sign, centre_1_to_2_y = k.assembly_sign, k.centre_1_to_2_y
         centre_1_to_2_y_squared, offset_a1, offset_a2 = k.centre_1_to_2_y_squared, k.offset_a1, k.offset_a2
-        part_of_foot_fraction, part_of_normal_divisor = k.part_of_foot_fraction, k.part_of_normal_divisor
+        product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
         rail_y_1, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.tcp_offset_1, k.tcp_offset_2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -207,7 +209,7 @@ class P2XType1(OffsetKinematics):
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         normal_square = centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         one_by_normal_square = 1.0 / normal_square
@@ -224,7 +226,7 @@ class P2XType1(OffsetKinematics):
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5 * (normal_square + part_of_foot_fraction) * one_by_normal_square
+        foot_fraction = 0.5 * (normal_square + product_in_foot_fraction) * one_by_normal_square
         foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
@@ -247,7 +249,8 @@ class P2XType1(OffsetKinematics):
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
         centre_1_to_2_y_squared, offset_a1, offset_a2 = k.centre_1_to_2_y_squared, k.offset_a1, k.offset_a2
-        part_of_normal_divisor, tcp_offset_1, tcp_offset_2 = k.part_of_normal_divisor, k.tcp_offset_1, k.tcp_offset_2
+        product_in_normal_divisor, tcp_offset_1 = k.product_in_normal_divisor, k.tcp_offset_1
+        tcp_offset_2 = k.tcp_offset_2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -258,7 +261,7 @@ class P2XType1(OffsetKinematics):
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         normal_square = centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
@@ -278,15 +281,16 @@ class P2XType1(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2 = signs
         k = self._constants
         arm_length_1, arm_length_1_squared_times_rounding = k.arm_length_1, k.arm_length_1_squared_times_rounding
         arm_length_2, arm_length_2_squared_times_rounding = k.arm_length_2, k.arm_length_2_squared_times_rounding
         machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
-        offset_a1, offset_a2, part_of_type2_arms_aligned = k.offset_a1, k.offset_a2, k.part_of_type2_arms_aligned
-        rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        quotient_in_type2_arms_aligned, rail_y_1, rail_y_2 = k.quotient_in_type2_arms_aligned, k.rail_y_1, k.rail_y_2
+        tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
         if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -311,12 +315,14 @@ class P2XType1(OffsetKinematics):
         span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
         a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         rod_2_x = span_2_x - a2
-        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        type2_arms_aligned = quotient_in_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "arms_aligned: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -343,7 +349,7 @@ class P2XType1(OffsetKinematics):
         arm_length_1_times_arm_length_2, arm_length_2 = k.arm_length_1_times_arm_length_2, k.arm_length_2
         assembly_sign, centre_1_to_2_y = k.assembly_sign, k.centre_1_to_2_y
         centre_1_to_2_y_squared, offset_a1, offset_a2 = k.centre_1_to_2_y_squared, k.offset_a1, k.offset_a2
-        part_of_foot_fraction, part_of_normal_divisor = k.part_of_foot_fraction, k.part_of_normal_divisor
+        product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
         rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -355,7 +361,7 @@ class P2XType1(OffsetKinematics):
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         normal_square = centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         one_by_normal_square = 1.0 / normal_square
@@ -372,7 +378,7 @@ class P2XType1(OffsetKinematics):
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5 * (normal_square + part_of_foot_fraction) * one_by_normal_square
+        foot_fraction = 0.5 * (normal_square + product_in_foot_fraction) * one_by_normal_square
         foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
@@ -397,8 +403,8 @@ class P2XType1(OffsetKinematics):
         arm_length_1_squared_times_rounding, assembly_sign = k.arm_length_1_squared_times_rounding, k.assembly_sign
         centre_1_to_2_y, centre_1_to_2_y_squared = k.centre_1_to_2_y, k.centre_1_to_2_y_squared
         machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
-        offset_a2, part_of_foot_fraction = k.offset_a2, k.part_of_foot_fraction
-        part_of_normal_divisor, rail_y_1, rail_y_2 = k.part_of_normal_divisor, k.rail_y_1, k.rail_y_2
+        offset_a2, product_in_foot_fraction = k.offset_a2, k.product_in_foot_fraction
+        product_in_normal_divisor, rail_y_1, rail_y_2 = k.product_in_normal_divisor, k.rail_y_1, k.rail_y_2
         tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -410,7 +416,7 @@ class P2XType1(OffsetKinematics):
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         normal_square = centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         one_by_normal_square = 1.0 / normal_square
@@ -429,7 +435,7 @@ class P2XType1(OffsetKinematics):
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5 * (normal_square + part_of_foot_fraction) * one_by_normal_square
+        foot_fraction = 0.5 * (normal_square + product_in_foot_fraction) * one_by_normal_square
         foot_y = centre_1_to_2_y * foot_fraction
         y = foot_y + rail_y_1 + centre_1_to_2_x * height_by_normal
         slope_1_by_y = 2.0 * (y - rail_y_1)
@@ -446,13 +452,13 @@ class P2XType1(OffsetKinematics):
         if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
         one_by_determinant_divisor = 1.0 / determinant
-        part = one_by_determinant_divisor * slope_1_by_x * slope_2_by_x
+        shared_product = one_by_determinant_divisor * slope_1_by_x * slope_2_by_x
         return (
             (
                 one_by_determinant_divisor * slope_1_by_x_times_slope_2_by_y,
                 -one_by_determinant_divisor * slope_1_by_y_times_slope_2_by_x,
             ),
-            (-part, part),
+            (-shared_product, shared_product),
         )
 
     def _image(self) -> Image | Status:
@@ -470,8 +476,9 @@ class P2XType1(OffsetKinematics):
         arm_length_1, arm_length_1_squared_times_rounding = k.arm_length_1, k.arm_length_1_squared_times_rounding
         arm_length_2, arm_length_2_squared_times_rounding = k.arm_length_2, k.arm_length_2_squared_times_rounding
         machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
-        offset_a1, offset_a2, part_of_type2_arms_aligned = k.offset_a1, k.offset_a2, k.part_of_type2_arms_aligned
-        rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        quotient_in_type2_arms_aligned, rail_y_1, rail_y_2 = k.quotient_in_type2_arms_aligned, k.rail_y_1, k.rail_y_2
+        tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
         if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -498,18 +505,20 @@ class P2XType1(OffsetKinematics):
         span_2_x = flange_x + tcp_offset_2  # rod 2: known part of its vector
         a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         rod_2_x = span_2_x - a2
-        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        type2_arms_aligned = quotient_in_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "arms_aligned: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
@@ -518,7 +527,7 @@ class P2XType1(OffsetKinematics):
         arm_length_1_squared_times_rounding, arm_length_2 = k.arm_length_1_squared_times_rounding, k.arm_length_2
         assembly_sign, centre_1_to_2_y = k.assembly_sign, k.centre_1_to_2_y
         centre_1_to_2_y_squared, offset_a1, offset_a2 = k.centre_1_to_2_y_squared, k.offset_a1, k.offset_a2
-        part_of_foot_fraction, part_of_normal_divisor = k.part_of_foot_fraction, k.part_of_normal_divisor
+        product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
         tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -530,7 +539,7 @@ class P2XType1(OffsetKinematics):
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         normal_square = centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         one_by_normal_square = 1.0 / normal_square
@@ -547,7 +556,7 @@ class P2XType1(OffsetKinematics):
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5 * (normal_square + part_of_foot_fraction) * one_by_normal_square
+        foot_fraction = 0.5 * (normal_square + product_in_foot_fraction) * one_by_normal_square
         foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
@@ -558,7 +567,7 @@ class P2XType1(OffsetKinematics):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -19,10 +19,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     forward: 7 additions, 4 multiplications, 0 divisions, 1 square roots, 0 sines
     inverse: 8 additions, 3 multiplications, 0 divisions, 1 square roots, 0 sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 1, as many as the inverse has.
+    solutions found by a search from many starts: 1, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -57,14 +57,14 @@ class Constants:
         machine_scale_times_rounding = 1e-12 * machine_scale
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
         machine_scale_times_plane = 1e-6 * machine_scale
-        part_of_constant = 2.5e-13 * arm_length * arm_length
+        shared_product = 2.5e-13 * arm_length * arm_length
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         assembly_sign_by_arm_length = assembly_sign / arm_length
         self.arm_length, self.tcp_link_distance, self.offset_a1 = arm_length, tcp_link_distance, offset_a1
         self.offset_a2, self.min_type2_margin, self.assembly_sign = offset_a2, min_type2_margin, assembly_sign
         self.span_1_x, self.machine_scale_times_rounding = span_1_x, machine_scale_times_rounding
         self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
-        self.machine_scale_times_plane, self.part_of_constant = machine_scale_times_plane, part_of_constant
+        self.machine_scale_times_plane, self.shared_product = machine_scale_times_plane, shared_product
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
         self.assembly_sign_by_arm_length = assembly_sign_by_arm_length
 
@@ -194,12 +194,12 @@ class P2XType2(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         k = self._constants
         arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
         machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
-        offset_a1, offset_a2, part_of_constant, span_1_x = k.offset_a1, k.offset_a2, k.part_of_constant, k.span_1_x
+        offset_a1, offset_a2, shared_product, span_1_x = k.offset_a1, k.offset_a2, k.shared_product, k.span_1_x
         if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -208,15 +208,15 @@ class P2XType2(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         radicand_a2 = (arm_length + y) * (arm_length - y)  # quadratic equation for a2: rod 1 (through x)
         # rod 1 (through x) cannot reach
-        if not (radicand_a2 >= -part_of_constant):
+        if not (radicand_a2 >= -shared_product):
             missing = 0.5 * (abs(arm_length - y) + abs(arm_length + y)) - arm_length
             return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
         type2_flat = assembly_sign_by_arm_length * y
-        # flat: the other assembly mode, or too near to losing the plate
+        # flat: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_flat >= min_type2_margin):
             missing = min_type2_margin - type2_flat
             return Diagnosis(
-                Status.UNREACHABLE, "flat: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE, "flat: in the other assembly mode, or too close to a type 2 singularity", missing
             )
         middle_a2 = span_1_x + x
         a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
@@ -309,7 +309,7 @@ class P2XType2(OffsetKinematics):
         k = self._constants
         arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
         machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
-        offset_a1, offset_a2, part_of_constant, span_1_x = k.offset_a1, k.offset_a2, k.part_of_constant, k.span_1_x
+        offset_a1, offset_a2, shared_product, span_1_x = k.offset_a1, k.offset_a2, k.shared_product, k.span_1_x
         if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -320,15 +320,15 @@ class P2XType2(OffsetKinematics):
         # quadratic equation for a2: rod 1 (through x)
         radicand_a2 = (arm_length + flange_y) * (arm_length - flange_y)
         # rod 1 (through x) cannot reach
-        if not (radicand_a2 >= -part_of_constant):
+        if not (radicand_a2 >= -shared_product):
             missing = 0.5 * (abs(arm_length - flange_y) + abs(arm_length + flange_y)) - arm_length
             return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
         type2_flat = assembly_sign_by_arm_length * flange_y
-        # flat: the other assembly mode, or too near to losing the plate
+        # flat: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_flat >= min_type2_margin):
             missing = min_type2_margin - type2_flat
             return Diagnosis(
-                Status.UNREACHABLE, "flat: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE, "flat: in the other assembly mode, or too close to a type 2 singularity", missing
             )
         flange_x = x - point_x  # position of the flange: the point less its offset
         middle_a2 = flange_x + span_1_x
@@ -338,7 +338,7 @@ class P2XType2(OffsetKinematics):
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
@@ -370,16 +370,16 @@ class P2XType2(OffsetKinematics):
         k = self._constants
         arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
         machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
-        offset_a1, offset_a2, part_of_constant, span_1_x = k.offset_a1, k.offset_a2, k.part_of_constant, k.span_1_x
+        offset_a1, offset_a2, shared_product, span_1_x = k.offset_a1, k.offset_a2, k.shared_product, k.span_1_x
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
         radicand_a2 = (arm_length + y) * (arm_length - y)  # quadratic equation for a2: rod 1 (through x)
         # rod 1 (through x) cannot reach
-        if not (radicand_a2 >= -part_of_constant):
+        if not (radicand_a2 >= -shared_product):
             return None
         type2_flat = assembly_sign_by_arm_length * y
-        # flat: the other assembly mode, or too near to losing the plate
+        # flat: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_flat >= min_type2_margin):
             return None
         a2 = span_1_x + x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)

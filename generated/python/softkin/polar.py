@@ -11,8 +11,8 @@ Configuration:
     period of C: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
-    free_c: type 1; 1, and 0 where an axis is free, within 1e-11 of the unit of length: the machine has no
-    length that a distance from there could be compared with
+    free_c: type 1; 0 within 1e-11 of the unit of length from where an axis is not determined, else 1: the
+    machine has no length with which this distance could be compared
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 5 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
@@ -23,10 +23,10 @@ As CODESYS's own block it has no orientation mode "Axis": a point beside the arm
 
 The centre is a singularity: the direction of the arm is then the reference's.
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 1, as many as the inverse has.
+    solutions found by a search from many starts: 1, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -156,7 +156,7 @@ class Polar(Mechanism):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (turn_c,) = turns
         ref_c, _ = reference

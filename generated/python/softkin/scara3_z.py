@@ -27,10 +27,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
 
 As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset interface.
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 2, as many as the inverse has.
+    solutions found by a search from many starts: 2, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -207,7 +207,7 @@ class Scara3Z(TwistChoice):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
         (sigma_elbow,) = signs
@@ -338,12 +338,12 @@ class Scara3Z(TwistChoice):
         sin_a123 = sin(a1_plus_a2_plus_a3)
         arm_length_3_times_sin_a123 = arm_length_3 * sin_a123
         sin_a12 = sin(a1_plus_a2)
-        part = arm_length_3_times_sin_a123 + arm_length_2 * sin_a12
+        shared_sum = arm_length_3_times_sin_a123 + arm_length_2 * sin_a12
         cos_a12 = cos(a1_plus_a2)
-        part_2 = arm_length_3_times_cos_a123 + arm_length_2 * cos_a12
+        shared_sum_2 = arm_length_3_times_cos_a123 + arm_length_2 * cos_a12
         return (
-            (-part - arm_length_1 * sin_a1, -part, -arm_length_3_times_sin_a123, 0.0),
-            (part_2 + arm_length_1 * cos_a1, part_2, arm_length_3_times_cos_a123, 0.0),
+            (-shared_sum - arm_length_1 * sin_a1, -shared_sum, -arm_length_3_times_sin_a123, 0.0),
+            (shared_sum_2 + arm_length_1 * cos_a1, shared_sum_2, arm_length_3_times_cos_a123, 0.0),
             (0.0, 0.0, 0.0, 1.0),
             (1.0, 1.0, 1.0, 0.0),
         )
@@ -372,12 +372,12 @@ class Scara3Z(TwistChoice):
         sin_a123 = sin(a1_plus_a2_plus_a3)
         arm_length_3_times_sin_a123 = arm_length_3 * sin_a123
         sin_a12 = sin(a1_plus_a2)
-        part = arm_length_3_times_sin_a123 + arm_length_2 * sin_a12
+        shared_sum = arm_length_3_times_sin_a123 + arm_length_2 * sin_a12
         cos_a12 = cos(a1_plus_a2)
-        part_2 = arm_length_3_times_cos_a123 + arm_length_2 * cos_a12
+        shared_sum_2 = arm_length_3_times_cos_a123 + arm_length_2 * cos_a12
         return (
-            (-part - arm_length_1 * sin_a1, -part, -arm_length_3_times_sin_a123, 0.0),
-            (part_2 + arm_length_1 * cos_a1, part_2, arm_length_3_times_cos_a123, 0.0),
+            (-shared_sum - arm_length_1 * sin_a1, -shared_sum, -arm_length_3_times_sin_a123, 0.0),
+            (shared_sum_2 + arm_length_1 * cos_a1, shared_sum_2, arm_length_3_times_cos_a123, 0.0),
             (0.0, 0.0, 0.0, 1.0),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
@@ -400,7 +400,7 @@ class Scara3Z(TwistChoice):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -30,10 +30,10 @@ The coupling may be given as travel per turn (pitch) or per degree (gear couplin
 
 With a pitch and no limits of its own, A4 is limited to -720 .. 720 degrees.
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 2, as many as the inverse has.
+    solutions found by a search from many starts: 2, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -73,19 +73,18 @@ class Constants:
             "a4", (-720.0, 720.0) if abs(gear_coupling / DEGREE - pitch_zc / (360.0 * DEGREE)) > 0.0 else None
         )
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
-        part_of_constant = -1.0 if flange_down else 1.0
+        shared_value = -1.0 if flange_down else 1.0
         machine_scale_times_free_angle = 1e-11 * machine_scale
-        part_of_constant_2 = gear_coupling / DEGREE - pitch_zc / (360.0 * DEGREE)
+        shared_sum = gear_coupling / DEGREE - pitch_zc / (360.0 * DEGREE)
         link_length_1_times_shortest_link = 1e-9 * link_length_1
-        part_of_z = (gear_coupling - pitch_zc / 360.0) / DEGREE
+        quotient_in_z = (gear_coupling - pitch_zc / 360.0) / DEGREE
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         self.link_length_1, self.link_length_2, self.flange_down = link_length_1, link_length_2, flange_down
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.machine_scale, self.part_of_constant = machine_scale, part_of_constant
-        self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.part_of_constant_2 = part_of_constant_2
-        self.link_length_1_times_shortest_link, self.part_of_z = link_length_1_times_shortest_link, part_of_z
+        self.machine_scale, self.shared_value = machine_scale, shared_value
+        self.machine_scale_times_free_angle, self.shared_sum = machine_scale_times_free_angle, shared_sum
+        self.link_length_1_times_shortest_link, self.quotient_in_z = link_length_1_times_shortest_link, quotient_in_z
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
 
@@ -207,7 +206,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
-        offset_a3, offset_a4, part_of_constant, part_of_z = k.offset_a3, k.offset_a4, k.part_of_constant, k.part_of_z
+        offset_a3, offset_a4, quotient_in_z, shared_value = k.offset_a3, k.offset_a4, k.quotient_in_z, k.shared_value
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -221,7 +220,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         y = link_length_1 * sin_a1 + link_length_2 * sin_a12
         a3 = axis_a3 - offset_a3
         a4 = DEGREE * (axis_a4 - offset_a4)
-        z = a3 + a4 * part_of_z
+        z = a3 + a4 * quotient_in_z
         a1_plus_a2_plus_a4 = a1_plus_a2 + a4
         cos_a124 = cos(a1_plus_a2_plus_a4)
         sin_a124 = sin(a1_plus_a2_plus_a4)
@@ -229,9 +228,9 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         return (
             (x, y, z),
             (
-                (cos_a124, -part_of_constant * sin_a124, 0.0),
-                (sin_a124, part_of_constant * cos_a124, 0.0),
-                (0.0, 0.0, part_of_constant),
+                (cos_a124, -shared_value * sin_a124, 0.0),
+                (sin_a124, shared_value * cos_a124, 0.0),
+                (0.0, 0.0, shared_value),
             ),
             (sin_a2,),
         )
@@ -240,7 +239,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        offset_a1, offset_a2, offset_a4, part_of_constant = k.offset_a1, k.offset_a2, k.offset_a4, k.part_of_constant
+        offset_a1, offset_a2, offset_a4, shared_value = k.offset_a1, k.offset_a2, k.offset_a4, k.shared_value
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -250,15 +249,15 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         cos_a124 = cos(a1_plus_a2_plus_a4)
         sin_a124 = sin(a1_plus_a2_plus_a4)
         return (
-            (cos_a124, -part_of_constant * sin_a124, 0.0),
-            (sin_a124, part_of_constant * cos_a124, 0.0),
-            (0.0, 0.0, part_of_constant),
+            (cos_a124, -shared_value * sin_a124, 0.0),
+            (sin_a124, shared_value * cos_a124, 0.0),
+            (0.0, 0.0, shared_value),
         )
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
         (sigma_elbow,) = signs
@@ -270,7 +269,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
-        offset_a4, part_of_z, single_a1, single_a2 = k.offset_a4, k.part_of_z, k.single_a1, k.single_a2
+        offset_a4, quotient_in_z, single_a1, single_a2 = k.offset_a4, k.quotient_in_z, k.single_a1, k.single_a2
         single_a4 = k.single_a4
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
@@ -341,7 +340,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         a4 = DEGREE * (axis_a4 - offset_a4)  # A4: joint value with its whole turns
-        a3 = z - a4 * part_of_z  # a3 from the z equation, which is linear in it
+        a3 = z - a4 * quotient_in_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 
@@ -377,7 +376,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
-        part_of_constant_2 = k.part_of_constant_2
+        shared_sum = k.shared_sum
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -392,18 +391,18 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         return (
             (-link_length_2_times_sin_a12 - link_length_1 * sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
             (cos_a12_times_link_length_2 + link_length_1 * cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
-            (0.0, 0.0, 1.0, part_of_constant_2),
+            (0.0, 0.0, 1.0, shared_sum),
             (1.0, 1.0, 0.0, 1.0),
         )
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         k = self._constants
-        part_of_constant = k.part_of_constant
+        shared_value = k.shared_value
         return (
-            ((1.0, 0.0, 0.0), (0.0, part_of_constant, 0.0), (0.0, 0.0, part_of_constant)),
+            ((1.0, 0.0, 0.0), (0.0, shared_value, 0.0), (0.0, 0.0, shared_value)),
             (0.0, 0.0, 1.0),
-            (0.0, 0.0, part_of_constant),
+            (0.0, 0.0, shared_value),
         )
 
     def _twist(self, axes: Reals) -> Matrix | Status:
@@ -411,7 +410,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
-        part_of_constant_2 = k.part_of_constant_2
+        shared_sum = k.shared_sum
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -426,7 +425,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         return (
             (-link_length_2_times_sin_a12 - link_length_1 * sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
             (cos_a12_times_link_length_2 + link_length_1 * cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
-            (0.0, 0.0, 1.0, part_of_constant_2),
+            (0.0, 0.0, 1.0, shared_sum),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 1.0, 0.0, 1.0),
@@ -436,7 +435,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         k = self._constants
-        flange_down, part_of_constant = k.flange_down, k.part_of_constant
+        flange_down, shared_value = k.flange_down, k.shared_value
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         if flange_down:
             heading_along = r11 - r22
@@ -451,9 +450,9 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return (
-            (cos_heading, -part_of_constant * sin_heading, 0.0),
-            (sin_heading, part_of_constant * cos_heading, 0.0),
-            (0.0, 0.0, part_of_constant),
+            (cos_heading, -shared_value * sin_heading, 0.0),
+            (sin_heading, shared_value * cos_heading, 0.0),
+            (0.0, 0.0, shared_value),
         )
 
     def _offset_branch(
@@ -470,7 +469,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         link_length_1_times_shortest_link, link_length_2 = k.link_length_1_times_shortest_link, k.link_length_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
-        part_of_z, single_a1, single_a2 = k.part_of_z, k.single_a1, k.single_a2
+        quotient_in_z, single_a1, single_a2 = k.quotient_in_z, k.single_a1, k.single_a2
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         reference_a4 = (ref_a4 - offset_a4) * DEGREE
@@ -544,12 +543,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         # commanded point, in the frame of the last moving joint
-        tool_z = point_z + (-2.0 * point_z if flange_down else 0.0) + part_of_z * reference_a4
+        tool_z = point_z + (-2.0 * point_z if flange_down else 0.0) + quotient_in_z * reference_a4
         a3 = z - tool_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, ref_a4)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         point_x, point_y, _ = offset
@@ -584,7 +583,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

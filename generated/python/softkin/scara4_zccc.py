@@ -30,10 +30,10 @@ The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
 With a third link, the elbow of the offset interface is that of the line from axis A3 to the point, also where
 the offset is zero.
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 2, as many as the inverse has.
+    solutions found by a search from many starts: 2, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -213,7 +213,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
         (sigma_elbow,) = signs
@@ -344,12 +344,12 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         sin_a234 = sin(a2_plus_a3_plus_a4)
         link_length_3_times_sin_a234 = link_length_3 * sin_a234
         sin_a23 = sin(a2_plus_a3)
-        part = link_length_3_times_sin_a234 + link_length_2 * sin_a23
+        shared_sum = link_length_3_times_sin_a234 + link_length_2 * sin_a23
         cos_a23 = cos(a2_plus_a3)
-        part_2 = cos_a234_times_link_length_3 + link_length_2 * cos_a23
+        shared_sum_2 = cos_a234_times_link_length_3 + link_length_2 * cos_a23
         return (
-            (0.0, -part - link_length_1 * sin_a2, -part, -link_length_3_times_sin_a234),
-            (0.0, part_2 + link_length_1 * cos_a2, part_2, cos_a234_times_link_length_3),
+            (0.0, -shared_sum - link_length_1 * sin_a2, -shared_sum, -link_length_3_times_sin_a234),
+            (0.0, shared_sum_2 + link_length_1 * cos_a2, shared_sum_2, cos_a234_times_link_length_3),
             (1.0, 0.0, 0.0, 0.0),
             (0.0, 1.0, 1.0, 1.0),
         )
@@ -378,12 +378,12 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         sin_a234 = sin(a2_plus_a3_plus_a4)
         link_length_3_times_sin_a234 = link_length_3 * sin_a234
         sin_a23 = sin(a2_plus_a3)
-        part = link_length_3_times_sin_a234 + link_length_2 * sin_a23
+        shared_sum = link_length_3_times_sin_a234 + link_length_2 * sin_a23
         cos_a23 = cos(a2_plus_a3)
-        part_2 = cos_a234_times_link_length_3 + link_length_2 * cos_a23
+        shared_sum_2 = cos_a234_times_link_length_3 + link_length_2 * cos_a23
         return (
-            (0.0, -part - link_length_1 * sin_a2, -part, -link_length_3_times_sin_a234),
-            (0.0, part_2 + link_length_1 * cos_a2, part_2, cos_a234_times_link_length_3),
+            (0.0, -shared_sum - link_length_1 * sin_a2, -shared_sum, -link_length_3_times_sin_a234),
+            (0.0, shared_sum_2 + link_length_1 * cos_a2, shared_sum_2, cos_a234_times_link_length_3),
             (1.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
@@ -486,7 +486,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3, ref_a4)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         point_x, point_y, _ = offset
@@ -512,7 +512,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

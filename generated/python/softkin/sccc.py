@@ -32,10 +32,10 @@ An open period is chosen nearest to the reference joint by joint; a commanded on
 With a third link, the elbow of the offset interface is that of the line from joint 2 to the point, also where
 the offset is zero.
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 2, as many as the inverse has.
+    solutions found by a search from many starts: 2, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -77,10 +77,10 @@ class Constants:
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        part_of_open_a2 = coupling_12 / DEGREE
-        part_of_constant = link_length_3 + (coupling_12 + coupling_13) * link_length_3
-        part_of_constant_2 = link_length_2 + coupling_12 * link_length_2
-        part_of_constant_3 = link_length_3 + coupling_23 * link_length_3
+        quotient_in_open_a2 = coupling_12 / DEGREE
+        shared_sum = link_length_3 + (coupling_12 + coupling_13) * link_length_3
+        shared_sum_2 = link_length_2 + coupling_12 * link_length_2
+        shared_sum_3 = link_length_3 + coupling_23 * link_length_3
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
         self.coupling_12, self.coupling_13, self.coupling_23 = coupling_12, coupling_13, coupling_23
         self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
@@ -91,8 +91,8 @@ class Constants:
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
-        self.part_of_open_a2, self.part_of_constant = part_of_open_a2, part_of_constant
-        self.part_of_constant_2, self.part_of_constant_3 = part_of_constant_2, part_of_constant_3
+        self.quotient_in_open_a2, self.shared_sum, self.shared_sum_2 = quotient_in_open_a2, shared_sum, shared_sum_2
+        self.shared_sum_3 = shared_sum_3
 
 
 class SCCC(OffsetKinematics, TwistChoice):
@@ -246,7 +246,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
         (sigma_elbow,) = signs
@@ -258,8 +258,9 @@ class SCCC(OffsetKinematics, TwistChoice):
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         link_length_3, machine_scale_times_free_angle = k.link_length_3, k.machine_scale_times_free_angle
         machine_scale_times_plane, mid_a1, mid_a2, mid_a3 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2, k.mid_a3
-        offset_a1, offset_a2, offset_a3, part_of_open_a2 = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_open_a2
-        single_a1, single_a2, single_a3 = k.single_a1, k.single_a2, k.single_a3
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        quotient_in_open_a2, single_a1, single_a2 = k.quotient_in_open_a2, k.single_a1, k.single_a2
+        single_a3 = k.single_a3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
@@ -321,20 +322,20 @@ class SCCC(OffsetKinematics, TwistChoice):
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         motor_a1 = DEGREE * (axis_a1 - offset_a1)
-        part_of_axis_a2 = offset_a2 - motor_a1 * part_of_open_a2
+        sum_in_axis_a2 = offset_a2 - motor_a1 * quotient_in_open_a2
         if turn_a2 != 0:
             near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2)
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2) * DEGREE
             reference_a2 = ref_motor_a2 + coupling_12 * reference_a1
-            near_a2 = mid_a2 if single_a2 else part_of_axis_a2 + reference_a2 / DEGREE
-        axis_a2 = part_of_axis_a2 + angle_a2 / DEGREE  # A2: whole turns added
+            near_a2 = mid_a2 if single_a2 else sum_in_axis_a2 + reference_a2 / DEGREE
+        axis_a2 = sum_in_axis_a2 + angle_a2 / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         motor_a2 = DEGREE * (axis_a2 - offset_a2)
-        part_of_axis_a3 = coupling_13 * motor_a1 + coupling_23 * motor_a2
+        sum_in_axis_a3 = coupling_13 * motor_a1 + coupling_23 * motor_a2
         if turn_a3 != 0:
             near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3)
         else:
@@ -346,9 +347,9 @@ class SCCC(OffsetKinematics, TwistChoice):
             else:
                 ref_motor_a3 = (ref_a3 - offset_a3) * DEGREE
                 reference_a3 = ref_motor_a3 + coupling_13 * reference_a1 + coupling_23 * ref_motor_a2
-                near_a3 = offset_a3 + (reference_a3 - part_of_axis_a3) / DEGREE
+                near_a3 = offset_a3 + (reference_a3 - sum_in_axis_a3) / DEGREE
         # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
-        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2 - part_of_axis_a3) / DEGREE
+        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2 - sum_in_axis_a3) / DEGREE
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -427,8 +428,8 @@ class SCCC(OffsetKinematics, TwistChoice):
         coupling_12, coupling_12_plus_coupling_13_plus_one = k.coupling_12, k.coupling_12_plus_coupling_13_plus_one
         coupling_13, coupling_23, coupling_23_plus_one = k.coupling_13, k.coupling_23, k.coupling_23_plus_one
         link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
-        offset_a1, offset_a2, offset_a3, part_of_constant = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_constant
-        part_of_constant_2, part_of_constant_3 = k.part_of_constant_2, k.part_of_constant_3
+        offset_a1, offset_a2, offset_a3, shared_sum = k.offset_a1, k.offset_a2, k.offset_a3, k.shared_sum
+        shared_sum_2, shared_sum_3 = k.shared_sum_2, k.shared_sum_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -446,13 +447,13 @@ class SCCC(OffsetKinematics, TwistChoice):
         cos_a123 = cos(a1_plus_a2_plus_a3)
         return (
             (
-                -link_length_1 * sin_a1 - part_of_constant * sin_a123 - part_of_constant_2 * sin_a12,
-                -link_length_2 * sin_a12 - part_of_constant_3 * sin_a123,
+                -link_length_1 * sin_a1 - shared_sum * sin_a123 - shared_sum_2 * sin_a12,
+                -link_length_2 * sin_a12 - shared_sum_3 * sin_a123,
                 -link_length_3 * sin_a123,
             ),
             (
-                link_length_1 * cos_a1 + part_of_constant_2 * cos_a12 + part_of_constant * cos_a123,
-                link_length_2 * cos_a12 + part_of_constant_3 * cos_a123,
+                link_length_1 * cos_a1 + shared_sum_2 * cos_a12 + shared_sum * cos_a123,
+                link_length_2 * cos_a12 + shared_sum_3 * cos_a123,
                 link_length_3 * cos_a123,
             ),
             (coupling_12_plus_coupling_13_plus_one, coupling_23_plus_one, 1.0),
@@ -469,8 +470,8 @@ class SCCC(OffsetKinematics, TwistChoice):
         coupling_12, coupling_12_plus_coupling_13_plus_one = k.coupling_12, k.coupling_12_plus_coupling_13_plus_one
         coupling_13, coupling_23, coupling_23_plus_one = k.coupling_13, k.coupling_23, k.coupling_23_plus_one
         link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
-        offset_a1, offset_a2, offset_a3, part_of_constant = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_constant
-        part_of_constant_2, part_of_constant_3 = k.part_of_constant_2, k.part_of_constant_3
+        offset_a1, offset_a2, offset_a3, shared_sum = k.offset_a1, k.offset_a2, k.offset_a3, k.shared_sum
+        shared_sum_2, shared_sum_3 = k.shared_sum_2, k.shared_sum_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -488,13 +489,13 @@ class SCCC(OffsetKinematics, TwistChoice):
         cos_a123 = cos(a1_plus_a2_plus_a3)
         return (
             (
-                -link_length_1 * sin_a1 - part_of_constant * sin_a123 - part_of_constant_2 * sin_a12,
-                -link_length_2 * sin_a12 - part_of_constant_3 * sin_a123,
+                -link_length_1 * sin_a1 - shared_sum * sin_a123 - shared_sum_2 * sin_a12,
+                -link_length_2 * sin_a12 - shared_sum_3 * sin_a123,
                 -link_length_3 * sin_a123,
             ),
             (
-                link_length_1 * cos_a1 + part_of_constant_2 * cos_a12 + part_of_constant * cos_a123,
-                link_length_2 * cos_a12 + part_of_constant_3 * cos_a123,
+                link_length_1 * cos_a1 + shared_sum_2 * cos_a12 + shared_sum * cos_a123,
+                link_length_2 * cos_a12 + shared_sum_3 * cos_a123,
                 link_length_3 * cos_a123,
             ),
             (0.0, 0.0, 0.0),
@@ -532,8 +533,8 @@ class SCCC(OffsetKinematics, TwistChoice):
         link_length_2, link_length_3 = k.link_length_2, k.link_length_3
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
-        offset_a1, offset_a2, offset_a3, part_of_open_a2 = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_open_a2
-        single_a1, single_a2 = k.single_a1, k.single_a2
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        quotient_in_open_a2, single_a1, single_a2 = k.quotient_in_open_a2, k.single_a1, k.single_a2
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -599,20 +600,20 @@ class SCCC(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         motor_a1 = DEGREE * (axis_a1 - offset_a1)
-        part_of_axis_a2 = offset_a2 - motor_a1 * part_of_open_a2
+        sum_in_axis_a2 = offset_a2 - motor_a1 * quotient_in_open_a2
         if turn_a2 != 0:
             near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2)
         else:
             reference_a2 = ref_motor_a2 + coupling_12 * reference_a1
-            near_a2 = mid_a2 if single_a2 else part_of_axis_a2 + reference_a2 / DEGREE
-        axis_a2 = part_of_axis_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+            near_a2 = mid_a2 if single_a2 else sum_in_axis_a2 + reference_a2 / DEGREE
+        axis_a2 = sum_in_axis_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         motor_a2 = DEGREE * (axis_a2 - offset_a2)
         axis_a3 = offset_a3 + (reference_a3 - coupling_13 * motor_a1 - coupling_23 * motor_a2) / DEGREE
         return (axis_a1, axis_a2, axis_a3)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         point_x, point_y, _ = offset
@@ -642,7 +643,7 @@ class SCCC(OffsetKinematics, TwistChoice):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

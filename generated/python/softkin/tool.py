@@ -18,7 +18,7 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
 
 A tool that is also turned against the flange is set by SMC_GroupSetTool.
 
-Verified at 6 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 6 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12.
 """
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -101,7 +101,7 @@ class Tool(OrientationKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         return ()
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
@@ -121,7 +121,7 @@ class Tool(OrientationKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _compatible(self, flange_axis: Vector) -> Status:
-        """Whether a flange that turns can carry this."""
+        """Whether a flange that turns can carry this mechanism."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         k = self._constants
         tool_x, tool_y, tool_z, unnoticed_shift = k.tool_x, k.tool_y, k.tool_z, k.unnoticed_shift
@@ -129,22 +129,22 @@ class Tool(OrientationKinematics):
             return Status.BAD_INPUT
         # the flange's part along the axis about which the flange turns
         flange_along = flange_axis_x * tool_x + flange_axis_y * tool_y + flange_axis_z * tool_z
-        part_of_flange_offset = tool_x - flange_along * flange_axis_x
-        part_of_flange_offset_2 = tool_y - flange_along * flange_axis_y
-        part_of_flange_offset_3 = tool_z - flange_along * flange_axis_z
+        sum_in_flange_offset = tool_x - flange_along * flange_axis_x
+        sum_in_flange_offset_2 = tool_y - flange_along * flange_axis_y
+        sum_in_flange_offset_3 = tool_z - flange_along * flange_axis_z
         # distance of the flange's part from the axis about which the flange turns
         flange_offset = sqrt(
-            part_of_flange_offset * part_of_flange_offset
-            + part_of_flange_offset_2 * part_of_flange_offset_2
-            + part_of_flange_offset_3 * part_of_flange_offset_3
+            sum_in_flange_offset * sum_in_flange_offset
+            + sum_in_flange_offset_2 * sum_in_flange_offset_2
+            + sum_in_flange_offset_3 * sum_in_flange_offset_3
         )
         # a part of the end point turns with the flange
         if not (flange_offset <= unnoticed_shift):
             return Status.INVALID_COUPLING
         return Status.OK
 
-    def _carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
-        """From a flange that turns to the end point."""
+    def _end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> Vector | Status:
+        """The vector from a flange that turns to the end point."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self._constants
@@ -156,7 +156,7 @@ class Tool(OrientationKinematics):
         return (base_axis_x * flange_along, base_axis_y * flange_along, base_axis_z * flange_along)
 
     def _total_image(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> TotalImage | Status:
-        """The orientations on a flange, and how far the two axes are apart."""
+        """The orientations of the tool on a flange, and the sine of the angle between the two axes."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis

@@ -25,10 +25,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 61 additions, 53 multiplications, 6 divisions, 5 square roots, 2 sines
     inverse, all 8 branches open: 481 additions, 424 multiplications, 48 divisions, 40 square roots, 16 sines
 
-Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 120 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 8, as many as the inverse has.
+    solutions found by a search from many starts: 8, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -72,63 +72,63 @@ class Constants:
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = -1.0 if tcp_below else 1.0
         sin_max_angle_ball_joint = sin(DEGREE * max_angle_ball_joint)
-        part_of_normal_divisor = 1e-22 * arm_length * arm_length * arm_length * arm_length
+        product_in_normal_divisor = 1e-22 * arm_length * arm_length * arm_length * arm_length
         arm_length_squared = arm_length * arm_length
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
-        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
         root_of_3 = root(3.0)
-        part_of_pivot_2_y = 0.5 * root_of_3 * sin_rail_angle
-        part_of_pivot_2_y_2 = 0.5 * inner_radius * root_of_3 - 0.5 * outer_radius * root_of_3
+        product_in_pivot_2_y = 0.5 * root_of_3 * sin_rail_angle
+        sum_in_pivot_2_y = 0.5 * inner_radius * root_of_3 - 0.5 * outer_radius * root_of_3
         inner_radius_minus_outer_radius = inner_radius - outer_radius
         half_sin_rail_angle = 0.5 * sin_rail_angle
-        part_of_pivot_2_x = 0.5 * outer_radius - 0.5 * inner_radius
+        sum_in_pivot_2_x = 0.5 * outer_radius - 0.5 * inner_radius
         sin_rail_angle_times_root_of_3 = root_of_3 * sin_rail_angle
         twice_cos_rail_angle = 2.0 * cos_rail_angle
         half_by_arm_length = 0.5 / arm_length
         one_by_arm_length = 1.0 / arm_length
         sin_rail_angle_times_half_by_arm_length = 0.5 * sin_rail_angle / arm_length
         cos_rail_angle_by_arm_length = cos_rail_angle / arm_length
-        part_of_branch_carriage_2 = 0.5 * root_of_3 * sin_rail_angle / arm_length
-        part_of_radicand_a1 = 2.0 * cos_rail_angle * sin_rail_angle
+        quotient_in_branch_carriage_2 = 0.5 * root_of_3 * sin_rail_angle / arm_length
+        product_in_radicand_a1 = 2.0 * cos_rail_angle * sin_rail_angle
         cos_rail_angle_squared = cos_rail_angle * cos_rail_angle
-        part_of_radicand_a2 = root_of_3 * cos_rail_angle * sin_rail_angle
-        part_of_radicand_a2_2 = 0.5 * root_of_3 * sin_rail_angle * sin_rail_angle
+        product_in_radicand_a2 = root_of_3 * cos_rail_angle * sin_rail_angle
+        product_in_radicand_a2_2 = 0.5 * root_of_3 * sin_rail_angle * sin_rail_angle
         cos_rail_angle_times_sin_rail_angle = cos_rail_angle * sin_rail_angle
         sin_rail_angle_squared_times_1_by_4 = 0.25 * sin_rail_angle * sin_rail_angle
-        part_of_type2_rods_coplanar = assembly_sign / (arm_length * arm_length * arm_length)
+        quotient_in_type2_rods_coplanar = assembly_sign / (arm_length * arm_length * arm_length)
         root_of_3_times_half_by_arm_length = 0.5 * root_of_3 / arm_length
         one_minus_sin_rail_angle_squared = 1.0 - sin_rail_angle * sin_rail_angle
-        part_of_radicand_a2_3 = 1.0 - 0.75 * sin_rail_angle * sin_rail_angle
-        part_of_margin_rods_coplanar = arm_length * arm_length * arm_length
+        sum_in_radicand_a2 = 1.0 - 0.75 * sin_rail_angle * sin_rail_angle
+        product_in_margin_rods_coplanar = arm_length * arm_length * arm_length
         twice_sin_rail_angle = 2.0 * sin_rail_angle
-        part_of_slope_1_by_x = 2.0 * inner_radius - 2.0 * outer_radius
+        sum_in_slope_1_by_x = 2.0 * inner_radius - 2.0 * outer_radius
         self.outer_radius, self.inner_radius, self.arm_length = outer_radius, inner_radius, arm_length
         self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
         self.min_type2_margin, self.tie, self.sin_rail_angle = min_type2_margin, tie, sin_rail_angle
         self.cos_rail_angle, self.assembly_sign = cos_rail_angle, assembly_sign
-        self.sin_max_angle_ball_joint, self.part_of_normal_divisor = sin_max_angle_ball_joint, part_of_normal_divisor
-        self.arm_length_squared = arm_length_squared
+        self.sin_max_angle_ball_joint = sin_max_angle_ball_joint
+        self.product_in_normal_divisor, self.arm_length_squared = product_in_normal_divisor, arm_length_squared
         self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
-        self.part_of_determinant_divisor, self.part_of_pivot_2_y = part_of_determinant_divisor, part_of_pivot_2_y
-        self.part_of_pivot_2_y_2 = part_of_pivot_2_y_2
+        self.product_in_determinant_divisor = product_in_determinant_divisor
+        self.product_in_pivot_2_y, self.sum_in_pivot_2_y = product_in_pivot_2_y, sum_in_pivot_2_y
         self.inner_radius_minus_outer_radius = inner_radius_minus_outer_radius
-        self.half_sin_rail_angle, self.part_of_pivot_2_x = half_sin_rail_angle, part_of_pivot_2_x
+        self.half_sin_rail_angle, self.sum_in_pivot_2_x = half_sin_rail_angle, sum_in_pivot_2_x
         self.sin_rail_angle_times_root_of_3 = sin_rail_angle_times_root_of_3
         self.twice_cos_rail_angle, self.half_by_arm_length = twice_cos_rail_angle, half_by_arm_length
         self.one_by_arm_length = one_by_arm_length
         self.sin_rail_angle_times_half_by_arm_length = sin_rail_angle_times_half_by_arm_length
         self.cos_rail_angle_by_arm_length = cos_rail_angle_by_arm_length
-        self.part_of_branch_carriage_2, self.part_of_radicand_a1 = part_of_branch_carriage_2, part_of_radicand_a1
-        self.cos_rail_angle_squared, self.part_of_radicand_a2 = cos_rail_angle_squared, part_of_radicand_a2
-        self.part_of_radicand_a2_2 = part_of_radicand_a2_2
+        self.quotient_in_branch_carriage_2 = quotient_in_branch_carriage_2
+        self.product_in_radicand_a1, self.cos_rail_angle_squared = product_in_radicand_a1, cos_rail_angle_squared
+        self.product_in_radicand_a2, self.product_in_radicand_a2_2 = product_in_radicand_a2, product_in_radicand_a2_2
         self.cos_rail_angle_times_sin_rail_angle = cos_rail_angle_times_sin_rail_angle
         self.sin_rail_angle_squared_times_1_by_4 = sin_rail_angle_squared_times_1_by_4
-        self.part_of_type2_rods_coplanar = part_of_type2_rods_coplanar
+        self.quotient_in_type2_rods_coplanar = quotient_in_type2_rods_coplanar
         self.root_of_3_times_half_by_arm_length = root_of_3_times_half_by_arm_length
         self.one_minus_sin_rail_angle_squared = one_minus_sin_rail_angle_squared
-        self.part_of_radicand_a2_3 = part_of_radicand_a2_3
-        self.part_of_margin_rods_coplanar = part_of_margin_rods_coplanar
-        self.twice_sin_rail_angle, self.part_of_slope_1_by_x = twice_sin_rail_angle, part_of_slope_1_by_x
+        self.sum_in_radicand_a2 = sum_in_radicand_a2
+        self.product_in_margin_rods_coplanar = product_in_margin_rods_coplanar
+        self.twice_sin_rail_angle, self.sum_in_slope_1_by_x = twice_sin_rail_angle, sum_in_slope_1_by_x
 
 
 class TripodLinear(OffsetKinematics):
@@ -254,16 +254,16 @@ class TripodLinear(OffsetKinematics):
         cos_rail_angle, cos_rail_angle_by_arm_length = k.cos_rail_angle, k.cos_rail_angle_by_arm_length
         half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
         offset_a1, offset_a2, offset_a3, one_by_arm_length = k.offset_a1, k.offset_a2, k.offset_a3, k.one_by_arm_length
-        part_of_branch_carriage_2, part_of_normal_divisor = k.part_of_branch_carriage_2, k.part_of_normal_divisor
-        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
-        part_of_pivot_2_y_2, sin_rail_angle = k.part_of_pivot_2_y_2, k.sin_rail_angle
+        product_in_normal_divisor, product_in_pivot_2_y = k.product_in_normal_divisor, k.product_in_pivot_2_y
+        quotient_in_branch_carriage_2, sin_rail_angle = k.quotient_in_branch_carriage_2, k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
+        pivot_2_y = sum_in_pivot_2_y - a2 * product_in_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3 * part_of_pivot_2_y - part_of_pivot_2_y_2
+        pivot_3_y = a3 * product_in_pivot_2_y - sum_in_pivot_2_y
         a1 = axis_a1 - offset_a1
         pivot_1_z = -a1 * cos_rail_angle
         pivot_2_z = -a2 * cos_rail_angle
@@ -272,16 +272,16 @@ class TripodLinear(OffsetKinematics):
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
+        pivot_3_x = sum_in_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
         projection_2 = 0.5 * (
@@ -317,14 +317,12 @@ class TripodLinear(OffsetKinematics):
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
         branch_carriage_1 = (a1 + z * cos_rail_angle + span_1_x * sin_rail_angle) / arm_length
-        span_2_y = y - part_of_pivot_2_y_2
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        part_of_branch_carriage_2_2 = (
-            span_2_x * sin_rail_angle_times_half_by_arm_length - z * cos_rail_angle_by_arm_length
-        )
-        branch_carriage_2 = a2 * one_by_arm_length + part_of_branch_carriage_2 * span_2_y - part_of_branch_carriage_2_2
-        span_3_y = part_of_pivot_2_y_2 + y
-        branch_carriage_3 = a3 * one_by_arm_length - part_of_branch_carriage_2_2 - part_of_branch_carriage_2 * span_3_y
+        span_2_y = y - sum_in_pivot_2_y
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        sum_in_branch_carriage_2 = span_2_x * sin_rail_angle_times_half_by_arm_length - z * cos_rail_angle_by_arm_length
+        branch_carriage_2 = a2 * one_by_arm_length + quotient_in_branch_carriage_2 * span_2_y - sum_in_branch_carriage_2
+        span_3_y = sum_in_pivot_2_y + y
+        branch_carriage_3 = a3 * one_by_arm_length - sum_in_branch_carriage_2 - quotient_in_branch_carriage_2 * span_3_y
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -339,15 +337,14 @@ class TripodLinear(OffsetKinematics):
         arm_length_squared_times_rounding, cos_rail_angle = k.arm_length_squared_times_rounding, k.cos_rail_angle
         half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-        part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
-        part_of_pivot_2_y, part_of_pivot_2_y_2 = k.part_of_pivot_2_y, k.part_of_pivot_2_y_2
-        sin_rail_angle = k.sin_rail_angle
+        product_in_normal_divisor, product_in_pivot_2_y = k.product_in_normal_divisor, k.product_in_pivot_2_y
+        sin_rail_angle, sum_in_pivot_2_x, sum_in_pivot_2_y = k.sin_rail_angle, k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
+        pivot_2_y = sum_in_pivot_2_y - a2 * product_in_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3 * part_of_pivot_2_y - part_of_pivot_2_y_2
+        pivot_3_y = a3 * product_in_pivot_2_y - sum_in_pivot_2_y
         a1 = axis_a1 - offset_a1
         pivot_1_z = -a1 * cos_rail_angle
         pivot_2_z = -a2 * cos_rail_angle
@@ -356,16 +353,16 @@ class TripodLinear(OffsetKinematics):
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
+        pivot_3_x = sum_in_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
         projection_2 = 0.5 * (
@@ -399,7 +396,7 @@ class TripodLinear(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self._constants
@@ -410,14 +407,15 @@ class TripodLinear(OffsetKinematics):
         half_by_arm_length, half_sin_rail_angle = k.half_by_arm_length, k.half_sin_rail_angle
         inner_radius_minus_outer_radius, min_type2_margin = k.inner_radius_minus_outer_radius, k.min_type2_margin
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-        one_minus_sin_rail_angle_squared, part_of_pivot_2_x = k.one_minus_sin_rail_angle_squared, k.part_of_pivot_2_x
-        part_of_pivot_2_y, part_of_pivot_2_y_2 = k.part_of_pivot_2_y, k.part_of_pivot_2_y_2
-        part_of_radicand_a1, part_of_radicand_a2 = k.part_of_radicand_a1, k.part_of_radicand_a2
-        part_of_radicand_a2_2, part_of_radicand_a2_3 = k.part_of_radicand_a2_2, k.part_of_radicand_a2_3
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
+        one_minus_sin_rail_angle_squared = k.one_minus_sin_rail_angle_squared
+        product_in_pivot_2_y, product_in_radicand_a1 = k.product_in_pivot_2_y, k.product_in_radicand_a1
+        product_in_radicand_a2, product_in_radicand_a2_2 = k.product_in_radicand_a2, k.product_in_radicand_a2_2
+        quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
         sin_max_angle_ball_joint, sin_rail_angle = k.sin_max_angle_ball_joint, k.sin_rail_angle
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        sum_in_radicand_a2 = k.sum_in_radicand_a2
         if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
@@ -425,7 +423,7 @@ class TripodLinear(OffsetKinematics):
         # quadratic equation for a1: rod 1
         radicand_a1 = (
             arm_length_squared
-            + (part_of_radicand_a1 * span_1_x - z_minus_cos_rail_angle_squared_times_z) * z
+            + (product_in_radicand_a1 * span_1_x - z_minus_cos_rail_angle_squared_times_z) * z
             - y * y
             - one_minus_sin_rail_angle_squared * span_1_x * span_1_x
         )
@@ -435,49 +433,49 @@ class TripodLinear(OffsetKinematics):
                 arm_length
                 - root(
                     y * y
-                    + (z_minus_cos_rail_angle_squared_times_z - part_of_radicand_a1 * span_1_x) * z
+                    + (z_minus_cos_rail_angle_squared_times_z - product_in_radicand_a1 * span_1_x) * z
                     + one_minus_sin_rail_angle_squared * span_1_x * span_1_x
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = y - part_of_pivot_2_y_2
-        part_of_radicand_a2_4 = z_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
-        part_of_radicand_a2_5 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - sum_in_pivot_2_y
+        sum_in_radicand_a2_2 = z_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
+        sum_in_radicand_a2_3 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
         # quadratic equation for a2: rod 2
         radicand_a2 = (
             arm_length_squared
-            + (-part_of_radicand_a2_5 - part_of_radicand_a2_2 * span_2_y) * span_2_x
-            + (part_of_radicand_a2 * span_2_y - part_of_radicand_a2_4) * z
-            - part_of_radicand_a2_3 * span_2_y * span_2_y
+            + (-sum_in_radicand_a2_3 - product_in_radicand_a2_2 * span_2_y) * span_2_x
+            + (product_in_radicand_a2 * span_2_y - sum_in_radicand_a2_2) * z
+            - span_2_y * span_2_y * sum_in_radicand_a2
         )
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (part_of_radicand_a2_5 + part_of_radicand_a2_2 * span_2_y) * span_2_x
-                    + (part_of_radicand_a2_4 - part_of_radicand_a2 * span_2_y) * z
-                    + part_of_radicand_a2_3 * span_2_y * span_2_y
+                    (sum_in_radicand_a2_3 + product_in_radicand_a2_2 * span_2_y) * span_2_x
+                    + (sum_in_radicand_a2_2 - product_in_radicand_a2 * span_2_y) * z
+                    + span_2_y * span_2_y * sum_in_radicand_a2
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_y = part_of_pivot_2_y_2 + y
+        span_3_y = sum_in_pivot_2_y + y
         # quadratic equation for a3: rod 3
         radicand_a3 = (
             arm_length_squared
-            + (part_of_radicand_a2_2 * span_3_y - part_of_radicand_a2_5) * span_2_x
-            + (-part_of_radicand_a2_4 - part_of_radicand_a2 * span_3_y) * z
-            - part_of_radicand_a2_3 * span_3_y * span_3_y
+            + (product_in_radicand_a2_2 * span_3_y - sum_in_radicand_a2_3) * span_2_x
+            + (-sum_in_radicand_a2_2 - product_in_radicand_a2 * span_3_y) * z
+            - span_3_y * span_3_y * sum_in_radicand_a2
         )
         # rod 3 cannot reach
         if not (radicand_a3 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (part_of_radicand_a2_5 - part_of_radicand_a2_2 * span_3_y) * span_2_x
-                    + (part_of_radicand_a2_4 + part_of_radicand_a2 * span_3_y) * z
-                    + part_of_radicand_a2_3 * span_3_y * span_3_y
+                    (sum_in_radicand_a2_3 - product_in_radicand_a2_2 * span_3_y) * span_2_x
+                    + (sum_in_radicand_a2_2 + product_in_radicand_a2 * span_3_y) * z
+                    + span_3_y * span_3_y * sum_in_radicand_a2
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
@@ -487,29 +485,31 @@ class TripodLinear(OffsetKinematics):
         rod_1_x = span_1_x + a1 * sin_rail_angle
         pivot_1_z = -a1 * cos_rail_angle
         rod_1_z = z - pivot_1_z
-        part_of_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle * span_2_x
-        middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y * span_2_y
+        sum_in_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle * span_2_x
+        middle_a2 = -sum_in_middle_a2 - product_in_pivot_2_y * span_2_y
         a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         rod_2_x = span_2_x - a2 * half_sin_rail_angle
-        rod_2_y = span_2_y + a2 * part_of_pivot_2_y
+        rod_2_y = span_2_y + a2 * product_in_pivot_2_y
         pivot_2_z = -a2 * cos_rail_angle
         rod_2_z = z - pivot_2_z
-        middle_a3 = part_of_pivot_2_y * span_3_y - part_of_middle_a2
+        middle_a3 = product_in_pivot_2_y * span_3_y - sum_in_middle_a2
         a3 = middle_a3 + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0) * sigma_carriage_3
         rod_3_x = span_2_x - a3 * half_sin_rail_angle
-        rod_3_y = span_3_y - a3 * part_of_pivot_2_y
+        rod_3_y = span_3_y - a3 * product_in_pivot_2_y
         pivot_3_z = -a3 * cos_rail_angle
         rod_3_z = z - pivot_3_z
-        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+        type2_rods_coplanar = -quotient_in_type2_rods_coplanar * (
             (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
             + (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_coplanar: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         # ball joint of rod 1
         if not (abs(y) / arm_length <= sin_max_angle_ball_joint):
@@ -521,14 +521,18 @@ class TripodLinear(OffsetKinematics):
                 )
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
-        part = root_of_3_times_half_by_arm_length * x
+        shared_product = root_of_3_times_half_by_arm_length * x
         half_by_arm_length_times_y = half_by_arm_length * y
         # ball joint of rod 2
-        if not (abs(half_by_arm_length_times_y + part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_y + shared_product) <= sin_max_angle_ball_joint):
             missing = (
                 arctan2(
-                    abs(half_by_arm_length_times_y + part) + 0.0,
-                    root(1.0 + (-half_by_arm_length_times_y - part) * (half_by_arm_length_times_y + part)) + 0.0,
+                    abs(half_by_arm_length_times_y + shared_product) + 0.0,
+                    root(
+                        1.0
+                        + (-half_by_arm_length_times_y - shared_product) * (half_by_arm_length_times_y + shared_product)
+                    )
+                    + 0.0,
                 )
                 - arctan2(
                     sin_max_angle_ball_joint + 0.0,
@@ -537,11 +541,15 @@ class TripodLinear(OffsetKinematics):
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
-        if not (abs(half_by_arm_length_times_y - part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_y - shared_product) <= sin_max_angle_ball_joint):
             missing = (
                 arctan2(
-                    abs(half_by_arm_length_times_y - part) + 0.0,
-                    root(1.0 + (part - half_by_arm_length_times_y) * (half_by_arm_length_times_y - part)) + 0.0,
+                    abs(half_by_arm_length_times_y - shared_product) + 0.0,
+                    root(
+                        1.0
+                        + (shared_product - half_by_arm_length_times_y) * (half_by_arm_length_times_y - shared_product)
+                    )
+                    + 0.0,
                 )
                 - arctan2(
                     sin_max_angle_ball_joint + 0.0,
@@ -577,17 +585,17 @@ class TripodLinear(OffsetKinematics):
         cos_rail_angle, cos_rail_angle_by_arm_length = k.cos_rail_angle, k.cos_rail_angle_by_arm_length
         half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
         offset_a1, offset_a2, offset_a3, one_by_arm_length = k.offset_a1, k.offset_a2, k.offset_a3, k.one_by_arm_length
-        part_of_branch_carriage_2 = k.part_of_branch_carriage_2
-        part_of_margin_rods_coplanar, part_of_normal_divisor = k.part_of_margin_rods_coplanar, k.part_of_normal_divisor
-        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
-        part_of_pivot_2_y_2, sin_rail_angle = k.part_of_pivot_2_y_2, k.sin_rail_angle
+        product_in_margin_rods_coplanar = k.product_in_margin_rods_coplanar
+        product_in_normal_divisor, product_in_pivot_2_y = k.product_in_normal_divisor, k.product_in_pivot_2_y
+        quotient_in_branch_carriage_2, sin_rail_angle = k.quotient_in_branch_carriage_2, k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
+        pivot_2_y = sum_in_pivot_2_y - a2 * product_in_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3 * part_of_pivot_2_y - part_of_pivot_2_y_2
+        pivot_3_y = a3 * product_in_pivot_2_y - sum_in_pivot_2_y
         a1 = axis_a1 - offset_a1
         pivot_1_z = -a1 * cos_rail_angle
         pivot_2_z = -a2 * cos_rail_angle
@@ -596,16 +604,16 @@ class TripodLinear(OffsetKinematics):
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
+        pivot_3_x = sum_in_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
         projection_2 = 0.5 * (
@@ -641,12 +649,12 @@ class TripodLinear(OffsetKinematics):
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
         margin_square_1 = (a1 + z * cos_rail_angle + span_1_x * sin_rail_angle) / arm_length
         y = foot_y + height_by_normal * normal_y
-        span_2_y = y - part_of_pivot_2_y_2
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        part_of_margin_square_2 = span_2_x * sin_rail_angle_times_half_by_arm_length - z * cos_rail_angle_by_arm_length
-        margin_square_2 = a2 * one_by_arm_length + part_of_branch_carriage_2 * span_2_y - part_of_margin_square_2
-        span_3_y = part_of_pivot_2_y_2 + y
-        margin_square_3 = a3 * one_by_arm_length - part_of_margin_square_2 - part_of_branch_carriage_2 * span_3_y
+        span_2_y = y - sum_in_pivot_2_y
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        sum_in_margin_square_2 = span_2_x * sin_rail_angle_times_half_by_arm_length - z * cos_rail_angle_by_arm_length
+        margin_square_2 = a2 * one_by_arm_length + quotient_in_branch_carriage_2 * span_2_y - sum_in_margin_square_2
+        span_3_y = sum_in_pivot_2_y + y
+        margin_square_3 = a3 * one_by_arm_length - sum_in_margin_square_2 - quotient_in_branch_carriage_2 * span_3_y
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
         rod_2_x = x - pivot_2_x
@@ -659,7 +667,7 @@ class TripodLinear(OffsetKinematics):
             rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
             + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
-        ) / part_of_margin_rods_coplanar
+        ) / product_in_margin_rods_coplanar
         return (margin_square_1, margin_square_2, margin_square_3, margin_rods_coplanar)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -671,17 +679,18 @@ class TripodLinear(OffsetKinematics):
         cos_rail_angle, half_sin_rail_angle, inner_radius = k.cos_rail_angle, k.half_sin_rail_angle, k.inner_radius
         inner_radius_minus_outer_radius, offset_a1 = k.inner_radius_minus_outer_radius, k.offset_a1
         offset_a2, offset_a3, outer_radius = k.offset_a2, k.offset_a3, k.outer_radius
-        part_of_determinant_divisor, part_of_normal_divisor = k.part_of_determinant_divisor, k.part_of_normal_divisor
-        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
-        part_of_pivot_2_y_2, part_of_slope_1_by_x = k.part_of_pivot_2_y_2, k.part_of_slope_1_by_x
+        product_in_determinant_divisor = k.product_in_determinant_divisor
+        product_in_normal_divisor, product_in_pivot_2_y = k.product_in_normal_divisor, k.product_in_pivot_2_y
         sin_rail_angle, sin_rail_angle_times_root_of_3 = k.sin_rail_angle, k.sin_rail_angle_times_root_of_3
-        twice_cos_rail_angle, twice_sin_rail_angle = k.twice_cos_rail_angle, k.twice_sin_rail_angle
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        sum_in_slope_1_by_x, twice_cos_rail_angle = k.sum_in_slope_1_by_x, k.twice_cos_rail_angle
+        twice_sin_rail_angle = k.twice_sin_rail_angle
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
+        pivot_2_y = sum_in_pivot_2_y - a2 * product_in_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3 * part_of_pivot_2_y - part_of_pivot_2_y_2
+        pivot_3_y = a3 * product_in_pivot_2_y - sum_in_pivot_2_y
         a1 = axis_a1 - offset_a1
         pivot_1_z = -a1 * cos_rail_angle
         pivot_2_z = -a2 * cos_rail_angle
@@ -690,16 +699,16 @@ class TripodLinear(OffsetKinematics):
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
+        pivot_3_x = sum_in_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
         projection_2 = 0.5 * (
@@ -732,7 +741,7 @@ class TripodLinear(OffsetKinematics):
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
         x = foot_x + pivot_1_x + height_by_normal * normal_x
         twice_x = 2.0 * x
-        slope_1_by_x = twice_x + a1 * twice_sin_rail_angle - part_of_slope_1_by_x
+        slope_1_by_x = twice_x + a1 * twice_sin_rail_angle - sum_in_slope_1_by_x
         y = foot_y + height_by_normal * normal_y
         slope_1_by_y = 2.0 * y
         z = foot_z + pivot_1_z + height_by_normal * normal_z
@@ -740,58 +749,58 @@ class TripodLinear(OffsetKinematics):
         slope_1_by_z = twice_z + a1 * twice_cos_rail_angle
         a2_times_sin_rail_angle = a2 * sin_rail_angle
         root_of_3_2 = root(3.0)
-        part_of_slope_2_by_y = (inner_radius - a2_times_sin_rail_angle - outer_radius) * root_of_3_2
-        slope_2_by_y = slope_1_by_y - part_of_slope_2_by_y
+        product_in_slope_2_by_y = (inner_radius - a2_times_sin_rail_angle - outer_radius) * root_of_3_2
+        slope_2_by_y = slope_1_by_y - product_in_slope_2_by_y
         slope_2_by_z = twice_z + a2 * twice_cos_rail_angle
         a3_times_sin_rail_angle = a3 * sin_rail_angle
-        part_of_slope_3_by_y = (inner_radius - a3_times_sin_rail_angle - outer_radius) * root_of_3_2
-        slope_3_by_y = part_of_slope_3_by_y + slope_1_by_y
+        product_in_slope_3_by_y = (inner_radius - a3_times_sin_rail_angle - outer_radius) * root_of_3_2
+        slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y
         slope_3_by_z = twice_z + a3 * twice_cos_rail_angle
-        part_of_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
-        part_of_slope_2_by_x = inner_radius_minus_outer_radius + twice_x
-        slope_2_by_x = part_of_slope_2_by_x - a2_times_sin_rail_angle
-        slope_3_by_x = part_of_slope_2_by_x - a3_times_sin_rail_angle
-        part_of_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
-        part_of_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        sum_in_slope_2_by_x = inner_radius_minus_outer_radius + twice_x
+        slope_2_by_x = sum_in_slope_2_by_x - a2_times_sin_rail_angle
+        slope_3_by_x = sum_in_slope_2_by_x - a3_times_sin_rail_angle
+        sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = (
-            part_of_determinant * slope_1_by_x
-            + part_of_determinant_2 * slope_1_by_y
-            + part_of_determinant_3 * slope_1_by_z
+            slope_1_by_x * sum_in_determinant
+            + slope_1_by_y * sum_in_determinant_2
+            + slope_1_by_z * sum_in_determinant_3
         )
         # nothing controls the plate
-        if not (abs(determinant) > part_of_determinant_divisor):
+        if not (abs(determinant) > product_in_determinant_divisor):
             return Status.IMPOSSIBLE
         slope_1_by_a1 = (z - pivot_1_z) * twice_cos_rail_angle + (x - pivot_1_x) * twice_sin_rail_angle
         one_by_determinant_divisor = 1.0 / determinant
-        part = one_by_determinant_divisor * slope_1_by_a1
+        shared_product = one_by_determinant_divisor * slope_1_by_a1
         slope_2_by_a2 = (
             (pivot_2_x - x) * sin_rail_angle
-            + (y - 0.5 * part_of_slope_2_by_y) * sin_rail_angle_times_root_of_3
+            + (y - 0.5 * product_in_slope_2_by_y) * sin_rail_angle_times_root_of_3
             + (z - pivot_2_z) * twice_cos_rail_angle
         )
-        part_2 = one_by_determinant_divisor * slope_2_by_a2
+        shared_product_2 = one_by_determinant_divisor * slope_2_by_a2
         slope_3_by_a3 = (
             (pivot_3_x - x) * sin_rail_angle
             + (z - pivot_3_z) * twice_cos_rail_angle
-            - (0.5 * part_of_slope_3_by_y + y) * sin_rail_angle_times_root_of_3
+            - (0.5 * product_in_slope_3_by_y + y) * sin_rail_angle_times_root_of_3
         )
-        part_3 = one_by_determinant_divisor * slope_3_by_a3
+        shared_product_3 = one_by_determinant_divisor * slope_3_by_a3
         return (
             (
-                -part * part_of_determinant,
-                part_2 * (slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y),
-                (slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z) * part_3,
+                -shared_product * sum_in_determinant,
+                shared_product_2 * (slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y),
+                (slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z) * shared_product_3,
             ),
             (
-                -part * part_of_determinant_2,
-                (slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z) * part_2,
-                part_3 * (slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x),
+                -shared_product * sum_in_determinant_2,
+                (slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z) * shared_product_2,
+                shared_product_3 * (slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x),
             ),
             (
-                -part * part_of_determinant_3,
-                part_2 * (slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x),
-                (slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y) * part_3,
+                -shared_product * sum_in_determinant_3,
+                shared_product_2 * (slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x),
+                (slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y) * shared_product_3,
             ),
         )
 
@@ -814,25 +823,26 @@ class TripodLinear(OffsetKinematics):
         half_by_arm_length, half_sin_rail_angle = k.half_by_arm_length, k.half_sin_rail_angle
         inner_radius_minus_outer_radius, min_type2_margin = k.inner_radius_minus_outer_radius, k.min_type2_margin
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-        one_minus_sin_rail_angle_squared, part_of_pivot_2_x = k.one_minus_sin_rail_angle_squared, k.part_of_pivot_2_x
-        part_of_pivot_2_y, part_of_pivot_2_y_2 = k.part_of_pivot_2_y, k.part_of_pivot_2_y_2
-        part_of_radicand_a1, part_of_radicand_a2 = k.part_of_radicand_a1, k.part_of_radicand_a2
-        part_of_radicand_a2_2, part_of_radicand_a2_3 = k.part_of_radicand_a2_2, k.part_of_radicand_a2_3
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
+        one_minus_sin_rail_angle_squared = k.one_minus_sin_rail_angle_squared
+        product_in_pivot_2_y, product_in_radicand_a1 = k.product_in_pivot_2_y, k.product_in_radicand_a1
+        product_in_radicand_a2, product_in_radicand_a2_2 = k.product_in_radicand_a2, k.product_in_radicand_a2_2
+        quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
         sin_max_angle_ball_joint, sin_rail_angle = k.sin_max_angle_ball_joint, k.sin_rail_angle
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        sum_in_radicand_a2 = k.sum_in_radicand_a2
         if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_y = y - point_y  # position of the flange: the point less its offset
         flange_z = z - point_z  # position of the flange: the point less its offset
         flange_x = x - point_x  # position of the flange: the point less its offset
         span_1_x = flange_x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
-        part_of_radicand_a1_2 = flange_z - flange_z * cos_rail_angle_squared
+        sum_in_radicand_a1 = flange_z - flange_z * cos_rail_angle_squared
         # quadratic equation for a1: rod 1
         radicand_a1 = (
             arm_length_squared
-            + flange_z * (part_of_radicand_a1 * span_1_x - part_of_radicand_a1_2)
+            + flange_z * (product_in_radicand_a1 * span_1_x - sum_in_radicand_a1)
             - flange_y * flange_y
             - one_minus_sin_rail_angle_squared * span_1_x * span_1_x
         )
@@ -842,49 +852,49 @@ class TripodLinear(OffsetKinematics):
                 arm_length
                 - root(
                     flange_y * flange_y
-                    + (part_of_radicand_a1_2 - part_of_radicand_a1 * span_1_x) * flange_z
+                    + (sum_in_radicand_a1 - product_in_radicand_a1 * span_1_x) * flange_z
                     + one_minus_sin_rail_angle_squared * span_1_x * span_1_x
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = flange_y - part_of_pivot_2_y_2
-        part_of_radicand_a2_4 = part_of_radicand_a1_2 + span_2_x * cos_rail_angle_times_sin_rail_angle
-        part_of_radicand_a2_5 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
+        span_2_x = flange_x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = flange_y - sum_in_pivot_2_y
+        sum_in_radicand_a2_2 = sum_in_radicand_a1 + span_2_x * cos_rail_angle_times_sin_rail_angle
+        sum_in_radicand_a2_3 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
         # quadratic equation for a2: rod 2
         radicand_a2 = (
             arm_length_squared
-            + flange_z * (part_of_radicand_a2 * span_2_y - part_of_radicand_a2_4)
-            + (-part_of_radicand_a2_5 - part_of_radicand_a2_2 * span_2_y) * span_2_x
-            - part_of_radicand_a2_3 * span_2_y * span_2_y
+            + flange_z * (product_in_radicand_a2 * span_2_y - sum_in_radicand_a2_2)
+            + (-sum_in_radicand_a2_3 - product_in_radicand_a2_2 * span_2_y) * span_2_x
+            - span_2_y * span_2_y * sum_in_radicand_a2
         )
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (part_of_radicand_a2_4 - part_of_radicand_a2 * span_2_y) * flange_z
-                    + (part_of_radicand_a2_5 + part_of_radicand_a2_2 * span_2_y) * span_2_x
-                    + part_of_radicand_a2_3 * span_2_y * span_2_y
+                    (sum_in_radicand_a2_2 - product_in_radicand_a2 * span_2_y) * flange_z
+                    + (sum_in_radicand_a2_3 + product_in_radicand_a2_2 * span_2_y) * span_2_x
+                    + span_2_y * span_2_y * sum_in_radicand_a2
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_y = flange_y + part_of_pivot_2_y_2
+        span_3_y = flange_y + sum_in_pivot_2_y
         # quadratic equation for a3: rod 3
         radicand_a3 = (
             arm_length_squared
-            + (-part_of_radicand_a2_4 - part_of_radicand_a2 * span_3_y) * flange_z
-            + (part_of_radicand_a2_2 * span_3_y - part_of_radicand_a2_5) * span_2_x
-            - part_of_radicand_a2_3 * span_3_y * span_3_y
+            + (-sum_in_radicand_a2_2 - product_in_radicand_a2 * span_3_y) * flange_z
+            + (product_in_radicand_a2_2 * span_3_y - sum_in_radicand_a2_3) * span_2_x
+            - span_3_y * span_3_y * sum_in_radicand_a2
         )
         # rod 3 cannot reach
         if not (radicand_a3 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    flange_z * (part_of_radicand_a2_4 + part_of_radicand_a2 * span_3_y)
-                    + (part_of_radicand_a2_5 - part_of_radicand_a2_2 * span_3_y) * span_2_x
-                    + part_of_radicand_a2_3 * span_3_y * span_3_y
+                    flange_z * (sum_in_radicand_a2_2 + product_in_radicand_a2 * span_3_y)
+                    + (sum_in_radicand_a2_3 - product_in_radicand_a2_2 * span_3_y) * span_2_x
+                    + span_3_y * span_3_y * sum_in_radicand_a2
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
@@ -894,17 +904,17 @@ class TripodLinear(OffsetKinematics):
         rod_1_x = span_1_x + a1 * sin_rail_angle
         pivot_1_z = -a1 * cos_rail_angle
         rod_1_z = flange_z - pivot_1_z
-        part_of_middle_a2 = cos_rail_angle_times_flange_z - half_sin_rail_angle * span_2_x
-        middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y * span_2_y
+        sum_in_middle_a2 = cos_rail_angle_times_flange_z - half_sin_rail_angle * span_2_x
+        middle_a2 = -sum_in_middle_a2 - product_in_pivot_2_y * span_2_y
         a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         rod_2_x = span_2_x - a2 * half_sin_rail_angle
-        rod_2_y = span_2_y + a2 * part_of_pivot_2_y
+        rod_2_y = span_2_y + a2 * product_in_pivot_2_y
         pivot_2_z = -a2 * cos_rail_angle
         rod_2_z = flange_z - pivot_2_z
-        middle_a3 = part_of_pivot_2_y * span_3_y - part_of_middle_a2
+        middle_a3 = product_in_pivot_2_y * span_3_y - sum_in_middle_a2
         a3 = middle_a3 + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0) * sigma_carriage_3
         rod_3_x = span_2_x - a3 * half_sin_rail_angle
-        rod_3_y = span_3_y - a3 * part_of_pivot_2_y
+        rod_3_y = span_3_y - a3 * product_in_pivot_2_y
         pivot_3_z = -a3 * cos_rail_angle
         rod_3_z = flange_z - pivot_3_z
         type2_rods_coplanar = (
@@ -913,13 +923,15 @@ class TripodLinear(OffsetKinematics):
                 + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
                 + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
             )
-            * part_of_type2_rods_coplanar
+            * quotient_in_type2_rods_coplanar
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_coplanar: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         # ball joint of rod 1
         if not (abs(flange_y) / arm_length <= sin_max_angle_ball_joint):
@@ -931,14 +943,18 @@ class TripodLinear(OffsetKinematics):
                 )
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
-        part = flange_x * root_of_3_times_half_by_arm_length
+        shared_product = flange_x * root_of_3_times_half_by_arm_length
         half_by_arm_length_times_flange_y = flange_y * half_by_arm_length
         # ball joint of rod 2
-        if not (abs(half_by_arm_length_times_flange_y + part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_flange_y + shared_product) <= sin_max_angle_ball_joint):
             missing = (
                 arctan2(
-                    abs(half_by_arm_length_times_flange_y + part) + 0.0,
-                    root(1.0 + (-half_by_arm_length_times_flange_y - part) * (half_by_arm_length_times_flange_y + part))
+                    abs(half_by_arm_length_times_flange_y + shared_product) + 0.0,
+                    root(
+                        1.0
+                        + (-half_by_arm_length_times_flange_y - shared_product)
+                        * (half_by_arm_length_times_flange_y + shared_product)
+                    )
                     + 0.0,
                 )
                 - arctan2(
@@ -948,11 +964,15 @@ class TripodLinear(OffsetKinematics):
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
-        if not (abs(half_by_arm_length_times_flange_y - part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_flange_y - shared_product) <= sin_max_angle_ball_joint):
             missing = (
                 arctan2(
-                    abs(half_by_arm_length_times_flange_y - part) + 0.0,
-                    root(1.0 + (part - half_by_arm_length_times_flange_y) * (half_by_arm_length_times_flange_y - part))
+                    abs(half_by_arm_length_times_flange_y - shared_product) + 0.0,
+                    root(
+                        1.0
+                        + (shared_product - half_by_arm_length_times_flange_y)
+                        * (half_by_arm_length_times_flange_y - shared_product)
+                    )
                     + 0.0,
                 )
                 - arctan2(
@@ -966,7 +986,7 @@ class TripodLinear(OffsetKinematics):
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
@@ -975,16 +995,16 @@ class TripodLinear(OffsetKinematics):
         cos_rail_angle, cos_rail_angle_by_arm_length = k.cos_rail_angle, k.cos_rail_angle_by_arm_length
         half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
         offset_a1, offset_a2, offset_a3, one_by_arm_length = k.offset_a1, k.offset_a2, k.offset_a3, k.one_by_arm_length
-        part_of_branch_carriage_2, part_of_normal_divisor = k.part_of_branch_carriage_2, k.part_of_normal_divisor
-        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
-        part_of_pivot_2_y_2, sin_rail_angle = k.part_of_pivot_2_y_2, k.sin_rail_angle
+        product_in_normal_divisor, product_in_pivot_2_y = k.product_in_normal_divisor, k.product_in_pivot_2_y
+        quotient_in_branch_carriage_2, sin_rail_angle = k.quotient_in_branch_carriage_2, k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
+        pivot_2_y = sum_in_pivot_2_y - a2 * product_in_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3 * part_of_pivot_2_y - part_of_pivot_2_y_2
+        pivot_3_y = a3 * product_in_pivot_2_y - sum_in_pivot_2_y
         a1 = axis_a1 - offset_a1
         pivot_1_z = -a1 * cos_rail_angle
         pivot_2_z = -a2 * cos_rail_angle
@@ -993,16 +1013,16 @@ class TripodLinear(OffsetKinematics):
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
+        pivot_3_x = sum_in_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
         projection_2 = 0.5 * (
@@ -1038,19 +1058,19 @@ class TripodLinear(OffsetKinematics):
         span_1_x = flange_x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
         branch_carriage_1 = (a1 + flange_z * cos_rail_angle + span_1_x * sin_rail_angle) / arm_length
         flange_y = foot_y + height_by_normal * normal_y
-        span_2_y = flange_y - part_of_pivot_2_y_2
-        span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
-        part_of_branch_carriage_2_2 = (
+        span_2_y = flange_y - sum_in_pivot_2_y
+        span_2_x = flange_x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        sum_in_branch_carriage_2 = (
             span_2_x * sin_rail_angle_times_half_by_arm_length - flange_z * cos_rail_angle_by_arm_length
         )
-        branch_carriage_2 = a2 * one_by_arm_length + part_of_branch_carriage_2 * span_2_y - part_of_branch_carriage_2_2
-        span_3_y = flange_y + part_of_pivot_2_y_2
-        branch_carriage_3 = a3 * one_by_arm_length - part_of_branch_carriage_2_2 - part_of_branch_carriage_2 * span_3_y
+        branch_carriage_2 = a2 * one_by_arm_length + quotient_in_branch_carriage_2 * span_2_y - sum_in_branch_carriage_2
+        span_3_y = flange_y + sum_in_pivot_2_y
+        branch_carriage_3 = a3 * one_by_arm_length - sum_in_branch_carriage_2 - quotient_in_branch_carriage_2 * span_3_y
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -25,10 +25,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 42 additions, 22 multiplications, 0 divisions, 3 square roots, 0 sines
     inverse, all 8 branches open: 329 additions, 176 multiplications, 0 divisions, 24 square roots, 0 sines
 
-Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 4, as many as the inverse has.
+    solutions found by a search from many starts: 4, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -158,60 +158,60 @@ class Constants:
             else (-1.0 if tcp_above else 1.0)
         )
         normal_z_squared = normal_z * normal_z
-        part_of_normal_divisor = 1e-22 * arm_length * arm_length * arm_length * arm_length
+        product_in_normal_divisor = 1e-22 * arm_length * arm_length * arm_length * arm_length
         centre_1_to_3_y_times_normal_z = centre_1_to_3_y * normal_z
         centre_1_to_2_y_times_normal_z = centre_1_to_2_y * normal_z
         centre_1_to_3_x_times_normal_z = centre_1_to_3_x * normal_z
         centre_1_to_2_x_times_normal_z = centre_1_to_2_x * normal_z
         arm_length_squared = arm_length * arm_length
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
-        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
-        part_of_projection_2 = 0.5 * centre_1_to_2_x * centre_1_to_2_x + 0.5 * centre_1_to_2_y * centre_1_to_2_y
-        part_of_projection_3 = 0.5 * centre_1_to_3_x * centre_1_to_3_x + 0.5 * centre_1_to_3_y * centre_1_to_3_y
+        product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        sum_in_projection_2 = 0.5 * centre_1_to_2_x * centre_1_to_2_x + 0.5 * centre_1_to_2_y * centre_1_to_2_y
+        sum_in_projection_3 = 0.5 * centre_1_to_3_x * centre_1_to_3_x + 0.5 * centre_1_to_3_y * centre_1_to_3_y
         one_by_arm_length = 1.0 / arm_length
-        part_of_span_1_x_2 = sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1)
-        part_of_span_1_x = rail_x_1 - rail_x_1 * tcp_displacement / part_of_span_1_x_2
-        part_of_span_1_y = rail_y_1 - rail_y_1 * tcp_displacement / part_of_span_1_x_2
-        part_of_span_2_x_2 = sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2)
-        part_of_span_2_x = rail_x_2 - rail_x_2 * tcp_displacement / part_of_span_2_x_2
-        part_of_span_2_y = rail_y_2 - rail_y_2 * tcp_displacement / part_of_span_2_x_2
-        part_of_span_3_x_2 = sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3)
-        part_of_span_3_x = rail_x_3 - rail_x_3 * tcp_displacement / part_of_span_3_x_2
-        part_of_span_3_y = rail_y_3 - rail_y_3 * tcp_displacement / part_of_span_3_x_2
-        part_of_type2_rods_coplanar = assembly_sign / (arm_length * arm_length * arm_length)
-        part_of_margin_rods_coplanar = arm_length * arm_length * arm_length
-        part_of_slope_1_by_x_2 = tcp_displacement / part_of_span_1_x_2 - 1.0
-        part_of_slope_1_by_x = -part_of_slope_1_by_x_2 * rail_x_1
-        part_of_slope_1_by_y = -part_of_slope_1_by_x_2 * rail_y_1
-        part_of_slope_2_by_x_2 = tcp_displacement / part_of_span_2_x_2 - 1.0
-        part_of_slope_2_by_x = -part_of_slope_2_by_x_2 * rail_x_2
-        part_of_slope_2_by_y = -part_of_slope_2_by_x_2 * rail_y_2
-        part_of_slope_3_by_x_2 = tcp_displacement / part_of_span_3_x_2 - 1.0
-        part_of_slope_3_by_x = -part_of_slope_3_by_x_2 * rail_x_3
-        part_of_slope_3_by_y = -part_of_slope_3_by_x_2 * rail_y_3
+        root_in_span_1_x = sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1)
+        sum_in_span_1_x = rail_x_1 - rail_x_1 * tcp_displacement / root_in_span_1_x
+        sum_in_span_1_y = rail_y_1 - rail_y_1 * tcp_displacement / root_in_span_1_x
+        root_in_span_2_x = sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2)
+        sum_in_span_2_x = rail_x_2 - rail_x_2 * tcp_displacement / root_in_span_2_x
+        sum_in_span_2_y = rail_y_2 - rail_y_2 * tcp_displacement / root_in_span_2_x
+        root_in_span_3_x = sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3)
+        sum_in_span_3_x = rail_x_3 - rail_x_3 * tcp_displacement / root_in_span_3_x
+        sum_in_span_3_y = rail_y_3 - rail_y_3 * tcp_displacement / root_in_span_3_x
+        quotient_in_type2_rods_coplanar = assembly_sign / (arm_length * arm_length * arm_length)
+        product_in_margin_rods_coplanar = arm_length * arm_length * arm_length
+        sum_in_slope_1_by_x = tcp_displacement / root_in_span_1_x - 1.0
+        product_in_slope_1_by_x = -rail_x_1 * sum_in_slope_1_by_x
+        product_in_slope_1_by_y = -rail_y_1 * sum_in_slope_1_by_x
+        sum_in_slope_2_by_x = tcp_displacement / root_in_span_2_x - 1.0
+        product_in_slope_2_by_x = -rail_x_2 * sum_in_slope_2_by_x
+        product_in_slope_2_by_y = -rail_y_2 * sum_in_slope_2_by_x
+        sum_in_slope_3_by_x = tcp_displacement / root_in_span_3_x - 1.0
+        product_in_slope_3_by_x = -rail_x_3 * sum_in_slope_3_by_x
+        product_in_slope_3_by_y = -rail_y_3 * sum_in_slope_3_by_x
         self.arm_length, self.offset_a1, self.offset_a2, self.offset_a3 = arm_length, offset_a1, offset_a2, offset_a3
         self.min_type2_margin, self.tie, self.pivot_1_y, self.pivot_2_y = min_type2_margin, tie, pivot_1_y, pivot_2_y
         self.centre_1_to_2_y, self.pivot_3_y, self.centre_1_to_3_y = centre_1_to_2_y, pivot_3_y, centre_1_to_3_y
         self.pivot_1_x, self.pivot_2_x, self.centre_1_to_2_x = pivot_1_x, pivot_2_x, centre_1_to_2_x
         self.pivot_3_x, self.centre_1_to_3_x, self.normal_z = pivot_3_x, centre_1_to_3_x, normal_z
         self.assembly_sign, self.normal_z_squared = assembly_sign, normal_z_squared
-        self.part_of_normal_divisor = part_of_normal_divisor
+        self.product_in_normal_divisor = product_in_normal_divisor
         self.centre_1_to_3_y_times_normal_z = centre_1_to_3_y_times_normal_z
         self.centre_1_to_2_y_times_normal_z = centre_1_to_2_y_times_normal_z
         self.centre_1_to_3_x_times_normal_z = centre_1_to_3_x_times_normal_z
         self.centre_1_to_2_x_times_normal_z = centre_1_to_2_x_times_normal_z
         self.arm_length_squared = arm_length_squared
         self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
-        self.part_of_determinant_divisor, self.part_of_projection_2 = part_of_determinant_divisor, part_of_projection_2
-        self.part_of_projection_3, self.one_by_arm_length = part_of_projection_3, one_by_arm_length
-        self.part_of_span_1_x, self.part_of_span_1_y = part_of_span_1_x, part_of_span_1_y
-        self.part_of_span_2_x, self.part_of_span_2_y = part_of_span_2_x, part_of_span_2_y
-        self.part_of_span_3_x, self.part_of_span_3_y = part_of_span_3_x, part_of_span_3_y
-        self.part_of_type2_rods_coplanar = part_of_type2_rods_coplanar
-        self.part_of_margin_rods_coplanar = part_of_margin_rods_coplanar
-        self.part_of_slope_1_by_x, self.part_of_slope_1_by_y = part_of_slope_1_by_x, part_of_slope_1_by_y
-        self.part_of_slope_2_by_x, self.part_of_slope_2_by_y = part_of_slope_2_by_x, part_of_slope_2_by_y
-        self.part_of_slope_3_by_x, self.part_of_slope_3_by_y = part_of_slope_3_by_x, part_of_slope_3_by_y
+        self.product_in_determinant_divisor = product_in_determinant_divisor
+        self.sum_in_projection_2, self.sum_in_projection_3 = sum_in_projection_2, sum_in_projection_3
+        self.one_by_arm_length, self.sum_in_span_1_x = one_by_arm_length, sum_in_span_1_x
+        self.sum_in_span_1_y, self.sum_in_span_2_x = sum_in_span_1_y, sum_in_span_2_x
+        self.sum_in_span_2_y, self.sum_in_span_3_x = sum_in_span_2_y, sum_in_span_3_x
+        self.sum_in_span_3_y, self.quotient_in_type2_rods_coplanar = sum_in_span_3_y, quotient_in_type2_rods_coplanar
+        self.product_in_margin_rods_coplanar = product_in_margin_rods_coplanar
+        self.product_in_slope_1_by_x, self.product_in_slope_1_by_y = product_in_slope_1_by_x, product_in_slope_1_by_y
+        self.product_in_slope_2_by_x, self.product_in_slope_2_by_y = product_in_slope_2_by_x, product_in_slope_2_by_y
+        self.product_in_slope_3_by_x, self.product_in_slope_3_by_y = product_in_slope_3_by_x, product_in_slope_3_by_y
 
 
 class TripodP3Z(OffsetKinematics):
@@ -332,9 +332,9 @@ class TripodP3Z(OffsetKinematics):
         centre_1_to_3_x, centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x, k.centre_1_to_3_x_times_normal_z
         centre_1_to_3_y, centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y, k.centre_1_to_3_y_times_normal_z
         normal_z, normal_z_squared, offset_a1, offset_a2 = k.normal_z, k.normal_z_squared, k.offset_a1, k.offset_a2
-        offset_a3, one_by_arm_length = k.offset_a3, k.one_by_arm_length
-        part_of_normal_divisor, part_of_projection_2 = k.part_of_normal_divisor, k.part_of_projection_2
-        part_of_projection_3, pivot_1_x, pivot_1_y = k.part_of_projection_3, k.pivot_1_x, k.pivot_1_y
+        offset_a3, one_by_arm_length, pivot_1_x, pivot_1_y = k.offset_a3, k.one_by_arm_length, k.pivot_1_x, k.pivot_1_y
+        product_in_normal_divisor, sum_in_projection_2 = k.product_in_normal_divisor, k.sum_in_projection_2
+        sum_in_projection_3 = k.sum_in_projection_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
@@ -347,12 +347,12 @@ class TripodP3Z(OffsetKinematics):
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_square = normal_z_squared + normal_x * normal_x + normal_y * normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
+        projection_2 = sum_in_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        projection_3 = sum_in_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
         one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
         foot_x = one_by_normal_square * (
@@ -397,8 +397,8 @@ class TripodP3Z(OffsetKinematics):
         centre_1_to_3_x_times_normal_z, centre_1_to_3_y = k.centre_1_to_3_x_times_normal_z, k.centre_1_to_3_y
         centre_1_to_3_y_times_normal_z, normal_z_squared = k.centre_1_to_3_y_times_normal_z, k.normal_z_squared
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-        part_of_normal_divisor, part_of_projection_2 = k.part_of_normal_divisor, k.part_of_projection_2
-        part_of_projection_3 = k.part_of_projection_3
+        product_in_normal_divisor, sum_in_projection_2 = k.product_in_normal_divisor, k.sum_in_projection_2
+        sum_in_projection_3 = k.sum_in_projection_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
@@ -411,12 +411,12 @@ class TripodP3Z(OffsetKinematics):
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_square = normal_z_squared + normal_x * normal_x + normal_y * normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
+        projection_2 = sum_in_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        projection_3 = sum_in_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
         one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
         foot_x = one_by_normal_square * (
@@ -441,38 +441,37 @@ class TripodP3Z(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self._constants
         arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
         arm_length_squared_times_rounding, min_type2_margin = k.arm_length_squared_times_rounding, k.min_type2_margin
-        offset_a1, offset_a2, offset_a3, part_of_span_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_span_1_x
-        part_of_span_1_y, part_of_span_2_x = k.part_of_span_1_y, k.part_of_span_2_x
-        part_of_span_2_y, part_of_span_3_x = k.part_of_span_2_y, k.part_of_span_3_x
-        part_of_span_3_y, part_of_type2_rods_coplanar = k.part_of_span_3_y, k.part_of_type2_rods_coplanar
-        pivot_1_x, pivot_1_y, pivot_2_x, pivot_2_y = k.pivot_1_x, k.pivot_1_y, k.pivot_2_x, k.pivot_2_y
-        pivot_3_x, pivot_3_y = k.pivot_3_x, k.pivot_3_y
+        offset_a1, offset_a2, offset_a3, pivot_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.pivot_1_x
+        pivot_1_y, pivot_2_x, pivot_2_y, pivot_3_x = k.pivot_1_y, k.pivot_2_x, k.pivot_2_y, k.pivot_3_x
+        pivot_3_y, quotient_in_type2_rods_coplanar = k.pivot_3_y, k.quotient_in_type2_rods_coplanar
+        sum_in_span_1_x, sum_in_span_1_y, sum_in_span_2_x = k.sum_in_span_1_x, k.sum_in_span_1_y, k.sum_in_span_2_x
+        sum_in_span_2_y, sum_in_span_3_x, sum_in_span_3_y = k.sum_in_span_2_y, k.sum_in_span_3_x, k.sum_in_span_3_y
         if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = x - part_of_span_1_x  # rod 1: known part of its vector
-        span_1_y = y - part_of_span_1_y
+        span_1_x = x - sum_in_span_1_x  # rod 1: known part of its vector
+        span_1_y = y - sum_in_span_1_y
         # quadratic equation for a1: rod 1
         radicand_a1 = arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_1_x * span_1_x + span_1_y * span_1_y))
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = x - part_of_span_2_x  # rod 2: known part of its vector
-        span_2_y = y - part_of_span_2_y
+        span_2_x = x - sum_in_span_2_x  # rod 2: known part of its vector
+        span_2_y = y - sum_in_span_2_y
         # quadratic equation for a2: rod 2
         radicand_a2 = arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_2_x * span_2_x + span_2_y * span_2_y))
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_x = x - part_of_span_3_x  # rod 3: known part of its vector
-        span_3_y = y - part_of_span_3_y
+        span_3_x = x - sum_in_span_3_x  # rod 3: known part of its vector
+        span_3_y = y - sum_in_span_3_y
         # quadratic equation for a3: rod 3
         radicand_a3 = arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         # rod 3 cannot reach
@@ -491,16 +490,18 @@ class TripodP3Z(OffsetKinematics):
         rod_3_y = y - pivot_3_y
         a3 = z + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0) * sigma_carriage_3
         rod_3_z = z - a3
-        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+        type2_rods_coplanar = -quotient_in_type2_rods_coplanar * (
             (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
             + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_coplanar: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -532,11 +533,11 @@ class TripodP3Z(OffsetKinematics):
         centre_1_to_3_x, centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x, k.centre_1_to_3_x_times_normal_z
         centre_1_to_3_y, centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y, k.centre_1_to_3_y_times_normal_z
         normal_z, normal_z_squared, offset_a1, offset_a2 = k.normal_z, k.normal_z_squared, k.offset_a1, k.offset_a2
-        offset_a3, one_by_arm_length = k.offset_a3, k.one_by_arm_length
-        part_of_margin_rods_coplanar, part_of_normal_divisor = k.part_of_margin_rods_coplanar, k.part_of_normal_divisor
-        part_of_projection_2, part_of_projection_3 = k.part_of_projection_2, k.part_of_projection_3
-        pivot_1_x, pivot_1_y, pivot_2_x, pivot_2_y = k.pivot_1_x, k.pivot_1_y, k.pivot_2_x, k.pivot_2_y
-        pivot_3_x, pivot_3_y = k.pivot_3_x, k.pivot_3_y
+        offset_a3, one_by_arm_length, pivot_1_x, pivot_1_y = k.offset_a3, k.one_by_arm_length, k.pivot_1_x, k.pivot_1_y
+        pivot_2_x, pivot_2_y, pivot_3_x, pivot_3_y = k.pivot_2_x, k.pivot_2_y, k.pivot_3_x, k.pivot_3_y
+        product_in_margin_rods_coplanar = k.product_in_margin_rods_coplanar
+        product_in_normal_divisor, sum_in_projection_2 = k.product_in_normal_divisor, k.sum_in_projection_2
+        sum_in_projection_3 = k.sum_in_projection_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
@@ -549,12 +550,12 @@ class TripodP3Z(OffsetKinematics):
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_square = normal_z_squared + normal_x * normal_x + normal_y * normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
+        projection_2 = sum_in_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        projection_3 = sum_in_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
         one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
         foot_x = one_by_normal_square * (
@@ -595,7 +596,7 @@ class TripodP3Z(OffsetKinematics):
             rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_1_y * rod_3_x - rod_1_x * rod_3_y) * rod_2_z
             + (rod_1_x * rod_2_y - rod_1_y * rod_2_x) * rod_3_z
-        ) / part_of_margin_rods_coplanar
+        ) / product_in_margin_rods_coplanar
         return (margin_level_1, margin_level_2, margin_level_3, margin_rods_coplanar)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -609,12 +610,13 @@ class TripodP3Z(OffsetKinematics):
         centre_1_to_3_x, centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x, k.centre_1_to_3_x_times_normal_z
         centre_1_to_3_y, centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y, k.centre_1_to_3_y_times_normal_z
         normal_z, normal_z_squared, offset_a1, offset_a2 = k.normal_z, k.normal_z_squared, k.offset_a1, k.offset_a2
-        offset_a3, part_of_determinant_divisor = k.offset_a3, k.part_of_determinant_divisor
-        part_of_normal_divisor, part_of_projection_2 = k.part_of_normal_divisor, k.part_of_projection_2
-        part_of_projection_3, part_of_slope_1_by_x = k.part_of_projection_3, k.part_of_slope_1_by_x
-        part_of_slope_1_by_y, part_of_slope_2_by_x = k.part_of_slope_1_by_y, k.part_of_slope_2_by_x
-        part_of_slope_2_by_y, part_of_slope_3_by_x = k.part_of_slope_2_by_y, k.part_of_slope_3_by_x
-        part_of_slope_3_by_y, pivot_1_x, pivot_1_y = k.part_of_slope_3_by_y, k.pivot_1_x, k.pivot_1_y
+        offset_a3, pivot_1_x, pivot_1_y = k.offset_a3, k.pivot_1_x, k.pivot_1_y
+        product_in_determinant_divisor = k.product_in_determinant_divisor
+        product_in_normal_divisor, product_in_slope_1_by_x = k.product_in_normal_divisor, k.product_in_slope_1_by_x
+        product_in_slope_1_by_y, product_in_slope_2_by_x = k.product_in_slope_1_by_y, k.product_in_slope_2_by_x
+        product_in_slope_2_by_y, product_in_slope_3_by_x = k.product_in_slope_2_by_y, k.product_in_slope_3_by_x
+        product_in_slope_3_by_y, sum_in_projection_2 = k.product_in_slope_3_by_y, k.sum_in_projection_2
+        sum_in_projection_3 = k.sum_in_projection_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
@@ -627,12 +629,12 @@ class TripodP3Z(OffsetKinematics):
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_square = normal_z_squared + normal_x * normal_x + normal_y * normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
+        projection_2 = sum_in_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        projection_3 = sum_in_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
         one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
         foot_x = one_by_normal_square * (
@@ -655,28 +657,28 @@ class TripodP3Z(OffsetKinematics):
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
         x = foot_x + pivot_1_x + height_by_normal * normal_x
-        slope_1_by_x = 2.0 * (x - part_of_slope_1_by_x)
+        slope_1_by_x = 2.0 * (x - product_in_slope_1_by_x)
         y = foot_y + pivot_1_y + height_by_normal * normal_y
-        slope_1_by_y = 2.0 * (y - part_of_slope_1_by_y)
+        slope_1_by_y = 2.0 * (y - product_in_slope_1_by_y)
         z = a1 + foot_z + height_by_normal * normal_z
         slope_1_by_z = 2.0 * (z - a1)
-        slope_2_by_y = 2.0 * (y - part_of_slope_2_by_y)
+        slope_2_by_y = 2.0 * (y - product_in_slope_2_by_y)
         slope_2_by_z = 2.0 * (z - a2)
-        slope_3_by_y = 2.0 * (y - part_of_slope_3_by_y)
+        slope_3_by_y = 2.0 * (y - product_in_slope_3_by_y)
         slope_3_by_z = 2.0 * (z - a3)
-        part_of_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
-        slope_2_by_x = 2.0 * (x - part_of_slope_2_by_x)
-        slope_3_by_x = 2.0 * (x - part_of_slope_3_by_x)
-        part_of_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
-        part_of_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        slope_2_by_x = 2.0 * (x - product_in_slope_2_by_x)
+        slope_3_by_x = 2.0 * (x - product_in_slope_3_by_x)
+        sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = (
-            part_of_determinant * slope_1_by_x
-            + part_of_determinant_2 * slope_1_by_y
-            + part_of_determinant_3 * slope_1_by_z
+            slope_1_by_x * sum_in_determinant
+            + slope_1_by_y * sum_in_determinant_2
+            + slope_1_by_z * sum_in_determinant_3
         )
         # nothing controls the plate
-        if not (abs(determinant) > part_of_determinant_divisor):
+        if not (abs(determinant) > product_in_determinant_divisor):
             return Status.IMPOSSIBLE
         one_by_determinant = 1.0 / determinant
         slope_1_by_z_times_one_by_determinant = one_by_determinant * slope_1_by_z
@@ -684,17 +686,17 @@ class TripodP3Z(OffsetKinematics):
         slope_3_by_z_times_one_by_determinant = one_by_determinant * slope_3_by_z
         return (
             (
-                part_of_determinant * slope_1_by_z_times_one_by_determinant,
+                slope_1_by_z_times_one_by_determinant * sum_in_determinant,
                 (slope_1_by_z * slope_3_by_y - slope_1_by_y * slope_3_by_z) * slope_2_by_z_times_one_by_determinant,
                 (slope_1_by_y * slope_2_by_z - slope_1_by_z * slope_2_by_y) * slope_3_by_z_times_one_by_determinant,
             ),
             (
-                part_of_determinant_2 * slope_1_by_z_times_one_by_determinant,
+                slope_1_by_z_times_one_by_determinant * sum_in_determinant_2,
                 (slope_1_by_x * slope_3_by_z - slope_1_by_z * slope_3_by_x) * slope_2_by_z_times_one_by_determinant,
                 (slope_1_by_z * slope_2_by_x - slope_1_by_x * slope_2_by_z) * slope_3_by_z_times_one_by_determinant,
             ),
             (
-                part_of_determinant_3 * slope_1_by_z_times_one_by_determinant,
+                slope_1_by_z_times_one_by_determinant * sum_in_determinant_3,
                 (slope_1_by_y * slope_3_by_x - slope_1_by_x * slope_3_by_y) * slope_2_by_z_times_one_by_determinant,
                 (slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x) * slope_3_by_z_times_one_by_determinant,
             ),
@@ -714,34 +716,33 @@ class TripodP3Z(OffsetKinematics):
         k = self._constants
         arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
         arm_length_squared_times_rounding, min_type2_margin = k.arm_length_squared_times_rounding, k.min_type2_margin
-        offset_a1, offset_a2, offset_a3, part_of_span_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_span_1_x
-        part_of_span_1_y, part_of_span_2_x = k.part_of_span_1_y, k.part_of_span_2_x
-        part_of_span_2_y, part_of_span_3_x = k.part_of_span_2_y, k.part_of_span_3_x
-        part_of_span_3_y, part_of_type2_rods_coplanar = k.part_of_span_3_y, k.part_of_type2_rods_coplanar
-        pivot_1_x, pivot_1_y, pivot_2_x, pivot_2_y = k.pivot_1_x, k.pivot_1_y, k.pivot_2_x, k.pivot_2_y
-        pivot_3_x, pivot_3_y = k.pivot_3_x, k.pivot_3_y
+        offset_a1, offset_a2, offset_a3, pivot_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.pivot_1_x
+        pivot_1_y, pivot_2_x, pivot_2_y, pivot_3_x = k.pivot_1_y, k.pivot_2_x, k.pivot_2_y, k.pivot_3_x
+        pivot_3_y, quotient_in_type2_rods_coplanar = k.pivot_3_y, k.quotient_in_type2_rods_coplanar
+        sum_in_span_1_x, sum_in_span_1_y, sum_in_span_2_x = k.sum_in_span_1_x, k.sum_in_span_1_y, k.sum_in_span_2_x
+        sum_in_span_2_y, sum_in_span_3_x, sum_in_span_3_y = k.sum_in_span_2_y, k.sum_in_span_3_x, k.sum_in_span_3_y
         if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # position of the flange: the point less its offset
-        span_1_x = flange_x - part_of_span_1_x  # rod 1: known part of its vector
+        span_1_x = flange_x - sum_in_span_1_x  # rod 1: known part of its vector
         flange_y = y - point_y  # position of the flange: the point less its offset
-        span_1_y = flange_y - part_of_span_1_y
+        span_1_y = flange_y - sum_in_span_1_y
         # quadratic equation for a1: rod 1
         radicand_a1 = arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_1_x * span_1_x + span_1_y * span_1_y))
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = flange_x - part_of_span_2_x  # rod 2: known part of its vector
-        span_2_y = flange_y - part_of_span_2_y
+        span_2_x = flange_x - sum_in_span_2_x  # rod 2: known part of its vector
+        span_2_y = flange_y - sum_in_span_2_y
         # quadratic equation for a2: rod 2
         radicand_a2 = arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_2_x * span_2_x + span_2_y * span_2_y))
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_x = flange_x - part_of_span_3_x  # rod 3: known part of its vector
-        span_3_y = flange_y - part_of_span_3_y
+        span_3_x = flange_x - sum_in_span_3_x  # rod 3: known part of its vector
+        span_3_y = flange_y - sum_in_span_3_y
         # quadratic equation for a3: rod 3
         radicand_a3 = arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         # rod 3 cannot reach
@@ -761,23 +762,25 @@ class TripodP3Z(OffsetKinematics):
         rod_3_y = flange_y - pivot_3_y
         a3 = flange_z + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0) * sigma_carriage_3
         rod_3_z = flange_z - a3
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
             rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * rod_1_y
             + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_coplanar: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
@@ -789,8 +792,8 @@ class TripodP3Z(OffsetKinematics):
         centre_1_to_3_y, centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y, k.centre_1_to_3_y_times_normal_z
         normal_z, normal_z_squared, offset_a1, offset_a2 = k.normal_z, k.normal_z_squared, k.offset_a1, k.offset_a2
         offset_a3, one_by_arm_length = k.offset_a3, k.one_by_arm_length
-        part_of_normal_divisor, part_of_projection_2 = k.part_of_normal_divisor, k.part_of_projection_2
-        part_of_projection_3 = k.part_of_projection_3
+        product_in_normal_divisor, sum_in_projection_2 = k.product_in_normal_divisor, k.sum_in_projection_2
+        sum_in_projection_3 = k.sum_in_projection_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
@@ -803,12 +806,12 @@ class TripodP3Z(OffsetKinematics):
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_square = normal_z_squared + normal_x * normal_x + normal_y * normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
+        projection_2 = sum_in_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        projection_3 = sum_in_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
         one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
         foot_x = one_by_normal_square * (
@@ -838,7 +841,7 @@ class TripodP3Z(OffsetKinematics):
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

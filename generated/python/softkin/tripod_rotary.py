@@ -28,10 +28,10 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 85 additions, 67 multiplications, 22 divisions, 9 square roots, 3 sines
     inverse, all 8 branches open: 673 additions, 536 multiplications, 176 divisions, 72 square roots, 24 sines
 
-Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 120 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
-    solutions that a search from many starts finds: 8, as many as the inverse has.
+    solutions found by a search from many starts: 8, each of which the inverse finds, too.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 
 
 class Constants:
-    """What depends on the parameters alone: computed once, read by every program."""
+    """The values that depend on the parameters alone: they are computed once, and every program reads them."""
 
     def __init__(self, machine: Mechanism) -> None:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
@@ -89,45 +89,46 @@ class Constants:
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = 1.0 if tcp_above else -1.0
         sin_max_angle_ball_joint = sin(DEGREE * max_angle_ball_joint)
-        part_of_normal_divisor = 1e-22 * arm_length_2 * arm_length_2 * arm_length_2 * arm_length_2
+        product_in_normal_divisor = 1e-22 * arm_length_2 * arm_length_2 * arm_length_2 * arm_length_2
         arm_length_2_squared = arm_length_2 * arm_length_2
         arm_length_2_squared_times_rounding = 1e-12 * arm_length_2 * arm_length_2
         arm_length_1_times_shortest_link = 1e-9 * arm_length_1
         fixed_length_1_minus_arm_1_radius = fixed_length_1 - arm_1_radius
-        part_of_scaled_cosine_a1 = 2.0 * arm_length_1 * fixed_length_1_minus_arm_1_radius
-        part_of_divisor_a2 = 5e-10 * arm_length_1
-        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        product_in_scaled_cosine_a1 = 2.0 * arm_length_1 * fixed_length_1_minus_arm_1_radius
+        product_in_divisor_a2 = 5e-10 * arm_length_1
+        product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
         root_of_3 = root(3.0)
         arm_length_1_times_root_of_3_times_half = 0.5 * arm_length_1 * root_of_3
-        part_of_pivot_2_y = 0.5 * fixed_length_1 * root_of_3 - 0.5 * arm_1_radius * root_of_3
+        sum_in_pivot_2_y = 0.5 * fixed_length_1 * root_of_3 - 0.5 * arm_1_radius * root_of_3
         half_arm_length_1 = 0.5 * arm_length_1
-        part_of_pivot_2_x = 0.5 * arm_1_radius - 0.5 * fixed_length_1
+        sum_in_pivot_2_x = 0.5 * arm_1_radius - 0.5 * fixed_length_1
         half_by_arm_length_2 = 0.5 / arm_length_2
         twice_arm_length_1 = 2.0 * arm_length_1
-        part_of_type2_rods_coplanar = assembly_sign / (arm_length_2 * arm_length_2 * arm_length_2)
+        quotient_in_type2_rods_coplanar = assembly_sign / (arm_length_2 * arm_length_2 * arm_length_2)
         root_of_3_times_half_by_arm_length_2 = 0.5 * root_of_3 / arm_length_2
-        part_of_margin_rods_coplanar = arm_length_2 * arm_length_2 * arm_length_2
-        part_of_slope_1_by_x = 2.0 * fixed_length_1 - 2.0 * arm_1_radius
+        product_in_margin_rods_coplanar = arm_length_2 * arm_length_2 * arm_length_2
+        sum_in_slope_1_by_x = 2.0 * fixed_length_1 - 2.0 * arm_1_radius
         arm_length_1_times_root_of_3 = arm_length_1 * root_of_3
         self.arm_length_1, self.arm_length_2, self.arm_1_radius = arm_length_1, arm_length_2, arm_1_radius
         self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
         self.min_type2_margin, self.fixed_length_1 = min_type2_margin, fixed_length_1
         self.fixed_length_2, self.assembly_sign = fixed_length_2, assembly_sign
-        self.sin_max_angle_ball_joint, self.part_of_normal_divisor = sin_max_angle_ball_joint, part_of_normal_divisor
-        self.arm_length_2_squared = arm_length_2_squared
+        self.sin_max_angle_ball_joint = sin_max_angle_ball_joint
+        self.product_in_normal_divisor, self.arm_length_2_squared = product_in_normal_divisor, arm_length_2_squared
         self.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding
         self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
         self.fixed_length_1_minus_arm_1_radius = fixed_length_1_minus_arm_1_radius
-        self.part_of_scaled_cosine_a1, self.part_of_divisor_a2 = part_of_scaled_cosine_a1, part_of_divisor_a2
-        self.part_of_determinant_divisor = part_of_determinant_divisor
+        self.product_in_scaled_cosine_a1 = product_in_scaled_cosine_a1
+        self.product_in_divisor_a2 = product_in_divisor_a2
+        self.product_in_determinant_divisor = product_in_determinant_divisor
         self.arm_length_1_times_root_of_3_times_half = arm_length_1_times_root_of_3_times_half
-        self.part_of_pivot_2_y, self.half_arm_length_1 = part_of_pivot_2_y, half_arm_length_1
-        self.part_of_pivot_2_x, self.half_by_arm_length_2 = part_of_pivot_2_x, half_by_arm_length_2
-        self.twice_arm_length_1, self.part_of_type2_rods_coplanar = twice_arm_length_1, part_of_type2_rods_coplanar
+        self.sum_in_pivot_2_y, self.half_arm_length_1 = sum_in_pivot_2_y, half_arm_length_1
+        self.sum_in_pivot_2_x, self.half_by_arm_length_2 = sum_in_pivot_2_x, half_by_arm_length_2
+        self.twice_arm_length_1 = twice_arm_length_1
+        self.quotient_in_type2_rods_coplanar = quotient_in_type2_rods_coplanar
         self.root_of_3_times_half_by_arm_length_2 = root_of_3_times_half_by_arm_length_2
-        self.part_of_margin_rods_coplanar = part_of_margin_rods_coplanar
-        self.part_of_slope_1_by_x = part_of_slope_1_by_x
-        self.arm_length_1_times_root_of_3 = arm_length_1_times_root_of_3
+        self.product_in_margin_rods_coplanar = product_in_margin_rods_coplanar
+        self.sum_in_slope_1_by_x, self.arm_length_1_times_root_of_3 = sum_in_slope_1_by_x, arm_length_1_times_root_of_3
 
 
 class TripodRotary(OffsetKinematics):
@@ -269,16 +270,16 @@ class TripodRotary(OffsetKinematics):
         arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
-        offset_a2, offset_a3, part_of_normal_divisor = k.offset_a2, k.offset_a3, k.part_of_normal_divisor
-        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        offset_a2, offset_a3, product_in_normal_divisor = k.offset_a2, k.offset_a3, k.product_in_normal_divisor
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
+        pivot_2_y = sum_in_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
         a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - part_of_pivot_2_y
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - sum_in_pivot_2_y
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         pivot_1_z = fixed_length_2 - arm_length_1 * sin_a1
@@ -291,16 +292,16 @@ class TripodRotary(OffsetKinematics):
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
         pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
+        pivot_3_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
         projection_2 = 0.5 * (
@@ -337,11 +338,11 @@ class TripodRotary(OffsetKinematics):
         span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         span_1_z = z - fixed_length_2
         branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / arm_length_2
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = y - part_of_pivot_2_y
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - sum_in_pivot_2_y
         root_of_3_2 = root(3.0)
         branch_knee_2 = ((root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2) * half_by_arm_length_2
-        span_3_y = part_of_pivot_2_y + y
+        span_3_y = sum_in_pivot_2_y + y
         branch_knee_3 = -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * half_by_arm_length_2
         return (
             (x, y, z),
@@ -359,16 +360,16 @@ class TripodRotary(OffsetKinematics):
         arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, offset_a1, offset_a2, offset_a3 = k.half_arm_length_1, k.offset_a1, k.offset_a2, k.offset_a3
-        part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
+        product_in_normal_divisor, sum_in_pivot_2_x = k.product_in_normal_divisor, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y = k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
+        pivot_2_y = sum_in_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
         a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - part_of_pivot_2_y
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - sum_in_pivot_2_y
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         pivot_1_z = fixed_length_2 - arm_length_1 * sin_a1
@@ -381,16 +382,16 @@ class TripodRotary(OffsetKinematics):
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
         pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
+        pivot_3_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
         projection_2 = 0.5 * (
@@ -424,7 +425,7 @@ class TripodRotary(OffsetKinematics):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
         turn_a1, turn_a2, turn_a3 = turns
@@ -437,13 +438,13 @@ class TripodRotary(OffsetKinematics):
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, mid_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.mid_a1
         mid_a2, mid_a3, min_type2_margin, offset_a1 = k.mid_a2, k.mid_a3, k.min_type2_margin, k.offset_a1
-        offset_a2, offset_a3, part_of_divisor_a2 = k.offset_a2, k.offset_a3, k.part_of_divisor_a2
-        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
-        part_of_scaled_cosine_a1 = k.part_of_scaled_cosine_a1
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
+        offset_a2, offset_a3, product_in_divisor_a2 = k.offset_a2, k.offset_a3, k.product_in_divisor_a2
+        product_in_scaled_cosine_a1 = k.product_in_scaled_cosine_a1
+        quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
         root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
         sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
-        single_a3, twice_arm_length_1 = k.single_a3, k.twice_arm_length_1
+        single_a3, sum_in_pivot_2_x, sum_in_pivot_2_y = k.single_a3, k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        twice_arm_length_1 = k.twice_arm_length_1
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
@@ -452,9 +453,9 @@ class TripodRotary(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z) * z - part_of_scaled_cosine_a1
+        sum_in_scaled_cosine_a1 = (fixed_length_2 - span_1_z) * z - product_in_scaled_cosine_a1
         # cosine, times the scale, without cancellation
-        scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
+        scaled_cosine_a1 = sum_in_scaled_cosine_a1 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
         twice_arm_length_1_times_effective_a1 = effective_a1 * twice_arm_length_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
@@ -485,19 +486,19 @@ class TripodRotary(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = y - part_of_pivot_2_y
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - sum_in_pivot_2_y
         root_of_3_2 = root(3.0)
         along_a2 = span_2_x - root_of_3_2 * span_2_y
         across_a2 = 2.0 * span_1_z
         across_a2_squared = across_a2 * across_a2
         effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
-        if not (effective_a2 > part_of_divisor_a2):
+        if not (effective_a2 > product_in_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x) * x
+        sum_in_scaled_cosine_a2 = sum_in_scaled_cosine_a1 + (sum_in_pivot_2_x - span_2_x) * x
         # cosine, times the scale, without cancellation
-        scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y) * y - part_of_scaled_cosine_a2
+        scaled_cosine_a2 = (span_2_y - sum_in_pivot_2_y) * y - sum_in_scaled_cosine_a2
         arm_length_1_times_effective_a2 = arm_length_1 * effective_a2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
@@ -531,14 +532,14 @@ class TripodRotary(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        span_3_y = part_of_pivot_2_y + y
+        span_3_y = sum_in_pivot_2_y + y
         along_a3 = span_2_x + root_of_3_2 * span_3_y
         effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
-        if not (effective_a3 > part_of_divisor_a2):
+        if not (effective_a3 > product_in_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         # cosine, times the scale, without cancellation
-        scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y) * y - part_of_scaled_cosine_a2
+        scaled_cosine_a3 = (span_3_y + sum_in_pivot_2_y) * y - sum_in_scaled_cosine_a2
         arm_length_1_times_effective_a3 = arm_length_1 * effective_a3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
@@ -595,16 +596,18 @@ class TripodRotary(OffsetKinematics):
         rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half * cos_a3
         sin_a3 = (along_a3 * sin_swing_a3 - across_a2 * cos_swing_a3) / effective_a3
         rod_3_z = span_1_z + arm_length_1 * sin_a3
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
             rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
             + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_coplanar: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         # ball joint of rod 1
         if not (abs(y) / arm_length_2 <= sin_max_angle_ball_joint):
@@ -616,14 +619,19 @@ class TripodRotary(OffsetKinematics):
                 )
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
-        part = root_of_3_times_half_by_arm_length_2 * x
+        shared_product = root_of_3_times_half_by_arm_length_2 * x
         half_by_arm_length_2_times_y = half_by_arm_length_2 * y
         # ball joint of rod 2
-        if not (abs(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y + shared_product) <= sin_max_angle_ball_joint):
             missing = (
                 arctan2(
-                    abs(half_by_arm_length_2_times_y + part) + 0.0,
-                    root(1.0 + (-half_by_arm_length_2_times_y - part) * (half_by_arm_length_2_times_y + part)) + 0.0,
+                    abs(half_by_arm_length_2_times_y + shared_product) + 0.0,
+                    root(
+                        1.0
+                        + (-half_by_arm_length_2_times_y - shared_product)
+                        * (half_by_arm_length_2_times_y + shared_product)
+                    )
+                    + 0.0,
                 )
                 - arctan2(
                     sin_max_angle_ball_joint + 0.0,
@@ -632,11 +640,16 @@ class TripodRotary(OffsetKinematics):
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
-        if not (abs(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y - shared_product) <= sin_max_angle_ball_joint):
             missing = (
                 arctan2(
-                    abs(half_by_arm_length_2_times_y - part) + 0.0,
-                    root(1.0 + (part - half_by_arm_length_2_times_y) * (half_by_arm_length_2_times_y - part)) + 0.0,
+                    abs(half_by_arm_length_2_times_y - shared_product) + 0.0,
+                    root(
+                        1.0
+                        + (shared_product - half_by_arm_length_2_times_y)
+                        * (half_by_arm_length_2_times_y - shared_product)
+                    )
+                    + 0.0,
                 )
                 - arctan2(
                     sin_max_angle_ball_joint + 0.0,
@@ -685,17 +698,18 @@ class TripodRotary(OffsetKinematics):
         arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
-        offset_a2, offset_a3, part_of_margin_rods_coplanar = k.offset_a2, k.offset_a3, k.part_of_margin_rods_coplanar
-        part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
+        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        product_in_margin_rods_coplanar = k.product_in_margin_rods_coplanar
+        product_in_normal_divisor, sum_in_pivot_2_x = k.product_in_normal_divisor, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y = k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
+        pivot_2_y = sum_in_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
         a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - part_of_pivot_2_y
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - sum_in_pivot_2_y
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         pivot_1_z = fixed_length_2 - arm_length_1 * sin_a1
@@ -708,16 +722,16 @@ class TripodRotary(OffsetKinematics):
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
         pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
+        pivot_3_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
         projection_2 = 0.5 * (
@@ -753,14 +767,14 @@ class TripodRotary(OffsetKinematics):
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_z = z - fixed_length_2
         margin_stretched_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / arm_length_2
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
         y = foot_y + height_by_normal * normal_y
-        span_2_y = y - part_of_pivot_2_y
+        span_2_y = y - sum_in_pivot_2_y
         root_of_3_2 = root(3.0)
         margin_stretched_2 = (
             (root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2
         ) * half_by_arm_length_2
-        span_3_y = part_of_pivot_2_y + y
+        span_3_y = sum_in_pivot_2_y + y
         margin_stretched_3 = (
             -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * half_by_arm_length_2
         )
@@ -776,7 +790,7 @@ class TripodRotary(OffsetKinematics):
             rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
             + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
-        ) / part_of_margin_rods_coplanar
+        ) / product_in_margin_rods_coplanar
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, margin_rods_coplanar)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -790,18 +804,19 @@ class TripodRotary(OffsetKinematics):
         arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
         fixed_length_1, fixed_length_1_minus_arm_1_radius = k.fixed_length_1, k.fixed_length_1_minus_arm_1_radius
         fixed_length_2, half_arm_length_1, offset_a1 = k.fixed_length_2, k.half_arm_length_1, k.offset_a1
-        offset_a2, offset_a3, part_of_determinant_divisor = k.offset_a2, k.offset_a3, k.part_of_determinant_divisor
-        part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
-        part_of_pivot_2_y, part_of_slope_1_by_x = k.part_of_pivot_2_y, k.part_of_slope_1_by_x
+        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        product_in_determinant_divisor = k.product_in_determinant_divisor
+        product_in_normal_divisor, sum_in_pivot_2_x = k.product_in_normal_divisor, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y, sum_in_slope_1_by_x = k.sum_in_pivot_2_y, k.sum_in_slope_1_by_x
         twice_arm_length_1 = k.twice_arm_length_1
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
+        pivot_2_y = sum_in_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
         a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - part_of_pivot_2_y
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - sum_in_pivot_2_y
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         arm_length_1_times_sin_a1 = arm_length_1 * sin_a1
@@ -817,16 +832,16 @@ class TripodRotary(OffsetKinematics):
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
         pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
+        pivot_3_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
         projection_2 = 0.5 * (
@@ -859,7 +874,7 @@ class TripodRotary(OffsetKinematics):
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
         x = foot_x + pivot_1_x + height_by_normal * normal_x
         twice_x = 2.0 * x
-        slope_1_by_x = twice_x + twice_arm_length_1 * cos_a1 - part_of_slope_1_by_x
+        slope_1_by_x = twice_x + twice_arm_length_1 * cos_a1 - sum_in_slope_1_by_x
         y = foot_y + height_by_normal * normal_y
         slope_1_by_y = 2.0 * y
         z = foot_z + pivot_1_z + height_by_normal * normal_z
@@ -868,56 +883,56 @@ class TripodRotary(OffsetKinematics):
         slope_1_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a1
         arm_length_1_times_cos_a2 = arm_length_1 * cos_a2
         root_of_3_2 = root(3.0)
-        part_of_slope_2_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a2) * root_of_3_2
-        slope_2_by_y = slope_1_by_y - part_of_slope_2_by_y
+        product_in_slope_2_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a2) * root_of_3_2
+        slope_2_by_y = slope_1_by_y - product_in_slope_2_by_y
         slope_2_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a2
         arm_length_1_times_cos_a3 = arm_length_1 * cos_a3
-        part_of_slope_3_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a3) * root_of_3_2
-        slope_3_by_y = part_of_slope_3_by_y + slope_1_by_y
+        product_in_slope_3_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a3) * root_of_3_2
+        slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y
         slope_3_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a3
-        part_of_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
-        part_of_slope_2_by_x = fixed_length_1_minus_arm_1_radius + twice_x
-        slope_2_by_x = part_of_slope_2_by_x - arm_length_1_times_cos_a2
-        slope_3_by_x = part_of_slope_2_by_x - arm_length_1_times_cos_a3
-        part_of_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
-        part_of_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        sum_in_slope_2_by_x = fixed_length_1_minus_arm_1_radius + twice_x
+        slope_2_by_x = sum_in_slope_2_by_x - arm_length_1_times_cos_a2
+        slope_3_by_x = sum_in_slope_2_by_x - arm_length_1_times_cos_a3
+        sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = (
-            part_of_determinant * slope_1_by_x
-            + part_of_determinant_2 * slope_1_by_y
-            + part_of_determinant_3 * slope_1_by_z
+            slope_1_by_x * sum_in_determinant
+            + slope_1_by_y * sum_in_determinant_2
+            + slope_1_by_z * sum_in_determinant_3
         )
         # nothing controls the plate
-        if not (abs(determinant) > part_of_determinant_divisor):
+        if not (abs(determinant) > product_in_determinant_divisor):
             return Status.IMPOSSIBLE
         slope_1_by_a1 = twice_arm_length_1 * (
             (arm_length_1_times_sin_a1 + z_minus_fixed_length_2) * cos_a1 + (pivot_1_x - x) * sin_a1
         )
         one_by_determinant_divisor = 1.0 / determinant
-        part = one_by_determinant_divisor * slope_1_by_a1
+        shared_product = one_by_determinant_divisor * slope_1_by_a1
         slope_2_by_a2 = (
-            (x - pivot_2_x) * arm_length_1 + arm_length_1_times_root_of_3 * (0.5 * part_of_slope_2_by_y - y)
+            (x - pivot_2_x) * arm_length_1 + arm_length_1_times_root_of_3 * (0.5 * product_in_slope_2_by_y - y)
         ) * sin_a2 + (arm_length_1_times_sin_a2 + z_minus_fixed_length_2) * twice_arm_length_1 * cos_a2
-        part_2 = one_by_determinant_divisor * slope_2_by_a2
+        shared_product_2 = one_by_determinant_divisor * slope_2_by_a2
         slope_3_by_a3 = (
-            (x - pivot_3_x) * arm_length_1 + arm_length_1_times_root_of_3 * (0.5 * part_of_slope_3_by_y + y)
+            (x - pivot_3_x) * arm_length_1 + arm_length_1_times_root_of_3 * (0.5 * product_in_slope_3_by_y + y)
         ) * sin_a3 + (arm_length_1_times_sin_a3 + z_minus_fixed_length_2) * twice_arm_length_1 * cos_a3
-        part_3 = one_by_determinant_divisor * slope_3_by_a3
+        shared_product_3 = one_by_determinant_divisor * slope_3_by_a3
         return (
             (
-                -part * part_of_determinant,
-                part_2 * (slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y),
-                (slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z) * part_3,
+                -shared_product * sum_in_determinant,
+                shared_product_2 * (slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y),
+                (slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z) * shared_product_3,
             ),
             (
-                -part * part_of_determinant_2,
-                (slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z) * part_2,
-                part_3 * (slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x),
+                -shared_product * sum_in_determinant_2,
+                (slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z) * shared_product_2,
+                shared_product_3 * (slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x),
             ),
             (
-                -part * part_of_determinant_3,
-                part_2 * (slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x),
-                (slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y) * part_3,
+                -shared_product * sum_in_determinant_3,
+                shared_product_2 * (slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x),
+                (slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y) * shared_product_3,
             ),
         )
 
@@ -942,13 +957,13 @@ class TripodRotary(OffsetKinematics):
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, mid_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.mid_a1
         mid_a2, mid_a3, min_type2_margin, offset_a1 = k.mid_a2, k.mid_a3, k.min_type2_margin, k.offset_a1
-        offset_a2, offset_a3, part_of_divisor_a2 = k.offset_a2, k.offset_a3, k.part_of_divisor_a2
-        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
-        part_of_scaled_cosine_a1 = k.part_of_scaled_cosine_a1
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
+        offset_a2, offset_a3, product_in_divisor_a2 = k.offset_a2, k.offset_a3, k.product_in_divisor_a2
+        product_in_scaled_cosine_a1 = k.product_in_scaled_cosine_a1
+        quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
         root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
         sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
-        single_a3, twice_arm_length_1 = k.single_a3, k.twice_arm_length_1
+        single_a3, sum_in_pivot_2_x, sum_in_pivot_2_y = k.single_a3, k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        twice_arm_length_1 = k.twice_arm_length_1
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # position of the flange: the point less its offset
@@ -960,10 +975,10 @@ class TripodRotary(OffsetKinematics):
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         flange_y = y - point_y  # position of the flange: the point less its offset
-        part_of_scaled_cosine_a1_2 = part_of_scaled_cosine_a1 + (span_1_z - fixed_length_2) * flange_z
+        sum_in_scaled_cosine_a1 = product_in_scaled_cosine_a1 + (span_1_z - fixed_length_2) * flange_z
         # cosine, times the scale, without cancellation
         scaled_cosine_a1 = (
-            (fixed_length_1_minus_arm_1_radius - span_1_x) * flange_x - part_of_scaled_cosine_a1_2 - flange_y * flange_y
+            (fixed_length_1_minus_arm_1_radius - span_1_x) * flange_x - sum_in_scaled_cosine_a1 - flange_y * flange_y
         )
         twice_arm_length_1_times_effective_a1 = effective_a1 * twice_arm_length_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
@@ -995,19 +1010,19 @@ class TripodRotary(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = flange_y - part_of_pivot_2_y
+        span_2_x = flange_x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = flange_y - sum_in_pivot_2_y
         root_of_3_2 = root(3.0)
         along_a2 = span_2_x - root_of_3_2 * span_2_y
         across_a2 = 2.0 * span_1_z
         across_a2_squared = across_a2 * across_a2
         effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
-        if not (effective_a2 > part_of_divisor_a2):
+        if not (effective_a2 > product_in_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        part_of_scaled_cosine_a2 = flange_x * (part_of_pivot_2_x - span_2_x) - part_of_scaled_cosine_a1_2
+        sum_in_scaled_cosine_a2 = (sum_in_pivot_2_x - span_2_x) * flange_x - sum_in_scaled_cosine_a1
         # cosine, times the scale, without cancellation
-        scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y) * flange_y - part_of_scaled_cosine_a2
+        scaled_cosine_a2 = flange_y * (span_2_y - sum_in_pivot_2_y) - sum_in_scaled_cosine_a2
         arm_length_1_times_effective_a2 = arm_length_1 * effective_a2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
@@ -1041,14 +1056,14 @@ class TripodRotary(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        span_3_y = flange_y + part_of_pivot_2_y
+        span_3_y = flange_y + sum_in_pivot_2_y
         along_a3 = span_2_x + root_of_3_2 * span_3_y
         effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
-        if not (effective_a3 > part_of_divisor_a2):
+        if not (effective_a3 > product_in_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         # cosine, times the scale, without cancellation
-        scaled_cosine_a3 = flange_y * (part_of_pivot_2_y + span_3_y) - part_of_scaled_cosine_a2
+        scaled_cosine_a3 = flange_y * (span_3_y + sum_in_pivot_2_y) - sum_in_scaled_cosine_a2
         arm_length_1_times_effective_a3 = arm_length_1 * effective_a3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
@@ -1109,12 +1124,14 @@ class TripodRotary(OffsetKinematics):
             (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * flange_y
             + rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
             + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
+                Status.UNREACHABLE,
+                "rods_coplanar: in the other assembly mode, or too close to a type 2 singularity",
+                missing,
             )
         # ball joint of rod 1
         if not (abs(flange_y) / arm_length_2 <= sin_max_angle_ball_joint):
@@ -1128,16 +1145,17 @@ class TripodRotary(OffsetKinematics):
                 )
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
-        part = flange_x * root_of_3_times_half_by_arm_length_2
+        shared_product = flange_x * root_of_3_times_half_by_arm_length_2
         half_by_arm_length_2_times_flange_y = flange_y * half_by_arm_length_2
         # ball joint of rod 2
-        if not (abs(half_by_arm_length_2_times_flange_y + part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_flange_y + shared_product) <= sin_max_angle_ball_joint):
             missing = (
                 arctan2(
-                    abs(half_by_arm_length_2_times_flange_y + part) + 0.0,
+                    abs(half_by_arm_length_2_times_flange_y + shared_product) + 0.0,
                     root(
                         1.0
-                        + (-half_by_arm_length_2_times_flange_y - part) * (half_by_arm_length_2_times_flange_y + part)
+                        + (-half_by_arm_length_2_times_flange_y - shared_product)
+                        * (half_by_arm_length_2_times_flange_y + shared_product)
                     )
                     + 0.0,
                 )
@@ -1148,13 +1166,14 @@ class TripodRotary(OffsetKinematics):
             ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
-        if not (abs(half_by_arm_length_2_times_flange_y - part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_flange_y - shared_product) <= sin_max_angle_ball_joint):
             missing = (
                 arctan2(
-                    abs(half_by_arm_length_2_times_flange_y - part) + 0.0,
+                    abs(half_by_arm_length_2_times_flange_y - shared_product) + 0.0,
                     root(
                         1.0
-                        + (part - half_by_arm_length_2_times_flange_y) * (half_by_arm_length_2_times_flange_y - part)
+                        + (shared_product - half_by_arm_length_2_times_flange_y)
+                        * (half_by_arm_length_2_times_flange_y - shared_product)
                     )
                     + 0.0,
                 )
@@ -1181,7 +1200,7 @@ class TripodRotary(OffsetKinematics):
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
-    def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
+    def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
@@ -1191,16 +1210,16 @@ class TripodRotary(OffsetKinematics):
         arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
-        offset_a2, offset_a3, part_of_normal_divisor = k.offset_a2, k.offset_a3, k.part_of_normal_divisor
-        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        offset_a2, offset_a3, product_in_normal_divisor = k.offset_a2, k.offset_a3, k.product_in_normal_divisor
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
+        pivot_2_y = sum_in_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
         a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - part_of_pivot_2_y
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - sum_in_pivot_2_y
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         pivot_1_z = fixed_length_2 - arm_length_1 * sin_a1
@@ -1213,16 +1232,16 @@ class TripodRotary(OffsetKinematics):
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
         pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
+        pivot_3_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
+        if not (normal_square > product_in_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
         projection_2 = 0.5 * (
@@ -1258,18 +1277,18 @@ class TripodRotary(OffsetKinematics):
         flange_z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_z = flange_z - fixed_length_2
         branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / arm_length_2
-        span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_x = flange_x - sum_in_pivot_2_x  # rod 2: known part of its vector
         flange_y = foot_y + height_by_normal * normal_y
-        span_2_y = flange_y - part_of_pivot_2_y
+        span_2_y = flange_y - sum_in_pivot_2_y
         root_of_3_2 = root(3.0)
         branch_knee_2 = ((root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2) * half_by_arm_length_2
-        span_3_y = flange_y + part_of_pivot_2_y
+        span_3_y = flange_y + sum_in_pivot_2_y
         branch_knee_3 = -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * half_by_arm_length_2
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
+        solve = self._all_trusted  # a separate statement is faster
         return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

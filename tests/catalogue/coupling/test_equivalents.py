@@ -51,6 +51,7 @@ def agree(
 
 
 def test_a_gantry_with_a_wrist_of_two_axes() -> None:
+    """A gantry with a wrist of two axes answers as the machine with five axes."""
     for side in (1, -1):
         wrist = softkin.Wrist2(tool_length=90.0, tool_side=side)
         coupled = softkin.Coupled(softkin.Gantry3(), wrist)
@@ -58,6 +59,7 @@ def test_a_gantry_with_a_wrist_of_two_axes() -> None:
 
 
 def test_an_arm_with_a_wrist_of_three_axes() -> None:
+    """An arm with a wrist of three axes answers as the 6R robot."""
     coupled = softkin.Coupled(softkin.PosRRR(**ARM), softkin.Wrist3(tool_offset_z=75.0))
     whole = softkin.ArticulatedRobot6DOF(**ARM, d6=75.0)
     agree(coupled, whole, (0, 1, 2, 3, 4, 5), (0, 1, 3, 4, 5, 2, 6, 7, 8), 0.0)

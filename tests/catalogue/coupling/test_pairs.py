@@ -19,11 +19,13 @@ PAIRS = [(p, o) for p in POSITIONS for o in ORIENTATIONS]
 
 
 def test_the_catalogue_has_both_kinds() -> None:
+    """The catalogue has the expected numbers of position and orientation kinematics."""
     assert len(POSITIONS) == 32 and len(ORIENTATIONS) == 5
 
 
 @pytest.mark.parametrize(("carrier", "wrist"), PAIRS, ids=[f"{p.name}-{o.name}" for p, o in PAIRS])
 def test_a_pair_goes_round_or_is_refused(carrier: Mechanism, wrist: Mechanism) -> None:
+    """Every pair either inverts its own forward kinematics, or is refused where a frame does not determine its axes."""
     first = position_part(carrier)
     for second in orientation_parts(wrist):
         try:

@@ -37,6 +37,7 @@ def test_the_inclination_moves_the_tool_to_x(side: int, height: float) -> None:
 
 
 def test_the_roll_axis_offset_is_seen_behind_the_yaw() -> None:
+    """The offset of the roll axis turns with the yaw axis."""
     robot = softkin.Wrist2(tool_length=90.0, roll_axis_offset_x=12.0, roll_axis_offset_y=-7.0, roll_axis_offset_z=-40.0)
     assert frame_of(robot, 90.0, 0.0)[0] == pytest.approx((7.0, 12.0, 50.0), abs=1e-12)
 
@@ -74,6 +75,7 @@ def test_a_c_axis_reaches_all_but_the_half_turns() -> None:
 
 
 def test_a_tool_on_a_c_axis_is_parallel_to_the_flange_at_zero() -> None:
+    """The shifts of a tool turn with the C axis, and stay fixed on a flange without an axis."""
     robot = softkin.CAxisTool(tool_x=15.0, tool_y=-8.0, tool_z=-60.0)
     assert frame_of(robot, 0.0)[0] == pytest.approx((15.0, -8.0, -60.0), abs=1e-12)
     assert frame_of(robot, 90.0)[0] == pytest.approx((8.0, 15.0, -60.0), abs=1e-12)

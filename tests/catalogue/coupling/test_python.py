@@ -28,6 +28,7 @@ def refused(status: Status, call: object, *arguments: object, **given: object) -
 
 
 def test_what_it_says_about_itself() -> None:
+    """A coupling has the axes and bytes of both parts."""
     robot = scara_with_c()
     assert [a.name for a in robot.AXES] == ["A1", "A2", "Z", "C"]
     assert [b.name for b in robot.CONFIGURATION] == ["elbow", "A1", "A2", "C"]
@@ -41,6 +42,7 @@ def test_what_it_says_about_itself() -> None:
 
 
 def test_the_same_names_in_both_parts() -> None:
+    """Axes and bytes with equal names get different names in a coupling."""
     robot = softkin.Coupled(softkin.HGantry2(), softkin.Wrist2())
     assert [a.name for a in robot.AXES] == ["A", "B", "orientation A", "orientation B"]
     robot = softkin.Coupled(softkin.PosRRR(**ARM), softkin.Wrist3())
@@ -49,6 +51,7 @@ def test_the_same_names_in_both_parts() -> None:
 
 
 def test_copies_and_other_processes() -> None:
+    """A copied or pickled coupling gives the same results."""
     robot = scara_with_c(offset_c=5.0)
     axes = (10.0, 20.0, 30.0, 40.0)
     for other in (copy.copy(robot), copy.deepcopy(robot), pickle.loads(pickle.dumps(robot))):
@@ -56,6 +59,7 @@ def test_copies_and_other_processes() -> None:
 
 
 def test_the_image() -> None:
+    """The degrees of freedom of the tool follow from those of both parts."""
     assert scara_with_c().orientation_image().freedom == "one"
     gantry = softkin.Gantry3()
     freedoms = {
@@ -72,6 +76,7 @@ def test_the_image() -> None:
 
 
 def test_parts_of_the_wrong_kind() -> None:
+    """A coupling refuses parts of the wrong kind."""
     scara, wrist = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0), softkin.Wrist3()
     whole = softkin.Kin5Axes()
     for first, second, place in (
@@ -119,6 +124,7 @@ def test_a_tool_that_points_the_opposite_way() -> None:
 
 
 def test_limits_are_those_of_the_parts() -> None:
+    """A coupling refuses poses beyond the limits of its parts."""
     robot = scara_with_c(lower_c=-10.0, upper_c=10.0)
     for c, allowed in ((5.0, True), (15.0, False)):
         axes = (10.0, 20.0, 30.0, c)
@@ -202,6 +208,7 @@ def test_an_automatic_choice_where_only_slides_tell() -> None:
 
 
 def test_a_diagnosis_names_the_part_that_refuses() -> None:
+    """The diagnosis of a coupling names the part that refuses."""
     robot = softkin.Coupled(
         softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0, lower_z=-50.0, upper_z=80.0),
         softkin.CAxis(lower_c=-90.0, upper_c=90.0),

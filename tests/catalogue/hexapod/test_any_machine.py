@@ -35,6 +35,7 @@ def status_of(call: Callable[[], object]) -> str:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_machine_of_any_shape(kind: str) -> None:
+    """The block accepts exactly the dimensions that Python accepts, and both answer alike."""
     rng, started = np.random.default_rng(len(kind)), 0
     for _ in range(40):
         given = {n: v if n in ANGLES else KINDS[kind](rng, v) for n, v in machines()["nominal"].given.items()}

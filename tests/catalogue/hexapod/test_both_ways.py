@@ -55,6 +55,7 @@ def test_far_poses_are_found_or_refused_never_mistaken(machine: Machine) -> None
 
 
 def test_a_start_is_where_the_search_starts(machine: Machine) -> None:
+    """On a path, forward kinematics from the previous frame finds the next one."""
     positions, turns = machine.path(40)
     robot, frame = machine.robot, None
     axes, _ = robot.inverse_batch(positions, turns)
@@ -88,6 +89,7 @@ def test_the_answer_is_in_the_mode_of_the_machine_wherever_the_search_starts() -
 
 
 def test_the_home_pose_chooses_the_mode() -> None:
+    """The home pose decides the assembly mode in which forward kinematics answers."""
     machine = machines()["nominal"]
     hanging = Machine(machine.base, machine.platform, (0, 0, -600, 0, 0, 0), 180.0)
     positions, turns = hanging.poses(200)

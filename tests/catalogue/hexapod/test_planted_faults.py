@@ -106,6 +106,7 @@ def _with_argument(name: str, value: float) -> Program:
     "program", [lambda: bounded(2), lambda: _with_argument("axis_l3", 700.0), lambda: _with_argument("start_r21", 0.7)]
 )
 def test_a_wrong_program_is_noticed(program: Callable[[], Program]) -> None:
+    """The test of all poses fails for each wrong program, and passes for the right one."""
     assert in_reach(search_changed(lambda s: s), machines()["lopsided"])
     assert not in_reach(program(), machines()["lopsided"])
 

@@ -25,6 +25,7 @@ CASES = {
 
 @pytest.mark.parametrize("pose", CASES)
 def test_the_lengths_that_linuxcnc_computes(pose: tuple[float, ...]) -> None:
+    """The leg lengths are those of LinuxCNC, and forward kinematics leads back."""
     robot, turn = machines()["inch"].robot, rotation(*pose[3:])
     axes = robot.inverse((pose[:3], turn))
     assert_allclose(axes, CASES[pose], atol=5e-12)
@@ -39,6 +40,7 @@ def test_the_lengths_that_linuxcnc_computes(pose: tuple[float, ...]) -> None:
 
 
 def test_the_catalogue_knows_it() -> None:
+    """The hexapod is in the catalogue, with three rotations and a square Jacobian."""
     assert softkin.catalogue()["Kin_Hexapod"] is Hexapod
     assert machines()["nominal"].robot.orientation_image().freedom == "three"
     assert np.shape(machines()["nominal"].robot.jacobian((650.0,) * 6)) == (6, 6)

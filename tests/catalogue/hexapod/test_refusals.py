@@ -17,6 +17,7 @@ EYE = np.eye(3)
 
 @pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf, 1.1e9, 1e300])
 def test_what_is_no_number(wrong: float) -> None:
+    """Axis values that are no numbers of reasonable size are refused, in Python and by the block."""
     robot, block = machines()["nominal"].robot, controller("nominal")
     for k in range(6):
         axes = tuple(np.where(np.arange(6) == k, wrong, 650.0))
@@ -32,6 +33,7 @@ def test_what_is_no_number(wrong: float) -> None:
 
 @pytest.mark.parametrize("turn", [EYE * 1.1, np.diag((1.0, 1.0, -1.0)), EYE + 1.1e-4, EYE * np.nan, EYE * 1e200])
 def test_what_is_no_rotation(turn: Array) -> None:
+    """A matrix that is no rotation is refused as a command and as a start."""
     robot = machines()["nominal"].robot
     for call in (
         lambda: robot.inverse(((0.0, 0.0, 600.0), turn)),
@@ -50,6 +52,7 @@ def test_what_is_no_rotation(turn: Array) -> None:
 
 
 def test_a_start_that_is_no_number_is_refused() -> None:
+    """A start that is no number of reasonable size is refused."""
     for wrong in (np.nan, np.inf, 1.1e9):
         with pytest.raises(KinematicsError) as refused:
             machines()["nominal"].robot.forward((650.0,) * 6, start=((wrong, 0.0, 600.0), EYE))
@@ -79,6 +82,7 @@ def refused_parameters() -> dict[str, dict[str, float]]:
 
 @pytest.mark.parametrize("case", refused_parameters())
 def test_machines_that_cannot_work(case: str) -> None:
+    """Dimensions of a machine that cannot work are refused."""
     given = refused_parameters()[case]
     with pytest.raises(KinematicsError) as refused:
         Hexapod(**given)
@@ -87,6 +91,7 @@ def test_machines_that_cannot_work(case: str) -> None:
 
 
 def test_limits_refuse_leg_by_leg(machine: Machine) -> None:
+    """Each limit of each leg refuses a pose beyond it."""
     pose = (machine.home[:3], machine.home_turn)
     legs = machine.axes(*pose)
     for i in range(6):
@@ -145,6 +150,7 @@ def test_each_joint_has_its_cone() -> None:
 
 
 def test_the_edge_of_a_cone_belongs_to_it() -> None:
+    """A joint exactly at the edge of its cone is allowed."""
     machine = machines()["asymmetric"]
     home = (machine.home[:3], machine.home_turn)
     narrow = Hexapod(**machine.given, max_angle_base_joint=0.0, max_angle_platform_joint=0.0)

@@ -15,6 +15,7 @@ from tests.text.hexapod.blocks import controller
 
 
 def test_the_legs_are_those_of_the_repaired_frame(machine: Machine) -> None:
+    """The leg lengths for a rotation with a small error are those for the repaired rotation."""
     positions, turns = machine.poses(2, 10.0)
     for position, turn in zip(positions, turns, strict=True):
         matrices = list(slightly_off(turn))
@@ -28,6 +29,7 @@ def test_the_legs_are_those_of_the_repaired_frame(machine: Machine) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_block_does_the_same(name: str) -> None:
+    """The block answers a rotation with a small error as Python does."""
     machine, block = machines()[name], controller(name)
     positions, turns = machine.poses(2, 10.0)
     for matrix in slightly_off(turns[0]):

@@ -17,6 +17,7 @@ ANYWHERE = [(0, 0, 20), (3, 2, 20), (-4, 5, 26), (7, -7, 15)]
 
 
 def test_the_jacobian_is_the_inverse_of_the_rows(machine: Machine) -> None:
+    """The Jacobian is the inverse of the matrix of leg lines."""
     assert machine.robot.JACOBIAN_ROWS == ("x", "y", "z", "turn x", "turn y", "turn z")
     for position, turn in zip(*machine.poses(20), strict=True):
         jacobian = np.array(machine.robot.jacobian(machine.robot.inverse((position, turn))))
@@ -24,6 +25,7 @@ def test_the_jacobian_is_the_inverse_of_the_rows(machine: Machine) -> None:
 
 
 def test_the_jacobian_is_the_derivative_of_forward_kinematics(machine: Machine) -> None:
+    """The Jacobian is the derivative of forward kinematics."""
     (position,), (turn,) = machine.poses(1)
     axes, step = np.array(machine.robot.inverse((position, turn))), 1e-5 * machine.shift
     jacobian = np.array(machine.robot.jacobian(axes))
@@ -37,6 +39,7 @@ def test_the_jacobian_is_the_derivative_of_forward_kinematics(machine: Machine) 
 
 
 def test_the_margin_is_the_normalised_determinant(machine: Machine) -> None:
+    """The margin is the normalised determinant of the leg lines."""
     for position, turn in zip(*machine.poses(20), strict=True):
         margins = machine.robot.singularity(machine.robot.inverse((position, turn))).margins
         assert list(margins) == ["rods_dependent"]
@@ -114,6 +117,7 @@ def turned(machine: Machine, yaw: float) -> Array:
 
 @pytest.mark.parametrize("least", [0.0, 1e-3, 0.3])
 def test_how_near_is_a_parameter(least: float) -> None:
+    """Poses are refused below the least margin that is given as a parameter."""
     machine = machines()["nominal"]
     robot, block = (
         Hexapod(**machine.given, min_type2_margin=least),
@@ -128,6 +132,7 @@ def test_how_near_is_a_parameter(least: float) -> None:
 
 
 def test_the_block_says_the_same(machine: Machine) -> None:
+    """The block calls the poses singular that Python calls singular."""
     block = controller(name_of(machine))
     for axes in machine.axes(*machine.poses(6, turn=45.0)):
         assert block.is_singular(axes) == machine.robot.singularity(axes).is_singular

@@ -162,7 +162,7 @@ FAULTS = {
         "test_margins.test_the_jacobian_is_that_of_the_closure_and_of_forward",
     ),
     "a ball joint that swings too far": Fault(
-        TRIPOD, "y + part) <= sin_max_angle_ball_joint", "y + part) <= 1.0",
+        TRIPOD, "y + shared_product) <= sin_max_angle_ball_joint", "y + shared_product) <= 1.0",
         "test_bounds.test_a_ball_joint_ends_sharply",
     ),
     "a turn too many": Fault(

@@ -122,6 +122,7 @@ def test_dimensions_that_form_no_machine(what: str) -> None:
 
 @pytest.mark.parametrize("what", POSSIBLE)
 def test_the_ends_of_what_is_possible(what: str) -> None:
+    """Dimensions at the limits of what is possible give a machine that answers."""
     name, given, changes = POSSIBLE[what]
     robot = softkin.catalogue()[name](**given | changes)
     assert robot.forward_batch(np.random.default_rng(1).uniform(-90.0, 90.0, (200, 3)))[3].min() == Status.OK

@@ -11,6 +11,7 @@ from tests.catalogue.loops.edges import EDGES, OTHER_WAY_ROUND, PLACES
 
 
 def test_every_loop_has_edges() -> None:
+    """Every mechanism with rods has machines at the limit of assembly."""
     assert set(EDGES) == {m.name for m in LOOPS}
 
 
@@ -33,6 +34,7 @@ def test_flat_rods_are_a_pose_that_nothing_controls(name: str) -> None:
 
 @pytest.mark.parametrize("name", EDGES)
 def test_where_nothing_can_be_assembled(name: str) -> None:
+    """Axis values that allow no assembly are singular, and every call refuses them."""
     for dimensions, axes in EDGES[name][1:]:
         robot = softkin.catalogue()[name](**dimensions)
         assert robot.singularity(axes).is_singular
@@ -44,6 +46,7 @@ def test_where_nothing_can_be_assembled(name: str) -> None:
 
 @pytest.mark.parametrize("name", PLACES)
 def test_a_leg_that_cannot_aim_refuses_in_every_slot(name: str) -> None:
+    """A leg that cannot reach refuses the position in every slot."""
     for dimensions, places in PLACES[name]:
         robot = softkin.catalogue()[name](**dimensions)
         for place in places:

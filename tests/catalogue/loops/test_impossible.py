@@ -58,6 +58,7 @@ EDGES = {
 
 @pytest.mark.parametrize("name", EDGES)
 def test_the_edge_of_what_can_be_assembled(name: str) -> None:
+    """Dimensions just inside the limit of assembly are accepted, and those just beyond are refused."""
     dimensions, message = EDGES[name]
     make = getattr(softkin, name)
     make(**dimensions(-1e-6))
@@ -67,6 +68,7 @@ def test_the_edge_of_what_can_be_assembled(name: str) -> None:
 
 
 def test_steep_rails_can_be_as_far_apart_as_they_like() -> None:
+    """Steep rails may have any distance from each other."""
     softkin.TripodLinear(
         outer_radius=4000.0, inner_radius=60.0, arm_length=400.0, rail_angle=30.0, max_angle_ball_joint=45.0
     )

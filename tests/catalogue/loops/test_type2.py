@@ -180,6 +180,7 @@ def test_forward_has_one_solution_a_side(machines: tuple[LoopMachine, ...]) -> N
 
 
 def test_forward_answers_where_the_loop_closes_and_nowhere_else(machines: tuple[LoopMachine, ...]) -> None:
+    """Forward kinematics answers exactly the axis values for which the loop closes."""
     for machine in machines:
         axes = machine.candidates(300, np.random.default_rng(8))
         expected = np.isfinite(machine.closure.poses(axes)[0]).all(axis=1)

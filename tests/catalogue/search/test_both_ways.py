@@ -14,6 +14,7 @@ from tests.catalogue.search.arms import IRB_2400, LATERALS, Array, all_roots, ar
 
 @pytest.mark.parametrize("lateral", (0.0, *LATERALS))
 def test_the_reported_configuration_leads_back(lateral: float) -> None:
+    """The inverse with the configuration of forward kinematics leads back to the frame."""
     robot, rng = arm(lateral), np.random.default_rng(1)
     axes = rng.uniform(-500, 500, (150, 6))
     positions, rotations, configurations, statuses = robot.forward_batch(axes)
@@ -29,6 +30,7 @@ def test_the_reported_configuration_leads_back(lateral: float) -> None:
 
 @pytest.mark.parametrize("lateral", (0.0, *LATERALS))
 def test_right_angles_with_the_reference_at_the_same_axes(lateral: float) -> None:
+    """Poses with all joints at right angles are solved with the reference at the same axes."""
     grid = np.array(list(product((-90.0, 0.0, 90.0, 180.0), repeat=6)))
     axes = grid if lateral == 0.0 else grid[np.random.default_rng(2).choice(len(grid), 300, replace=False)]
     robot = arm(lateral)
@@ -83,6 +85,7 @@ def test_the_solutions_of_a_slot_are_ranked_by_how_far_they_are() -> None:
 
 
 def test_a_slot_holds_a_solution_once_in_singular_poses_too() -> None:
+    """A slot lists each solution once, also at singular poses."""
     robot, solved = arm(60.0), 0
     for axes in np.random.default_rng(4).choice((-90.0, 0.0, 90.0, 180.0), (30, 6)):
         for slot in robot.inverse_all(posed(frame(axes, 60.0)), axes):
@@ -93,6 +96,7 @@ def test_a_slot_holds_a_solution_once_in_singular_poses_too() -> None:
 
 
 def test_a_solution_beyond_the_limits_gives_way_to_another_of_its_slot() -> None:
+    """Where the nearest solution of a slot is beyond limits, the slot gives another one."""
     here = np.array([-39.919, 90.278, 77.852, -212.045, 95.808, -183.919])
     robot = softkin.Ac6RZRYRYRXRYRZJ6Offset(**IRB_2400, j6_offset_x=-35.0, lower_a6=-120.0, upper_a6=120.0)
     wanted, configuration = frame(here, -35.0), robot.forward(here)[1][:4]
@@ -104,6 +108,7 @@ def test_a_solution_beyond_the_limits_gives_way_to_another_of_its_slot() -> None
 
 
 def test_every_slot_says_its_own_configuration() -> None:
+    """The axes of a slot have the configuration of the slot."""
     robot = arm(60.0)
     for axes in np.random.default_rng(5).uniform(-180, 180, (10, 6)):
         solutions = robot.inverse_all(posed(frame(axes, 60.0)), axes)
@@ -114,6 +119,7 @@ def test_every_slot_says_its_own_configuration() -> None:
 
 
 def test_without_the_offset_there_is_no_second_crossing() -> None:
+    """Without the offset only the first branch of the crossing has a solution, and the refusal says so."""
     robot, axes = arm(0.0), (10.0, 20.0, 30.0, 40.0, 50.0, 60.0)
     reached, configuration = robot.forward(axes)
     with pytest.raises(KinematicsError) as error:
@@ -141,6 +147,7 @@ def test_a_path_in_one_configuration_is_followed() -> None:
 
 
 def test_garbage_ends_in_a_status() -> None:
+    """A pose with garbage is refused with a status."""
     robot = arm(60.0)
     good = posed(frame(np.array([10.0, 20.0, 30.0, 40.0, 50.0, 60.0]), 60.0))
     for position in ((np.nan, 0, 0), (np.inf, 0, 0), (1e10, 0, 0)):
@@ -156,6 +163,7 @@ def test_garbage_ends_in_a_status() -> None:
 
 
 def test_batches_are_scalar_calls() -> None:
+    """A batch gives the axes and statuses of single calls."""
     robot = arm(-35.0)
     axes = np.random.default_rng(7).uniform(-180, 180, (12, 6))
     positions, rotations, configurations, _ = robot.forward_batch(axes)

@@ -35,6 +35,7 @@ def check_answers(case: Planted) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("lateral", OFFSETS)
 def test_planted_poses(kind: str, lateral: float) -> None:
+    """The scan finds every planted solution."""
     check_answers(planted(kind, lateral, 60, 11))
 
 
@@ -109,10 +110,12 @@ def test_a_folded_elbow_puts_the_wrist_on_the_first_axes(
 @pytest.mark.parametrize("kind", KINDS[1:])
 @pytest.mark.parametrize("lateral", OFFSETS)
 def test_a_hundred_thousand_planted_poses(kind: str, lateral: float) -> None:
+    """The scan finds the planted solutions of a hundred thousand poses."""
     check_answers(planted(kind, lateral, 3710, 12))
 
 
 def test_the_block_answers_two_thousand_planted_poses_as_python_does() -> None:
+    """The block finds the planted solutions of two thousand poses as Python does."""
     rng = np.random.default_rng(13)
     for kind, lateral in product(KINDS[1:], OFFSETS):
         case = planted(kind, lateral, 75, int(rng.integers(1e6)))
@@ -133,6 +136,7 @@ def test_the_block_answers_two_thousand_planted_poses_as_python_does() -> None:
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("lateral", (1e-3, 8.0, 60.0, -300.0))
 def test_plain_numbers_and_batches_agree(kind: str, lateral: float) -> None:
+    """Single calls and batches of a scan agree."""
     case = planted(kind, lateral, 12, 14)
     positions, rotations, configurations, _ = case.robot.forward_batch(case.axes)
     found, statuses = case.robot.inverse_batch(positions, rotations, configurations, case.references)
@@ -148,6 +152,7 @@ def test_plain_numbers_and_batches_agree(kind: str, lateral: float) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("lateral", (8.0, 60.0, -300.0))
 def test_nothing_is_missed_that_a_scan_finds(kind: str, lateral: float) -> None:
+    """All solutions that a fine scan of the closure finds are found."""
     case = planted(kind, lateral, 12, 15)
     seen = 0
     for axes in case.axes:
@@ -206,6 +211,7 @@ def is_regular(robot: softkin.Ac6RZRYRYRXRYRZJ6Offset, axes: Array) -> bool:
 
 
 def test_the_example_that_no_slot_answered() -> None:
+    """A pose that no slot answered in an earlier version is solved."""
     robot, axes = softkin.Ac6RZRYRYRXRYRZJ6Offset(**ARM, j6_offset_x=60.0), (180.0, 0.0, -90.0, 180.0, 0.0, 0.0)
     frame, configuration = robot.forward(axes)
     assert np.abs(np.subtract(robot.inverse(frame, configuration, axes), axes)).max() < 1e-9
@@ -215,6 +221,7 @@ def test_the_example_that_no_slot_answered() -> None:
 
 @pytest.mark.parametrize("distance", (1e-3, 1e-6, 1e-9, 1e-12, 0.0))
 def test_a_straight_wrist_is_regular(distance: float) -> None:
+    """A pose with a straight wrist, and poses close to it, are solved."""
     rng = np.random.default_rng(16)
     axes = rng.uniform(-180.0, 180.0, (80, 6))
     axes[:, 3] = rng.choice((0.0, 180.0), 80) + distance
@@ -248,6 +255,7 @@ def test_paths_through_a_straight_wrist_do_not_stop() -> None:
 @pytest.mark.parametrize("lateral", (60.0, -35.0))
 @pytest.mark.parametrize("lengths", (ARM, {**ARM, "a1": 0.0, "a3": 0.0}, {k: v / 1000 for k, v in ARM.items()}))
 def test_regular_poses_at_right_angles(lateral: float, lengths: dict[str, float]) -> None:
+    """Regular poses with all joints at right angles are solved, in any unit of length."""
     lateral = lateral / 1000 if lengths["d1"] < 1 else lateral
     robot, rng = softkin.Ac6RZRYRYRXRYRZJ6Offset(**lengths, j6_offset_x=lateral), np.random.default_rng(18)
     grid = np.array(list(product((-90.0, 0.0, 90.0, 180.0), repeat=6)))

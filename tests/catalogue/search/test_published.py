@@ -17,6 +17,7 @@ POSES = {
 
 @pytest.mark.parametrize("theirs", POSES)
 def test_the_maker_s_poses(theirs: tuple[float, ...]) -> None:
+    """Forward kinematics gives the poses of the manufacturer, and the inverse leads back."""
     robot, axes = arm(), np.add(theirs, (0, 0, 0, 0, 90, 0))
     reached, configuration = robot.forward(axes)
     assert np.abs(np.subtract(reached.position, POSES[theirs])).max() < 1e-8
@@ -39,6 +40,7 @@ def determinant(axes: np.ndarray, lateral: float) -> float:
 
 @pytest.mark.parametrize("lateral", (0.0, *LATERALS))
 def test_the_margin_is_the_published_determinant(lateral: float) -> None:
+    """The margin is proportional to the published determinant."""
     robot, rng = arm(lateral), np.random.default_rng(4)
     poses = rng.uniform(-180, 180, (40, 6))
     ours = np.array([robot.singularity(a).margins["determinant"] for a in poses])

@@ -18,6 +18,7 @@ AXES = np.array([20.0, -30.0, 40.0, 50.0, 60.0, -70.0])
 
 @pytest.mark.parametrize("lateral", (0.0, *LATERALS))
 def test_the_repaired_frame_is_reached(lateral: float) -> None:
+    """A rotation with a small error is answered with axes that reach the repaired frame."""
     robot, pose = arm(lateral), frame(AXES, lateral)
     position, turn = tuple(pose[:3, 3].tolist()), pose[:3, :3]
     configuration = robot.forward(AXES)[1]
@@ -39,6 +40,7 @@ def _reached(pose: Array, position: tuple[float, ...], matrix: Array) -> None:
 
 @pytest.mark.parametrize("lateral", (0.0, LATERALS[0]))
 def test_beyond_that_it_is_refused(lateral: float) -> None:
+    """A rotation with a larger error is refused, in Python and by the block."""
     robot, pose = arm(lateral), frame(AXES, lateral)
     position, turn = tuple(pose[:3, 3].tolist()), pose[:3, :3]
     block = _block(MECHANISM, lateral)

@@ -42,6 +42,7 @@ def test_the_rule() -> None:
 @BOTH
 @pytest.mark.parametrize("mechanism", THOROUGH, ids=named)
 def test_every_edge(mechanism: Mechanism, make: Make) -> None:
+    """At every edge of a range of an axis, the axis takes its value inside, in many ranges."""
     for axis in turning_axes(mechanism):
         for limits in ranges_of(axis, WIDTHS):
             for step in STEPS:
@@ -51,6 +52,7 @@ def test_every_edge(mechanism: Mechanism, make: Make) -> None:
 @BOTH
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=named)
 def test_edges(mechanism: Mechanism, make: Make) -> None:
+    """At edges of some ranges of an axis, the axis takes its value inside."""
     for axis in turning_axes(mechanism):
         for limits in ranges_of(axis, FEW_WIDTHS)[:: 3 - len(axis.base) // 4]:
             for step in FEW_STEPS:
@@ -60,6 +62,7 @@ def test_edges(mechanism: Mechanism, make: Make) -> None:
 @BOTH
 @pytest.mark.parametrize("mechanism", THOROUGH, ids=named)
 def test_references_anywhere(mechanism: Mechanism, make: Make) -> None:
+    """With references anywhere an axis takes the turn that its range and the reference decide, in many ranges."""
     for axis in turning_axes(mechanism):
         for limits in ranges_of(axis, WIDTHS):
             check_anywhere(axis, limits, make)
@@ -67,6 +70,7 @@ def test_references_anywhere(mechanism: Mechanism, make: Make) -> None:
 
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=named)
 def test_references_anywhere_in_short(mechanism: Mechanism) -> None:
+    """With references anywhere an axis takes the turn that its range and the reference decide."""
     for axis in turning_axes(mechanism):
         for limits in ranges_of(axis, FEW_WIDTHS)[:: 3 - len(axis.base) // 4]:
             check_anywhere(axis, limits, InPython)

@@ -37,7 +37,7 @@ class Image:
         return softkin.OrientationImage(self.freedom, self.zero, tuple(self.base_axis), tuple(self.flange_axis))
 
 
-class Carried(Controller):
+class OrientationController(Controller):
     """An orientation kinematics, called as a coupling calls it."""
 
     def space(self, image: Image) -> Any:
@@ -105,12 +105,12 @@ class Machine:
 
 
 @dataclass(frozen=True)
-class Twins:
-    """An orientation kinematics twice, and samples of it."""
+class OrientationPair:
+    """An orientation kinematics as a function block and in Python, and samples of it."""
 
     machine: Machine
     part: Part
-    controller: Carried
+    controller: OrientationController
     regular: tuple[Sample, ...]
 
     @property
@@ -130,21 +130,21 @@ class Twins:
 
 
 @cache
-def twins_of(mechanism: Mechanism, order: str = "rows") -> tuple[Twins, ...]:
+def orientation_pairs_of(mechanism: Mechanism, order: str = "rows") -> tuple[OrientationPair, ...]:
     """Every set of shifts, and one machine with limits."""
     limits = {f"{end}_{j.key}": size for j in mechanism.joints for end, size in (("lower", -100.0), ("upper", 100.0))}
     shifts = {p.name: p.nominal for p in mechanism.parameters}
     limited = part(mechanism, **shifts, **limits)
-    return tuple(_twins(one, order) for one in (*orientation_parts(mechanism), limited))
+    return tuple(_pair(one, order) for one in (*orientation_parts(mechanism), limited))
 
 
-def _twins(one: Part, order: str) -> Twins:
-    controller = Carried(compiled(one.mechanism, order), one.mechanism)
+def _pair(one: Part, order: str) -> OrientationPair:
+    controller = OrientationController(compiled(one.mechanism, order), one.mechanism)
     assert controller.initialise(one.robot.parameters) == OK
     rng = np.random.default_rng(29)
     unlimited = part(one.mechanism, **{p.name: one.robot.parameters[p.name] for p in one.mechanism.parameters})
     samples = tuple(_sample(one.robot, axes, rng) for axes in unlimited.draw(8, rng).tolist())
-    return Twins(Machine("", one.mechanism, {}, one.robot), one, controller, samples)
+    return OrientationPair(Machine("", one.mechanism, {}, one.robot), one, controller, samples)
 
 
 def _sample(robot: softkin.Mechanism, axes: list[float], rng: np.random.Generator) -> Sample:
@@ -157,4 +157,4 @@ def _sample(robot: softkin.Mechanism, axes: list[float], rng: np.random.Generato
     )
 
 
-__all__ = ["IDENTITY", "ORIENTATIONS", "Carried", "Image", "Twins", "twins_of"]
+__all__ = ["IDENTITY", "ORIENTATIONS", "OrientationController", "Image", "OrientationPair", "orientation_pairs_of"]

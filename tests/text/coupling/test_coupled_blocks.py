@@ -17,7 +17,7 @@ from derive.description.mechanism import Mechanism
 from tests.catalogue.coupling.parts import EVERYTHING, ORIENTATIONS, Part, orientation_parts, position_part
 from tests.text.closeness import asked
 from tests.text.controller import OK, Controller
-from tests.text.coupling.blocks import Carried, Image
+from tests.text.coupling.blocks import Image, OrientationController
 from tests.text.samples import tilted
 from tests.text.settings import together
 from tests.text.units import compiled
@@ -31,7 +31,7 @@ class Coupling:
 
     def __init__(self, first: Part, second: Part, order: str) -> None:
         self.first = Controller(compiled(first.mechanism, order), first.mechanism)
-        self.second = Carried(compiled(second.mechanism, order), second.mechanism)
+        self.second = OrientationController(compiled(second.mechanism, order), second.mechanism)
         assert self.first.initialise(first.robot.parameters) == OK
         assert self.second.initialise(second.robot.parameters) == OK
         status, (freedom, zero, base, flange) = self.first.image("GetOrientationImage")
@@ -68,6 +68,7 @@ class Coupling:
 @pytest.mark.parametrize("wrist", ORIENTATIONS, ids=lambda m: m.name)
 @pytest.mark.parametrize("carrier", CARRIERS)
 def test_blocks_combine_as_in_python(carrier: str, wrist: Mechanism, order: str) -> None:
+    """Two blocks that are combined as SoftMotion combines them answer as the coupled mechanism in Python."""
     first = position_part(EVERYTHING[carrier])
     for second in orientation_parts(wrist):
         coupling = Coupling(first, second, order)

@@ -8,7 +8,7 @@ from derive.description.mechanism import Mechanism
 from tests.text import test_axis_settings, test_configuration_blocks, test_initialise, values
 from tests.text.controller import NOT_INITIALIZED
 from tests.text.coupling import test_structured_text as tried
-from tests.text.coupling.blocks import ORIENTATIONS, Carried, twins_of
+from tests.text.coupling.blocks import ORIENTATIONS, OrientationController, orientation_pairs_of
 from tests.text.other_turns import check_other_turns
 from tests.text.reasons import provoke
 from tests.text.samples import Sample
@@ -21,13 +21,14 @@ SIZE_OF_NOTHING = "IF SIZEOF(configuration) < 1 THEN"
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_every_statement_runs(mechanism: Mechanism) -> None:
-    twins = twins_of(mechanism)
+    """The tests execute every statement of the block of an orientation kinematics."""
+    pairs = orientation_pairs_of(mechanism)
     libraries = [compiled(mechanism), compiled(mechanism, matrix_size=36)]
-    if len(twins[0].robot.CONFIGURATION) > 1:
+    if len(pairs[0].robot.CONFIGURATION) > 1:
         libraries.append(test_initialise.without_index_checks(mechanism))
     statements = Statements([file_of(mechanism)], libraries)
     with statements.watched():
-        for one in twins:
+        for one in pairs:
             for sample in one.regular[:2]:
                 for _, method in (m for m in tried.METHODS if m[0] is mechanism):
                     tried.COMPARISONS[method](one, sample)
@@ -37,17 +38,17 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
         tried.test_the_number_of_axes(mechanism)
         tried.test_a_tool_that_points_the_opposite_way(mechanism)
         tried.test_garbage_and_no_initialisation(mechanism)
-        assert Carried(libraries[1], mechanism).initialise(twins[0].robot.parameters) == NOT_INITIALIZED
-        if twins[0].robot.CONFIGURATION:
+        assert OrientationController(libraries[1], mechanism).initialise(pairs[0].robot.parameters) == NOT_INITIALIZED
+        if pairs[0].robot.CONFIGURATION:
             test_initialise.test_a_configuration_that_is_too_small_is_refused(mechanism)
-            test_configuration_blocks.test_what_is_set_is_read(twins[0])
+            test_configuration_blocks.test_what_is_set_is_read(pairs[0])
     lines = text_of(mechanism).split("\n")
     missing = {place.line for place in statements.left_out()} - _unreachable(lines)
     missing = {line for line in missing if not lines[line - 1].startswith("FUNCTION_BLOCK")}
     assert not missing, [f"{line}: {lines[line - 1].strip()}" for line in sorted(missing)]
 
 
-def _limits_and_garbage(one: tried.Twins) -> None:
+def _limits_and_garbage(one: tried.OrientationPair) -> None:
     """Axis values and parameters that are no numbers, limits that are not checked, and a flange that is no rotation."""
     axes = [float("nan")] * len(one.mechanism.joints)
     one.controller.forward(axes)
@@ -65,7 +66,7 @@ def _limits_and_garbage(one: tried.Twins) -> None:
         one.controller.end_point(other.rotation, tried.Image("zero"), data, [1e9] * len(sample.axes))
     for parameter in one.robot.PARAMETERS:
         for wrong in (float("nan"), 1e12, one.robot.parameters[parameter.name] + 0.5):
-            block = Carried(one.library, one.mechanism)
+            block = OrientationController(one.library, one.mechanism)
             changed = {parameter.name: 0.0 if parameter.kind in ("flag", "sign") else wrong}
             block.initialise({**one.robot.parameters, **changed})
             block.inverse((0.0, 0.0, 0.0), sample.rotation, data, sample.axes)
@@ -74,12 +75,12 @@ def _limits_and_garbage(one: tried.Twins) -> None:
     provoke(one, sample)
 
 
-def _refused_by_limits(one: tried.Twins, sample: Sample) -> None:
+def _refused_by_limits(one: tried.OrientationPair, sample: Sample) -> None:
     """Every axis below its lower limit, and above its upper one, on a branch that is named and on any."""
     closed = one.robot.forward(sample.axes)[1]
     for axis, value in zip(one.robot.AXES, sample.axes, strict=True):
         for low, high in ((value + 5.0, value + 50.0), (value - 50.0, value - 5.0)):
-            block = Carried(one.library, one.mechanism)
+            block = OrientationController(one.library, one.mechanism)
             limits = {f"lower_{axis.name.lower()}": low, f"upper_{axis.name.lower()}": high}
             robot = type(one.robot)(**{**one.robot.parameters, **limits})
             block.initialise(robot.parameters)
@@ -91,15 +92,15 @@ def _refused_by_limits(one: tried.Twins, sample: Sample) -> None:
 
 def _before_initialize(mechanism: Mechanism) -> None:
     """Every method of a block that is not initialised."""
-    twins = twins_of(mechanism)[0]
-    fresh = Carried(twins.library, mechanism)
-    sample = twins.regular[0]
-    data = twins.robot.DEFAULT_CONFIGURATION
+    pair = orientation_pairs_of(mechanism)[0]
+    fresh = OrientationController(pair.library, mechanism)
+    sample = pair.regular[0]
+    data = pair.robot.DEFAULT_CONFIGURATION
     assert fresh.forward(sample.axes)[0] == fresh.jacobian(sample.axes)[0] == NOT_INITIALIZED
     assert fresh.inverse((0.0, 0.0, 0.0), sample.rotation, data, sample.axes)[0] == NOT_INITIALIZED
     assert fresh.is_singular(sample.axes)
     assert fresh.diagnose((0.0, 0.0, 0.0), sample.rotation, data, sample.axes) == ("not initialized", 0.0)
-    properties = values.meaningless(twins.library, values.PROPERTIES_TYPE)
+    properties = values.meaningless(pair.library, values.PROPERTIES_TYPE)
     fresh.block.call("GetAxisProperties", props=properties, udiAxis=0)
     assert properties.limits.xUnlimited
 

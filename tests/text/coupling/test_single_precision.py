@@ -11,7 +11,7 @@ from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.coupling.parts import EVERYTHING, orientation_parts, position_part
 from tests.orthonormal import mirrored, repaired, slightly_off, too_far_off
 from tests.text.controller import BAD_INPUT, OK
-from tests.text.coupling.blocks import ORIENTATIONS, Image, twins_of
+from tests.text.coupling.blocks import ORIENTATIONS, Image, orientation_pairs_of
 from tests.text.coupling.test_coupled_blocks import Coupling
 from tests.text.samples import Rows, tilted
 
@@ -27,6 +27,7 @@ def rows(matrix: np.ndarray) -> Rows:
 
 @pytest.mark.parametrize(("carrier", "wrist"), PAIRS, ids=[f"{c}-{w.name}" for c, w in PAIRS])
 def test_a_coupling_answers_as_for_the_repaired_frame(carrier: str, wrist: Mechanism) -> None:
+    """A coupling answers a frame in single precision as it answers the repaired frame."""
     first = position_part(EVERYTHING[carrier])
     second = orientation_parts(wrist)[0]
     try:
@@ -63,7 +64,7 @@ def test_a_coupling_answers_as_for_the_repaired_frame(carrier: str, wrist: Mecha
 @pytest.mark.parametrize("wrist", ORIENTATIONS, ids=lambda m: m.name)
 def test_what_a_coupling_asks_is_repaired(wrist: Mechanism) -> None:
     """The end point, and the images, of a commanded rotation and of a flange: as of the repaired ones."""
-    one = twins_of(wrist)[0]
+    one = orientation_pairs_of(wrist)[0]
     turning = wrist.task.turning
     data, axes = one.robot.DEFAULT_CONFIGURATION, (0.0,) * len(wrist.joints)
     rng = np.random.default_rng(9)
@@ -96,7 +97,8 @@ def test_what_a_coupling_asks_is_repaired(wrist: Mechanism) -> None:
 
 @pytest.mark.parametrize("wrist", ORIENTATIONS, ids=lambda m: m.name)
 def test_what_is_no_rotation_is_refused(wrist: Mechanism) -> None:
-    one = twins_of(wrist)[0]
+    """A matrix that is no rotation is refused by every method that reads it."""
+    one = orientation_pairs_of(wrist)[0]
     data, axes = one.robot.DEFAULT_CONFIGURATION, (0.0,) * len(wrist.joints)
     rotation = np.array(tilted(np.random.default_rng(10)))
     reads = one.robot.READS_ROTATION

@@ -18,7 +18,7 @@ from tests.text.closeness import asked, assert_same, is_close
 from tests.text.comparisons import COMPARISONS as COMMON
 from tests.text.comparisons import initialize
 from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE
-from tests.text.coupling.blocks import IDENTITY, ORIENTATIONS, Image, Twins, twins_of
+from tests.text.coupling.blocks import IDENTITY, ORIENTATIONS, Image, OrientationPair, orientation_pairs_of
 from tests.text.samples import HALF_TURN, Rows, Sample, tilted
 from tests.text.units import compiled, public_methods
 
@@ -58,31 +58,31 @@ def _about(axis: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
 
 
-def compatible(twins: Twins, sample: Sample) -> None:
+def compatible(pair: OrientationPair, sample: Sample) -> None:
     """As in Python, and as the equations say of a flange of every kind."""
     rng = np.random.default_rng(31)
     for image, _ in images(rng):
-        expected = twins.robot.is_compatible(image.in_python())
-        assert twins.controller.is_compatible(image) is expected
-    if sample is twins.regular[0]:
+        expected = pair.robot.is_compatible(image.in_python())
+        assert pair.controller.is_compatible(image) is expected
+    if sample is pair.regular[0]:
         for freedom, carrier in CARRIERS.items():
-            assert twins.controller.is_compatible(Image(freedom)) is is_determined(
-                position_part(EVERYTHING[carrier]), twins.part
+            assert pair.controller.is_compatible(Image(freedom)) is is_determined(
+                position_part(EVERYTHING[carrier]), pair.part
             )
 
 
-def end_point(twins: Twins, sample: Sample) -> None:
+def end_point(pair: OrientationPair, sample: Sample) -> None:
     """Where the equations have the end point, with the flange as it is at axis values that give the
     commanded rotation.
     """
     rng = np.random.default_rng(37)
-    place, own = (m[0] for m in twins.part.closure.frames(twins.part.closure.joints(np.array([sample.axes]))))
-    configuration = twins.robot.forward(sample.axes)[1]
-    _, inside = asked(twins.robot.inverse, ((0.0, 0.0, 0.0), rows_of(own)), configuration, sample.axes)
+    place, own = (m[0] for m in pair.part.closure.frames(pair.part.closure.joints(np.array([sample.axes]))))
+    configuration = pair.robot.forward(sample.axes)[1]
+    _, inside = asked(pair.robot.inverse, ((0.0, 0.0, 0.0), rows_of(own)), configuration, sample.axes)
     for image, flange in images(rng):
         turned = flange()
-        status, found = twins.controller.end_point(rows_of(turned @ own), image, configuration, sample.axes)
-        if not twins.robot.is_compatible(image.in_python()):
+        status, found = pair.controller.end_point(rows_of(turned @ own), image, configuration, sample.axes)
+        if not pair.robot.is_compatible(image.in_python()):
             assert status == INVALID
         elif image.freedom == "zero" and inside is None:
             assert status == UNREACHABLE  # beyond the limits
@@ -90,33 +90,33 @@ def end_point(twins: Twins, sample: Sample) -> None:
             assert status == OK and np.abs(np.subtract(found, turned @ place)).max() < 1e-10
 
 
-def end_point_2(twins: Twins, sample: Sample) -> None:
+def end_point_2(pair: OrientationPair, sample: Sample) -> None:
     rng = np.random.default_rng(41)
     for image, _ in images(rng):
-        expected = twins.controller.end_point(sample.rotation, image, twins.robot.DEFAULT_CONFIGURATION, (0.0,) * 6)
-        assert_same(twins.controller.end_point_2(sample.rotation, image), expected, twins)
+        expected = pair.controller.end_point(sample.rotation, image, pair.robot.DEFAULT_CONFIGURATION, (0.0,) * 6)
+        assert_same(pair.controller.end_point_2(sample.rotation, image), expected, pair)
         assert expected[0] in (OK, INVALID, UNREACHABLE)
 
 
-def end_point_1(twins: Twins, sample: Sample) -> None:
+def end_point_1(pair: OrientationPair, sample: Sample) -> None:
     """As for a flange that stays parallel to the machine."""
-    status, axes = asked(twins.robot.inverse, ((0.0, 0.0, 0.0), sample.rotation))
-    expected = twins.robot.forward(axes)[0].position if status == OK else None
-    assert_same(twins.controller.end_point_1(sample.rotation), (status, expected), twins, sample)
+    status, axes = asked(pair.robot.inverse, ((0.0, 0.0, 0.0), sample.rotation))
+    expected = pair.robot.forward(axes)[0].position if status == OK else None
+    assert_same(pair.controller.end_point_1(sample.rotation), (status, expected), pair, sample)
 
 
-def total(twins: Twins, sample: Sample) -> None:
+def total(pair: OrientationPair, sample: Sample) -> None:
     """As in Python; and every orientation of both together is in it."""
     rng = np.random.default_rng(43)
-    own = twins.part.closure.frames(twins.part.closure.joints(np.array([sample.axes])))[1][0]
+    own = pair.part.closure.frames(pair.part.closure.joints(np.array([sample.axes])))[1][0]
     for image, flange in images(rng):
-        status, (freedom, zero, base, seen) = twins.controller.total(image)
+        status, (freedom, zero, base, seen) = pair.controller.total(image)
         assert status == OK
-        expected = twins.robot.image_on(image.in_python())
-        assert freedom == expected.freedom == _expected_freedom(twins.mechanism.task.turning, image)
-        assert_same(zero, expected.rotation, twins)
+        expected = pair.robot.image_on(image.in_python())
+        assert freedom == expected.freedom == _expected_freedom(pair.mechanism.task.turning, image)
+        assert_same(zero, expected.rotation, pair)
         if freedom != "three":
-            assert_same((base, seen), (expected.base_axis, expected.flange_axis), twins)
+            assert_same((base, seen), (expected.base_axis, expected.flange_axis), pair)
         together = flange() @ own
         if freedom == "one":
             assert np.abs(together @ seen - base).max() < 1e-12 and np.abs(np.array(zero) @ seen - base).max() < 1e-12
@@ -133,9 +133,9 @@ def _expected_freedom(turning: Turning, image: Image) -> str:
     return "three"
 
 
-def with_orientation(twins: Twins, sample: Sample) -> None:
+def with_orientation(pair: OrientationPair, sample: Sample) -> None:
     """What is left free once an orientation is programmed, in whose frame, and whether it is chosen here."""
-    turning = twins.mechanism.task.turning
+    turning = pair.mechanism.task.turning
     direction = tuple(row[2] for row in sample.rotation)
     z = (0.0, 0.0, 1.0)
     expected, how = {
@@ -144,17 +144,17 @@ def with_orientation(twins: Twins, sample: Sample) -> None:
         Turning.DIRECTION: (("one", sample.rotation, direction, z), ("MCS", False)),
         Turning.FULL: (("zero", sample.rotation, direction, z), ("MCS", True)),
     }[turning]
-    status, image, found = twins.controller.with_orientation(sample.rotation, Image("one"))
+    status, image, found = pair.controller.with_orientation(sample.rotation, Image("one"))
     assert status == OK and is_close(image, expected) and found == how
-    status = twins.controller.with_orientation(SKEWED, Image("one"))[0]
+    status = pair.controller.with_orientation(SKEWED, Image("one"))[0]
     assert status == (BAD_INPUT if turning in (Turning.DIRECTION, Turning.FULL) else OK)
 
 
-def initialised(twins: Twins, sample: Sample) -> None:
-    if twins.mechanism.joints:
-        initialize(twins, sample)
+def initialised(pair: OrientationPair, sample: Sample) -> None:
+    if pair.mechanism.joints:
+        initialize(pair, sample)
     else:
-        assert twins.controller.block.call("IsInitialized") and twins.controller.block.call("Initialize") == OK
+        assert pair.controller.block.call("IsInitialized") and pair.controller.block.call("Initialize") == OK
 
 
 COMPARISONS = COMMON | {
@@ -172,6 +172,7 @@ METHODS = [(mechanism, method) for mechanism in ORIENTATIONS for method in publi
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_every_method_is_here(mechanism: Mechanism) -> None:
+    """Every public method in the text of a block is compared."""
     methods = compiled(mechanism).objects[mechanism.block_name].methods
     assert public_methods(mechanism) == tuple(m.name for m in methods if m.access != "PRIVATE")
 
@@ -179,51 +180,55 @@ def test_every_method_is_here(mechanism: Mechanism) -> None:
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
 def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str, order: str) -> None:
-    for twins in twins_of(mechanism, order):
-        for sample in twins.regular:
-            COMPARISONS[method](twins, sample)
+    """A method of the block answers as the Python package does, in both storage orders."""
+    for pair in orientation_pairs_of(mechanism, order):
+        for sample in pair.regular:
+            COMPARISONS[method](pair, sample)
 
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_the_number_of_axes(mechanism: Mechanism) -> None:
-    assert twins_of(mechanism)[0].controller.block.get("NumAxes") == len(mechanism.joints)
+    """NumAxes is the number of joints of the mechanism."""
+    assert orientation_pairs_of(mechanism)[0].controller.block.get("NumAxes") == len(mechanism.joints)
 
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_the_position_of_a_frame_is_not_read(mechanism: Mechanism) -> None:
-    for twins in twins_of(mechanism):
-        sample = twins.regular[0]
-        (_, rotation), configuration = twins.robot.forward(sample.axes)
-        expected = twins.controller.inverse((0.0, 0.0, 0.0), rotation, configuration, sample.axes)
+    """The inverse of an orientation kinematics does not read the position of the frame."""
+    for pair in orientation_pairs_of(mechanism):
+        sample = pair.regular[0]
+        (_, rotation), configuration = pair.robot.forward(sample.axes)
+        expected = pair.controller.inverse((0.0, 0.0, 0.0), rotation, configuration, sample.axes)
         for position in ((math.nan, math.inf, 1e300), (1e9, -5.0, 3.0)):
-            assert twins.controller.inverse(position, rotation, configuration, sample.axes) == expected
-            assert asked(twins.robot.inverse, (position, rotation), configuration, sample.axes) == asked(
-                twins.robot.inverse, ((0.0, 0.0, 0.0), rotation), configuration, sample.axes
+            assert pair.controller.inverse(position, rotation, configuration, sample.axes) == expected
+            assert asked(pair.robot.inverse, (position, rotation), configuration, sample.axes) == asked(
+                pair.robot.inverse, ((0.0, 0.0, 0.0), rotation), configuration, sample.axes
             )
 
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_a_tool_that_points_the_opposite_way(mechanism: Mechanism) -> None:
-    twins = twins_of(mechanism)[0]
+    """A tool that points exactly the opposite way is refused where the twist about it is ignored."""
+    pair = orientation_pairs_of(mechanism)[0]
     refuses = mechanism.task.turning is Turning.ABOUT_Z
-    data = twins.robot.DEFAULT_CONFIGURATION
-    status, _ = twins.controller.end_point(HALF_TURN, Image("zero"), data, (0.0,) * 6)
+    data = pair.robot.DEFAULT_CONFIGURATION
+    status, _ = pair.controller.end_point(HALF_TURN, Image("zero"), data, (0.0,) * 6)
     assert status == (UNREACHABLE if refuses else OK)
 
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_garbage_and_no_initialisation(mechanism: Mechanism) -> None:
     """Any scalar of any argument: an answer without a fault, and where it is a refusal nothing is written."""
-    twins = twins_of(mechanism)[0]
+    pair = orientation_pairs_of(mechanism)[0]
     fresh = compiled(mechanism).new(mechanism.block_name)
     for method in (
         m for m in METHODS if m[0] is mechanism and m[1].startswith(("GetPosition", "GetOrientation", "IsComp"))
     ):
-        entry: Entry = twins.controller.block.routines[method[1].lower()]
+        entry: Entry = pair.controller.block.routines[method[1].lower()]
         for freedom in CARRIERS:
-            clean = _arguments(twins, entry, freedom)
-            twins.controller.block.call(method[1], **clean)
-            refusal = fresh.call(method[1], **_arguments(twins, entry, freedom))
+            clean = _arguments(pair, entry, freedom)
+            pair.controller.block.call(method[1], **clean)
+            refusal = fresh.call(method[1], **_arguments(pair, entry, freedom))
             assert refusal in (NOT_INITIALIZED, False)
             inputs = [p.name for p in entry.routine.parameters if p.constant or not p.is_reference]
             for name in inputs:
@@ -231,37 +236,37 @@ def test_garbage_and_no_initialisation(mechanism: Mechanism) -> None:
                     if not path or not isinstance(values.element(clean[name], path), float):
                         continue
                     for number in GARBAGE:
-                        _call_with(twins, method[1], entry, freedom, name, path, number)
+                        _call_with(pair, method[1], entry, freedom, name, path, number)
 
 
 def _call_with(
-    twins: Twins, method: str, entry: Entry, freedom: str, name: str, path: values.Path, number: float
+    pair: OrientationPair, method: str, entry: Entry, freedom: str, name: str, path: values.Path, number: float
 ) -> None:
-    given = _arguments(twins, entry, freedom)
+    given = _arguments(pair, entry, freedom)
     values.put(given[name], path, number)
     written = [k for k in given if hasattr(given[k], "_copy")]
     before = {k: values.plain(given[k]) for k in written}
-    status = twins.controller.block.call(method, **given)
+    status = pair.controller.block.call(method, **given)
     if status not in (OK, True, False):
         assert status in (BAD_INPUT, INVALID)
         after = {k: values.plain(given[k]) for k in written}
         assert str(after) == str(before)
 
 
-def _arguments(twins: Twins, entry: Entry, freedom: str) -> dict[str, object]:
-    library, sample = twins.library, twins.regular[0]
+def _arguments(pair: OrientationPair, entry: Entry, freedom: str) -> dict[str, object]:
+    library, sample = pair.library, pair.regular[0]
     known = {
         "mR": values.matrix(library, sample.rotation),
         "mR_flange": values.matrix(library, sample.rotation),
         "aRef": values.axes(library, sample.axes),
-        "cd": values.configuration(library, twins.robot.DEFAULT_CONFIGURATION),
-        "oriInfoBase": twins.controller.space(Image(freedom)),
+        "cd": values.configuration(library, pair.robot.DEFAULT_CONFIGURATION),
+        "oriInfoBase": pair.controller.space(Image(freedom)),
         "v": values.meaningless(library, values.VECTOR_TYPE),
         "csOriKin": "MCS",
         "bActive": False,
     }
     names = {p.name: p for p in entry.routine.parameters}
     if "oriInfo" in names:
-        made = twins.controller.space(Image(freedom))
+        made = pair.controller.space(Image(freedom))
         known["oriInfo"] = made if names["oriInfo"].constant else values.meaningless(library, values.IMAGE_TYPE)
     return {name: known[name] for name in names}

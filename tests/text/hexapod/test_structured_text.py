@@ -48,11 +48,13 @@ def compare_some(machine: Machine, block: Controller, count: int = 12) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_method_answers_as_python_does(name: str) -> None:
+    """Every method of the block gives the answers of the Python package."""
     compare_some(machines()[name], controller(name), 40)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_what_python_refuses(name: str) -> None:
+    """The block refuses the poses that the Python package refuses, and solves the others with equal axes."""
     machine, block = machines()[name], controller(name)
     positions, turns = machine.poses(30, turn=120.0)
     axes, status = machine.robot.inverse_batch(positions, turns)
@@ -72,6 +74,7 @@ def test_blocks_share_nothing() -> None:
 
 
 def test_it_says_what_the_flange_can_do() -> None:
+    """The orientation images of the block are those of a platform with three rotations."""
     block, turn = controller("nominal"), rotation(10.0, -20.0, 30.0)
     status, (freedom, *_) = block.image("GetFlangeOrientationImageTotal")
     assert (status, freedom) == (OK, "three")
@@ -81,6 +84,7 @@ def test_it_says_what_the_flange_can_do() -> None:
 
 
 def test_nothing_works_before_initialize() -> None:
+    """Before Initialize every method answers that the block is not initialised."""
     empty, axes = Controller(compiled(MECHANISM), MECHANISM), (650.0,) * 6
     assert empty.forward(axes) == empty.jacobian(axes) == (NOT_INITIALIZED, None)
     assert empty.inverse((0.0, 0.0, 600.0), np.eye(3), (), axes) == (NOT_INITIALIZED, None)
@@ -120,12 +124,14 @@ def ending_where_nothing_holds() -> Library:
 
 
 def test_without_control_there_is_no_jacobian() -> None:
+    """Where the legs do not control the platform there is no Jacobian, and the pose is singular."""
     block, axes = made(machines()["nominal"], ending_where_nothing_holds()), (650.0,) * 6
     assert block.jacobian(axes) == (IMPOSSIBLE, None)
     assert block.is_singular(axes)
 
 
 def test_every_statement_runs() -> None:
+    """The tests of this file execute every statement of the block."""
     small = compiled(MECHANISM, matrix_size=36)
     statements = Statements([file_of(MECHANISM)], [compiled(MECHANISM), small, ending_where_nothing_holds()])
     with statements.watched():

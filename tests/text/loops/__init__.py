@@ -1,1 +1,1 @@
-"""The emitted Structured Text of the closed loops, executed: every method against its Python twin."""
+"""The Structured Text of the closed loops, executed: every method answers as its Python counterpart does."""

@@ -31,6 +31,7 @@ def compare(loop: Loop, position: tuple[float, ...], sample: Sample, data: Bytes
 
 
 def test_all_branches_at_poses(loops: tuple[Loop, ...]) -> None:
+    """Every combination of branch bytes is answered as in Python, at regular poses."""
     for loop in loops:
         statuses = {
             compare(loop, loop.robot.forward(sample.axes)[0].position, sample, data)
@@ -66,6 +67,7 @@ def test_poses_that_may_be_out_of_reach(loops: tuple[Loop, ...]) -> None:
 
 
 def test_a_byte_without_a_meaning_is_refused(loops: tuple[Loop, ...]) -> None:
+    """A branch byte other than 0 to 3 is refused as bad input, as in Python."""
     for loop in loops:
         default = loop.robot.DEFAULT_CONFIGURATION
         for index, byte in product(range(loop.robot.BRANCHES), (4, 127, 128, 255)):

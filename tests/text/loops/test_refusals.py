@@ -16,6 +16,7 @@ from tests.text.units import compiled
 
 
 def test_limits_are_in_order(loops: tuple[Loop, ...]) -> None:
+    """Initialize refuses a lower limit that is not below the upper one."""
     for joint in loops[0].mechanism.joints:
         for lower, upper, expected in ((10.0, 10.0, NOT_INITIALIZED), (10.0, -10.0, NOT_INITIALIZED), (-5.0, 10.0, OK)):
             given = {**loops[0].robot.parameters, f"lower_{joint.key}": lower, f"upper_{joint.key}": upper}
@@ -31,6 +32,7 @@ def test_without_inputs_a_machine_is_refused(loops: tuple[Loop, ...]) -> None:
 
 @pytest.mark.parametrize("size", [36, 80])
 def test_a_matrix_of_another_size_is_refused(loops: tuple[Loop, ...], size: int) -> None:
+    """Initialize refuses a library whose matrix has another size."""
     controller = Controller(compiled(loops[0].mechanism, matrix_size=size), loops[0].mechanism)
     assert controller.initialise(loops[0].robot.parameters) == NOT_INITIALIZED
 
@@ -58,6 +60,7 @@ def test_every_limit_refuses_alone(loops: tuple[Loop, ...]) -> None:
 
 
 def test_a_configuration_that_is_too_small_is_refused(loops: tuple[Loop, ...]) -> None:
+    """Initialize refuses a library whose configuration has too few bytes."""
     if len(loops[0].robot.CONFIGURATION) > 1:
         controller = Controller(test_initialise.without_index_checks(loops[0].mechanism), loops[0].mechanism)
         assert controller.initialise(loops[0].robot.parameters) == NOT_INITIALIZED

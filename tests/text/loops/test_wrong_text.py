@@ -38,6 +38,7 @@ def spoiled(text: str, method: str) -> str:
 
 @pytest.mark.parametrize("method", PUBLIC)
 def test_a_wrong_statement_is_noticed(mechanism: Mechanism, method: str) -> None:
+    """The comparison with Python notices a changed statement in every method."""
     library = compiled_text(file_of(mechanism), spoiled(text_of(mechanism), method))
     with pytest.raises(AssertionError):
         compare(mechanism, library, PUBLIC[method], SAMPLES)
@@ -94,6 +95,7 @@ WRONG = {
 
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_formula_is_noticed(name: str) -> None:
+    """The comparison with Python notices a changed formula, and accepts the correct text."""
     named, change = WRONG[name]
     (mechanism,) = (m for m in LOOPS if m.name == named)
     library = compile_st(texts(change, mechanism))  # a text that is not there is no fault that is noticed

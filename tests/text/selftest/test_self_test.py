@@ -49,6 +49,7 @@ def run(library: Library, name: str) -> Any:
 
 
 def test_there_is_one_for_every_block() -> None:
+    """There is a self-test for every block, and one program that runs them all."""
     assert set(SELF_TESTS) == {f"{m.block_name}_SelfTest.st" for m in ALL} | {f"{PROGRAM}.st"}
 
 
@@ -114,6 +115,7 @@ FOUND = (
 
 @pytest.mark.parametrize("fault", FOUND)
 def test_a_mistake_in_a_formula_is_found(fault: str) -> None:
+    """The self-test fails for a block with a wrong formula, and names the first case that failed."""
     library = compile_st({**texts(WRONG[fault]), **self_test(MECHANISM)})
     test = run(library, f"{MECHANISM.block_name}_SelfTest")
     assert test.iFailed > 0

@@ -35,6 +35,7 @@ def with_parameter(name: str) -> Mechanism:
 
 
 def test_the_arm_itself_is_sound() -> None:
+    """The description that the other tests break is accepted."""
     assert build(validate(arm())).margins[0].name == "elbow"
 
 
@@ -113,6 +114,7 @@ REFUSED = {
 
 @pytest.mark.parametrize("kind", REFUSED)
 def test_refused(kind: str) -> None:
+    """A wrong description is refused with a message that names the fault."""
     mechanism, message = REFUSED[kind]
     with pytest.raises((DescriptionError, Unsolved), match=re.escape(message)):
         build(validate(mechanism))
@@ -136,17 +138,20 @@ UNSOLVED = {
 
 @pytest.mark.parametrize("kind", UNSOLVED)
 def test_unsolved(kind: str) -> None:
+    """A mechanism without a closed form is refused with the equations that are left."""
     mechanism, message = UNSOLVED[kind]
     with pytest.raises(Unsolved, match=re.escape(message)):
         build(mechanism)
 
 
 def test_what_the_offset_interface_spoils_can_be_built_without() -> None:
+    """A mechanism that only the offset interface leaves unsolved is built without this interface."""
     telescope = REFUSED["a telescope with a point beside it"][0]
     assert build(replace(telescope, offset_interface=False)).offset_branch is None
 
 
 def test_an_unknown_joint_is_named() -> None:
+    """A chain that reads an unknown joint is refused with the name of the joint."""
     with pytest.raises(
         DescriptionError, match="chain reads 'a3', which is not a joint or a parameter of this mechanism"
     ):
@@ -154,16 +159,19 @@ def test_an_unknown_joint_is_named() -> None:
 
 
 def test_a_joint_that_moves_nothing_is_named() -> None:
+    """A joint that does not occur in the closure is refused by name."""
     with pytest.raises(DescriptionError, match="joint 'A3' occurs nowhere in the closure"):
         validate(arm(joints=(A1, A2, A3)))
 
 
 def test_an_unknown_joint_in_an_indicator_is_named() -> None:
+    """An indicator that reads an unknown joint is refused with the name of the joint."""
     with pytest.raises(DescriptionError, match="branch 'elbow' reads 'a3', which is not a joint or a parameter"):
         validate(arm(branches=(branch("elbow", sin(A3), right=+1, left=-1),)))
 
 
 def test_a_branch_has_two_names_and_both_signs() -> None:
+    """A branch without two names, or without both signs, is refused."""
     for names in ({"right": 1}, {"right": 1, "left": 1}, {"right": 1, "left": -1, "up": 1}, {"right": 2, "left": -2}):
         with pytest.raises(DescriptionError, match="branch 'elbow' needs two names with the signs \\+1 and -1"):
             branch("elbow", sin(A2), **names)

@@ -39,6 +39,7 @@ def _texts(mechanism: Mechanism) -> list[ElementTree.Element]:
 
 
 def test_the_description_refers_to_a_shipped_picture(mechanism: Mechanism) -> None:
+    """The description of a block refers to a picture that is shipped, in a proper size."""
     (name,) = re.findall(r"^\.\. image:: @\((.+)\)$", _block(mechanism), re.MULTILINE)
     with Image.open(PICTURES / name) as image:
         assert image.format == "PNG"
@@ -47,6 +48,7 @@ def test_the_description_refers_to_a_shipped_picture(mechanism: Mechanism) -> No
 
 
 def test_axes_and_lengths_are_in_the_text(mechanism: Mechanism) -> None:
+    """The text of a picture names every axis and every length."""
     text = " ".join(element.text or "" for element in _texts(mechanism))
     declaration = _block(mechanism).split("END_VAR")[0]
     lengths = [name for name in _INPUT.findall(declaration) if not name.startswith(_SETTINGS)]
@@ -67,6 +69,7 @@ def _extent(element: ElementTree.Element) -> tuple[float, float, float, float]:
 
 
 def test_no_text_is_cut_off_or_covers_another(mechanism: Mechanism) -> None:
+    """Every text is inside the picture, and no two texts overlap."""
     root = ElementTree.parse(PICTURES / f"{mechanism.block_name}.svg").getroot()
     _, _, width, height = map(float, root.attrib["viewBox"].split())
     found = [(element.text, _extent(element)) for element in _texts(mechanism)]
@@ -79,12 +82,14 @@ def test_no_text_is_cut_off_or_covers_another(mechanism: Mechanism) -> None:
 
 
 def test_no_picture_without_a_block() -> None:
+    """Every picture belongs to a block, and all of them together are small."""
     blocks = {m.block_name for m in CATALOGUE.values()}
     assert {p.name for p in PICTURES.iterdir()} == {f"{b}.{ending}" for b in blocks for ending in ("png", "svg")}
     assert sum(p.stat().st_size for p in PICTURES.iterdir()) < 2_500_000
 
 
 def test_the_same_marks_give_the_same_bytes_without_a_date() -> None:
+    """Equal marks give equal files, which hold no date."""
     one = drawn("Kin_P2C_Type2")
     drawings = [page(one.drawing, "Title", {"inner_arm": "dInnerArm"}) for _ in range(2)]
     first, second = (pictures(p.marks, p.height) for p in drawings)
@@ -105,6 +110,7 @@ def test_the_same_marks_give_the_same_bytes_without_a_date() -> None:
     ],
 )
 def test_labels_are_spelled(label: str, text: str) -> None:
+    """A label shows parameters as inputs of the block."""
     import sympy as sp
 
     names = {"link_length_1": "dLinkLength1", "pitch_zc": "dPitchZC"}

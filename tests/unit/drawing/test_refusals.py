@@ -47,6 +47,7 @@ WRONG = {
 
 @pytest.mark.parametrize("case", WRONG)
 def test_refused(case: str) -> None:
+    """A mechanism that cannot be drawn is refused with a message that names the fault."""
     mechanism, message = WRONG[case]
     kinematics = build(validate(mechanism))
     with pytest.raises(DescriptionError, match=message):
@@ -54,6 +55,7 @@ def test_refused(case: str) -> None:
 
 
 def test_a_bar_of_something_unknown_is_refused_before() -> None:
+    """A bar that reads an unknown parameter is refused when the description is checked."""
     strange = CATALOGUE["Kin_PCC"].parameters[0]
     with pytest.raises(DescriptionError, match="bar '1' reads 'link_length_1', which is not a joint or a parameter"):
         validate(_scissor(rod("1", (A1, 0), (X, Y), strange)))

@@ -35,6 +35,7 @@ def loop(request: pytest.FixtureRequest) -> Drawn:
 
 
 def test_the_closure_holds_at_the_drawn_tool_frame(one: Drawn) -> None:
+    """The drawn pose satisfies the closure equations."""
     residual = one.closure.residual(one.joints, one.pose, one.parameters)
     scale = 1.0 + np.abs(one.pose).max() ** 2
     assert np.abs(residual).max() < 1e-5 * scale
@@ -68,6 +69,7 @@ def test_angles_are_as_wide_as_their_parameters(name: str, angles: set[str]) -> 
 
 
 def test_every_rod_is_drawn_with_its_length(one: Drawn) -> None:
+    """Every rod is drawn with the length that it has."""
     scene, mechanism = one.drawing.scene, one.mechanism
     bars = mechanism.bars or mechanism.rods
     rods = [s for s in scene.segments if s.body is Body.ROD]
@@ -81,6 +83,7 @@ def test_every_rod_is_drawn_with_its_length(one: Drawn) -> None:
 
 
 def test_the_bodies_of_a_chain_reach_from_the_base_to_the_tool(chain: Drawn) -> None:
+    """The bodies of a chain are connected from the base to the tool."""
     scene = chain.drawing.scene
     origin = (0.0, 0.0, 0.0)
     ends = [(origin, origin), *((s.start, s.end) for s in scene.segments)]
@@ -148,6 +151,7 @@ def test_arrows_of_a_loop_point_where_its_bars_go(loop: Drawn) -> None:
 
 
 def test_every_axis_is_drawn(one: Drawn) -> None:
+    """Every axis is drawn with its name."""
     scene = one.drawing.scene
     labels = {symbol for item in (*scene.turns, *scene.slides) for symbol in item.label.free_symbols}
     assert {axis_name(joint) for joint in one.mechanism.joints} <= labels
@@ -173,6 +177,7 @@ def _skeleton(scene: Scene) -> np.ndarray:
 
 
 def test_rails_that_begin_in_one_point_are_stacked() -> None:
+    """Rails that begin at one point are drawn one on the other."""
     scene = drawn("Kin_Polar_Z").drawing.scene
     (_, end), (start, _) = rails(scene).values()
     assert start == pytest.approx(end)
@@ -182,6 +187,7 @@ def test_rails_that_begin_in_one_point_are_stacked() -> None:
 
 @pytest.mark.parametrize("name", SLIDES)
 def test_the_arrow_of_a_slide_runs_along_it(name: str) -> None:
+    """The arrow of a linear axis is parallel to its rail."""
     drawing = drawn(name).drawing
     assert drawing.scene.slides
     ends = rails(drawing.scene)

@@ -28,6 +28,7 @@ def _text(seed: str) -> str:
 
 
 def test_the_text_does_not_depend_on_the_hash_seed() -> None:
+    """Generated text is the same for two hash seeds of Python."""
     first = _text("0")
     assert len(first) > 100_000 and "spanUpperX" in first
     assert _text("90210") == first

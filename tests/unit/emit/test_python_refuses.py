@@ -32,6 +32,7 @@ def raised(call: Callable[..., object], *arguments: object) -> KinematicsError |
 
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
 def test_the_error_has_the_diagnosis(mechanism: Mechanism) -> None:
+    """The error of a refused inverse has the diagnosis that `diagnose` returns."""
     robot = nominal(mechanism)
     rng = np.random.default_rng(7)
     size = sum(abs(p.nominal) for p in mechanism.parameters if p.unit == "u") + 100.0
@@ -54,6 +55,7 @@ def texts_in_the_inverse(robot: softkin.Mechanism) -> list[str]:
 
 
 def test_beyond_a_limit_it_says_which_turn_is_inside() -> None:
+    """The error of an axis beyond its limit names the turn that is inside, and the missing amount."""
     robot = softkin.Scara2Z(**LENGTHS, lower_a1=-10.0, upper_a1=400.0)
     frame, configuration = robot.forward((-30.0, 40.0, 0.0))
     error = raised(robot.inverse, frame, configuration)
@@ -64,6 +66,7 @@ def test_beyond_a_limit_it_says_which_turn_is_inside() -> None:
 
 
 def test_a_point_off_the_flange_is_refused_with_a_reason() -> None:
+    """The inverse of a point beside the flange refuses with a reason and an amount."""
     robot = softkin.Scara2Z(**LENGTHS)
     error = raised(robot.inverse_offset, (620.0, 0.0, 0.0), (100.0, 0.0, 0.0))
     assert error is not None and error.refusal is not None
@@ -80,6 +83,7 @@ def test_the_rods_of_a_scissor() -> None:
 
 
 def test_a_coupled_pair_names_the_part() -> None:
+    """The reason of a coupled pair names the part that refuses."""
     robot = softkin.Coupled(softkin.Scara2Z(**LENGTHS), softkin.CAxis(lower_c=-90.0, upper_c=90.0))
     far = (520.0, 0.0, 0.0), NO_TURN
     error = raised(robot.inverse, far)
@@ -89,6 +93,7 @@ def test_a_coupled_pair_names_the_part() -> None:
 
 
 def test_an_error_travels_whole() -> None:
+    """Pickling an error keeps its status, its message and its refusal."""
     error = raised(softkin.Scara2Z(**LENGTHS).inverse, ((600.0, 0.0, 0.0), NO_TURN))
     copy = pickle.loads(pickle.dumps(error))
     assert isinstance(error, softkin.KinematicsError)

@@ -53,6 +53,7 @@ def in_the_reference(matrices: Array) -> tuple[Array, list[str]]:
 @settings(max_examples=20)
 @given(seed=SEEDS)
 def test_an_exact_rotation_is_used_bit_for_bit(seed: int) -> None:
+    """The repair leaves a rotation that is exact to 1e-12 unchanged."""
     rotation = random_rotation(seed)
     matrices = np.array(
         [rotation, rotation + 1e-13, rotation[:, [1, 2, 0]], np.eye(3)[[1, 2, 0]], np.diag([-1.0, 1.0, -1.0])]
@@ -97,6 +98,7 @@ def test_any_error_in_between(seed: int, size: float) -> None:
 @settings(max_examples=20)
 @given(seed=SEEDS)
 def test_what_is_no_rotation_is_refused_and_the_reason_has_the_amount(seed: int) -> None:
+    """A matrix that is no rotation is refused with the reason and the amount of its error."""
     rotation = random_rotation(seed)
     texts = rotation_texts()
     wrong = [(m, None) for m in too_far_off(rotation)] + [(m, HANDED) for m in mirrored(rotation)]
@@ -119,6 +121,7 @@ def test_what_is_no_rotation_is_refused_and_the_reason_has_the_amount(seed: int)
 
 
 def test_the_reason_in_words() -> None:
+    """The message of a refused rotation holds the amount and the possible cause."""
     matrix = np.eye(3) * np.sqrt(1.0021)
     refused = made_rotation(rows(matrix))
     assert isinstance(refused, Diagnosis)
@@ -129,6 +132,7 @@ def test_the_reason_in_words() -> None:
 
 @given(seed=SEEDS, place=st.integers(0, 8), value=st.sampled_from(GARBAGE) | st.floats())
 def test_garbage_never_raises_and_harms_no_neighbour(seed: int, place: int, value: float) -> None:
+    """A matrix with garbage is refused without an exception, and the other rows of its batch are not affected."""
     rotation = random_rotation(seed)
     matrix = rotation.copy()
     matrix.flat[place] = value

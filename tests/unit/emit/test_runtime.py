@@ -40,6 +40,7 @@ PRIMITIVES: dict[str, tuple[type[sp.Function], tuple[st.SearchStrategy[float], .
 @pytest.mark.parametrize("name", PRIMITIVES)
 @given(data=st.data())
 def test_primitive_is_its_reference(name: str, data: st.DataObject) -> None:
+    """A primitive of the runtime has the value of the reference interpreter, on plain numbers and on arrays."""
     function, ranges = PRIMITIVES[name]
     arguments = [data.draw(r) for r in ranges]
     symbols = [real(f"argument_{i}") for i, _ in enumerate(arguments)]
@@ -53,6 +54,7 @@ def test_primitive_is_its_reference(name: str, data: st.DataObject) -> None:
 
 @given(y=SIZES, x=SIZES)
 def test_atan2_points_where_it_says(y: float, x: float) -> None:
+    """Sine and cosine of the angle point to (x, y)."""
     angle = _scalar.atan2(y, x)
     assert -math.pi <= angle <= math.pi  # -pi for an angle that rounds to it
     assert math.hypot(x, y) * math.cos(angle) == pytest.approx(x, abs=1e-6)
@@ -60,6 +62,7 @@ def test_atan2_points_where_it_says(y: float, x: float) -> None:
 
 
 def test_zeros_have_no_sign() -> None:
+    """A negative zero does not change the angle of a direction."""
     assert _scalar.atan2(-0.0, -1.0) == math.pi
     assert _scalar.atan2(0.0, -0.0) == 0.0
     assert list(_array.atan2(np.array([-0.0, 0.0]), np.array([-1.0, -0.0]))) == [math.pi, 0.0]
@@ -67,6 +70,7 @@ def test_zeros_have_no_sign() -> None:
 
 @given(value=DEGREES, centre=DEGREES)
 def test_nearest_period_is_the_same_direction_and_near(value: float, centre: float) -> None:
+    """The nearest period differs by whole turns, and is within half a turn of the centre."""
     found = _scalar.nearest_period(value, centre)
     turns = (found - value) / 360.0
     assert turns == pytest.approx(round(turns), abs=1e-9)
@@ -75,12 +79,14 @@ def test_nearest_period_is_the_same_direction_and_near(value: float, centre: flo
 
 @given(direction=st.floats(-180.0, 179.9), turn=st.integers(-100, 100), noise=st.floats(-1e-12, 1e-12))
 def test_an_edge_is_not_crossed_by_rounding(direction: float, turn: int, noise: float) -> None:
+    """A value on the edge of a turn stays on its side in spite of rounding."""
     centre = 360.0 * turn
     assert _scalar.nearest_period(direction + noise, centre) == pytest.approx(direction + centre, abs=1e-9)
 
 
 @given(angle=ANGLES, centre=ANGLES, half=st.floats(0.0, math.pi))
 def test_nearest_on_arc_stays_on_the_arc(angle: float, centre: float, half: float) -> None:
+    """The nearest angle on an arc is on the arc, and unchanged if it was there."""
     found = _scalar.nearest_on_arc(angle, centre, half)
     assert centre - half - 1e-9 <= found <= centre + half + 1e-9
     if abs(angle - centre) <= half:
@@ -89,16 +95,19 @@ def test_nearest_on_arc_stays_on_the_arc(angle: float, centre: float, half: floa
 
 @given(size=SIZES)
 def test_root_is_total(size: float) -> None:
+    """The root of a negative number is 0, and any other root is exact."""
     assert _scalar.root(size) == math.sqrt(max(0.0, size))
 
 
 def test_select_and_absolute() -> None:
+    """Choice and absolute value work row by row."""
     values = np.array([-1.0, 2.0])
     assert list(_array.select(values > 0.0, values, 7.0)) == [7.0, 2.0]
     assert list(_array.absolute(values)) == [1.0, 2.0]
 
 
 def test_a_row_keeps_its_first_failure_and_nan_is_one() -> None:
+    """The status of a row is that of its first condition that fails, and NaN fails every condition."""
     values = np.array([0.0, 1.0, 5.0, math.nan])
     status = _array.passed((values,))
     _array.require(status, values <= 2.0, Status.UNREACHABLE)
@@ -107,6 +116,7 @@ def test_a_row_keeps_its_first_failure_and_nan_is_one() -> None:
 
 
 def test_elsewhere_computes_in_the_other_rows_alone() -> None:
+    """`elsewhere` evaluates the other function only in rows where the condition fails."""
     values, asked = np.array([1.0, 2.0, 3.0]), []
 
     def other(given: np.ndarray, number: float) -> tuple[np.ndarray, float]:
@@ -121,6 +131,7 @@ def test_elsewhere_computes_in_the_other_rows_alone() -> None:
 
 
 def test_a_choice_that_all_rows_share_copies_nothing() -> None:
+    """A choice with one condition for all rows returns the chosen array itself."""
     values = np.array([1.0, 2.0])
     assert _array.select(values > 0.0, values, 7.0) is values
     assert _array.select(False, values, 7.0) == 7.0
@@ -140,6 +151,7 @@ def drawn(data: st.DataObject, name: str) -> np.ndarray | float:
 
 
 def test_statuses_are_there_for_all_that_is_given_together() -> None:
+    """The array of statuses has the common shape of the arguments."""
     column, sign, other = np.zeros(3), np.array([[1], [-1]]), np.array([[[1]], [[-1]]])
     assert _array.passed((column, 1.0, column)).shape == (3,)
     assert _array.passed((column, 1.0), (), (sign, 1)).shape == (2, 3)
@@ -161,6 +173,7 @@ def test_every_slot_of_a_row_keeps_its_first_failure(data: st.DataObject) -> Non
 
 
 def test_numbers_of_reasonable_size() -> None:
+    """NaN, infinite and too large numbers are not reasonable, row by row."""
     rows, slots = np.array([1e9, -1e9, 1.1e9, math.nan, -math.inf]), np.array([[0.0], [-2e9]])
     assert _array.reasonable(rows[:2], 5.0, np.zeros((2, 1))) is True
     assert np.asarray(_array.reasonable(rows, 5.0)).tolist() == [True, True, False, False, False]
@@ -190,6 +203,7 @@ def test_values_of_any_shapes_are_chosen_together(data: st.DataObject) -> None:
 
 @given(st.data())
 def test_systems_of_any_shapes_are_solved_together(data: st.DataObject) -> None:
+    """Systems of equations with entries of any shapes are solved in their common shape."""
     entries = [drawn(data, name) for name in ("m11", "m12", "m21", "m22", "right")]
     m11, m12, m21, m22, right = entries
     determinant, x, y = _array.solve(((m11, m12), (m21, m22)), ((right,), (1.0,)))
@@ -203,6 +217,7 @@ def test_systems_of_any_shapes_are_solved_together(data: st.DataObject) -> None:
 
 
 def test_slots_that_are_done_keep_their_state() -> None:
+    """Slots of an iteration that are done keep their state while others go on."""
     done, status = np.array([[True], [False]]), np.zeros((2, 3), np.uint8)
     assert not _array.settled(done, status)
     state = _array.advanced(done, (1.0, np.array([1.0, 2.0, 3.0])), (np.array([5.0, 6.0, 7.0]), 8.0))
@@ -213,6 +228,7 @@ def test_slots_that_are_done_keep_their_state() -> None:
 
 @given(value=DEGREES, centre=DEGREES)
 def test_turns_are_chosen_by_slot_and_row(value: float, centre: float) -> None:
+    """The nearest period is chosen for each slot and each row."""
     values, centres = np.array([[value], [value + 400.0]]), np.array([centre, centre - 800.0, 0.0])
     found = _array.nearest_period(values, centres)
     right = [[_scalar.nearest_period(v, c) for c in centres.tolist()] for v in values[:, 0].tolist()]

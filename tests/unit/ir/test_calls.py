@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 
 from derive.ir.interpret import run
-from derive.ir.passes import assemble, hoist
+from derive.ir.passes import hoist, normalise
 from derive.ir.primitives import (
     Root,
 )
@@ -35,15 +35,16 @@ A, B, C, K, Q, W, X, Y = map(real, ("a", "b", "c", "k", "q", "w", "x", "y"))
 def hypotenuse() -> Program:
     """x and y from a and b, with the machine's k; refuses what is negative."""
     body = (Require(sp.Ge(A, 0), Status.IMPOSSIBLE), Let(X, Root(A**2 + B**2)), Let(Y, X * K**2))
-    return assemble("hypotenuse", body, [Output("x", X), Output("y", Y)])
+    return normalise("hypotenuse", body, [Output("x", X), Output("y", Y)])
 
 
 def caller(name: str = "caller", given: sp.Expr = C, outputs: tuple[sp.Symbol, ...] = (X, Y)) -> Program:
     call = Call(hypotenuse(), ((A, given), (B, Q)), (X, Y))
-    return assemble(name, (call, Require(sp.Le(X, 5), Status.UNREACHABLE)), [Output(o.name, o) for o in outputs])
+    return normalise(name, (call, Require(sp.Le(X, 5), Status.UNREACHABLE)), [Output(o.name, o) for o in outputs])
 
 
 def test_it_binds_what_the_shared_program_answers() -> None:
+    """A call binds the outputs of the shared program, or passes on its status."""
     values = {"c": np.array([3.0, 6.0, -3.0, np.nan]), "q": np.array(4.0), "k": np.array(2.0)}
     outputs, status = run(caller(), values)
     assert list(status) == [Status.OK, Status.UNREACHABLE, Status.IMPOSSIBLE, Status.IMPOSSIBLE]
@@ -53,11 +54,12 @@ def test_it_binds_what_the_shared_program_answers() -> None:
 def test_the_names_inside_are_its_own() -> None:
     """The caller's `a` is not the argument `a`, and is not changed by the call."""
     call = Call(hypotenuse(), ((A, A + 1), (B, A)), (X,))
-    program = assemble("p", (call, Let(W, A * X)), [Output("w", W)])
+    program = normalise("p", (call, Let(W, A * X)), [Output("w", W)])
     assert run(program, {"a": np.array(3.0), "k": np.array(1.0)})[0]["w"] == 15.0
 
 
 def test_it_reads_arguments_and_constants() -> None:
+    """A call reads its arguments, and the constants of the shared program."""
     program = caller()
     (call, *_) = program.body
     assert isinstance(call, Call) and call.constants == (K,) and call.arguments == (C, Q)
@@ -65,22 +67,25 @@ def test_it_reads_arguments_and_constants() -> None:
 
 
 def test_only_what_is_read_is_bound() -> None:
+    """A call binds only the results that something reads, and stays for its status where nothing reads any."""
     for outputs, bound in (((Y,), (X, Y)), ((), (X,))):
         call = caller(outputs=outputs).body[0]
         assert binds(call) == bound  # the condition reads x
-    unread = assemble("p", (Call(hypotenuse(), ((A, C), (B, Q)), (X, Y)),), [Output("one", sp.Integer(1))])
+    unread = normalise("p", (Call(hypotenuse(), ((A, C), (B, Q)), (X, Y)),), [Output("one", sp.Integer(1))])
     assert binds(unread.body[0]) == ()
     assert run(unread, {n: np.array(-1.0) for n in ("c", "q", "k")})[1] == Status.IMPOSSIBLE  # it can still refuse
 
 
 def test_an_alias_is_folded_into_the_arguments() -> None:
+    """An argument that is a name for another name is replaced by that name."""
     call = Call(hypotenuse(), ((A, W), (B, Q)), (X, Y))
-    program = assemble("p", (Let(W, C), call), [Output("y", Y)])
+    program = normalise("p", (Let(W, C), call), [Output("y", Y)])
     assert [type(s) for s in program.body] == [Call]
     assert program.inputs == (C, K, Q)
 
 
 def test_constants_are_hoisted_out_of_the_shared_program_once() -> None:
+    """A constant of a shared program is hoisted once for all of its callers."""
     programs = [caller("first"), caller("second", given=2 * C)]
     found = shared(programs)
     assert [p.name for p in found] == ["hypotenuse"]
@@ -88,7 +93,7 @@ def test_constants_are_hoisted_out_of_the_shared_program_once() -> None:
         Let(W, K**2),
         *(replace(s, value=X * W) if isinstance(s, Let) and s.name == Y else s for s in found[0].body),
     )
-    inner = assemble("hypotenuse", body, found[0].outputs)
+    inner = normalise("hypotenuse", body, found[0].outputs)
     programs = [replace(p, body=(replace(p.body[0], program=inner), *p.body[1:])) for p in programs]
     lowered, hoisted = hoist((*shared(programs), *programs), ["k"])
     assert [let.name for let in hoisted] == [W]
@@ -103,12 +108,14 @@ def test_constants_are_hoisted_out_of_the_shared_program_once() -> None:
 
 
 def test_a_shared_program_comes_before_the_one_that_calls_it() -> None:
+    """Shared programs are listed before the programs that call them."""
     outer = caller("outer")
-    top = assemble("top", (Call(outer, ((C, C), (Q, Q)), (X,)),), [Output("x", X)])
+    top = normalise("top", (Call(outer, ((C, C), (Q, Q)), (X,)),), [Output("x", X)])
     assert [p.name for p in shared([top, outer])] == ["hypotenuse", "outer"]
 
 
 def test_the_verifier_refuses() -> None:
+    """A call with wrong names, arguments or results is refused."""
     good = caller().body[0]
     assert isinstance(good, Call)
     for broken, inputs, word in (

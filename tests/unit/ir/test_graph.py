@@ -22,6 +22,7 @@ def leaf(graph: Graph, head: sp.Basic) -> Value:
 
 
 def test_a_sum_is_the_same_in_any_order_and_its_opposite_is_the_same_node(graph: Graph) -> None:
+    """Sums in any order are one node, and the opposite sum is the same node with a sign."""
     x, y = leaf(graph, X), leaf(graph, Y)
     difference = graph.sum([x, -y])
     assert graph.sum([-y, x]) == difference
@@ -29,6 +30,7 @@ def test_a_sum_is_the_same_in_any_order_and_its_opposite_is_the_same_node(graph:
 
 
 def test_signs_of_factors_and_divisors_stand_beside_the_product(graph: Graph) -> None:
+    """The signs of factors and divisors are collected in one sign beside the product."""
     x, y, z = (leaf(graph, s) for s in (X, Y, Z))
     quotient = graph.product([x, y], [z])
     assert graph.product([-y, x], [z]) == -quotient
@@ -36,6 +38,7 @@ def test_signs_of_factors_and_divisors_stand_beside_the_product(graph: Graph) ->
 
 
 def test_equal_terms_are_counted_and_opposite_ones_cancel(graph: Graph) -> None:
+    """Equal terms become a multiple, and opposite terms cancel."""
     x, y = leaf(graph, X), leaf(graph, Y)
     assert graph.sum([x, y, -x]) == y
     assert graph.sum([x, -x]) == graph.leaf(sp.Integer(0))
@@ -43,6 +46,7 @@ def test_equal_terms_are_counted_and_opposite_ones_cancel(graph: Graph) -> None:
 
 
 def test_numbers_are_put_together(graph: Graph) -> None:
+    """Numbers in sums and products are combined."""
     x, two, three = leaf(graph, X), graph.leaf(sp.Integer(2)), graph.leaf(sp.Integer(-3))
     assert graph.sum([two, x, three]) == graph.sum([x, graph.leaf(sp.Integer(-1))])
     assert graph.product([two, x, three]) == -graph.product([graph.leaf(sp.Integer(6)), x])
@@ -50,6 +54,7 @@ def test_numbers_are_put_together(graph: Graph) -> None:
 
 
 def test_a_cosine_does_not_know_the_sign_of_its_angle(graph: Graph) -> None:
+    """Cosines of opposite angles are one node, and sines differ by a sign."""
     x = leaf(graph, X)
     assert graph.apply(sp.cos, [-x]) == graph.apply(sp.cos, [x])
     assert graph.apply(sp.sin, [-x]) == -graph.apply(sp.sin, [x])
@@ -57,6 +62,7 @@ def test_a_cosine_does_not_know_the_sign_of_its_angle(graph: Graph) -> None:
 
 
 def test_a_choice_that_is_decided_is_none(graph: Graph) -> None:
+    """A choice with a decided condition or equal sides is the chosen value."""
     x, y = leaf(graph, X), leaf(graph, Y)
     condition = graph.apply(sp.Gt, [x, y])
     assert graph.apply(Select, [graph.leaf(sp.true), x, y]) == x
@@ -66,6 +72,7 @@ def test_a_choice_that_is_decided_is_none(graph: Graph) -> None:
 
 
 def test_a_part_of_a_condition_that_is_decided_is_not_asked(graph: Graph) -> None:
+    """Decided and repeated parts of a condition are dropped."""
     condition = graph.apply(sp.Gt, [leaf(graph, X), leaf(graph, Y)])
     true, false = graph.leaf(sp.true), graph.leaf(sp.false)
     assert graph.apply(sp.And, [condition, true, condition]) == condition
@@ -74,6 +81,7 @@ def test_a_part_of_a_condition_that_is_decided_is_not_asked(graph: Graph) -> Non
 
 
 def test_what_is_made_of_whole_numbers_is_whole_until_it_is_converted(graph: Graph) -> None:
+    """Expressions of whole numbers are whole until they are converted to a real number."""
     turn = leaf(graph, count("turn"))
     degrees = graph.product([graph.leaf(sp.Integer(360)), turn])
     assert is_whole(degrees.node)

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from softkin import _array, _scalar
 
 from derive.ir.interpret import run, solve
-from derive.ir.passes import assemble, hoist
+from derive.ir.passes import hoist, normalise
 from derive.ir.program import (
     Iterate,
     Let,
@@ -41,10 +41,11 @@ def square_root(limit: int = 20) -> Program:
         limit=limit,
         otherwise=Status.IMPOSSIBLE,
     )
-    return assemble("heron", (loop,), [Output("x", X), Output("step", STEP)])
+    return normalise("heron", (loop,), [Output("x", X), Output("step", STEP)])
 
 
 def test_every_row_iterates_until_it_is_done() -> None:
+    """Every row iterates until it converges, or is refused after the most passes."""
     values = np.array([1.0, 2.0, 1e15, -1.0, np.nan])
     outputs, status = run(square_root(), {"a": values})
     assert list(status) == [Status.OK] * 2 + [Status.IMPOSSIBLE] * 3  # 1e15 is too far away
@@ -52,6 +53,7 @@ def test_every_row_iterates_until_it_is_done() -> None:
 
 
 def test_a_row_gets_the_same_answer_in_any_company() -> None:
+    """The result of a row does not depend on the other rows."""
     values = np.array([1.0, 2.0, 50.0, -1.0])
     together, _ = run(square_root(), {"a": values})
     for i, value in enumerate(values):
@@ -60,6 +62,7 @@ def test_a_row_gets_the_same_answer_in_any_company() -> None:
 
 
 def test_a_status_that_was_there_first_stays() -> None:
+    """A row that was refused before the iteration keeps its status."""
     program = square_root()
     guarded = verify(replace(program, body=(Require(sp.Gt(A, 0), Status.BAD_INPUT), *program.body)))
     _, status = run(guarded, {"a": np.array([-1.0, 4.0])})
@@ -67,6 +70,7 @@ def test_a_status_that_was_there_first_stays() -> None:
 
 
 def test_the_limit_counts_passes() -> None:
+    """The limit of an iteration is the number of its passes."""
     assert run(square_root(1), {"a": np.array(1.0)})[1] == Status.OK
     assert run(square_root(1), {"a": np.array(2.0)})[1] == Status.IMPOSSIBLE
 
@@ -76,13 +80,14 @@ def test_passes_see_into_a_loop() -> None:
     loop = square_root().body[0]
     assert isinstance(loop, Iterate)
     alias = replace(loop, step=(Let(Y, B), Let(STEP, (A - Y * X**2) / (2 * X))))
-    program = assemble("p", (Let(B, A**2), alias), [Output("x", X)])
+    program = normalise("p", (Let(B, A**2), alias), [Output("x", X)])
     assert [type(s) for s in program.body] == [Let, Iterate]
     (lowered,), hoisted = hoist([program], ["a"])
     assert [h.name for h in hoisted] == [B] and [type(s) for s in lowered.body] == [Iterate]
 
 
 def test_the_verifier_refuses() -> None:
+    """An iteration with wrong names, counts or equations is refused."""
     (loop,) = square_root().body
     assert isinstance(loop, Iterate)
     two = replace(loop, state=(X, Y), start=(A, A), following=(X + STEP, X))
@@ -107,6 +112,7 @@ def systems(size: int, columns: int, count: int) -> tuple[np.ndarray, np.ndarray
 
 @pytest.mark.parametrize(("size", "columns"), [(1, 1), (2, 3), (3, 0), (6, 1), (6, 6)])
 def test_systems_in_every_language(size: int, columns: int) -> None:
+    """Linear systems have the determinant and the solution of NumPy, and zeros where they are singular."""
     matrix, right = systems(size, columns, 42)
     determinant, solution = solve(matrix, right)
     singular = np.arange(42) % 7 == 0 if size > 1 else np.abs(matrix[0, 0]) == 0

@@ -41,17 +41,20 @@ def value(expression: sp.Basic, **numbers: float) -> float:
 
 @pytest.mark.parametrize("x, root", [(4.0, 2.0), (0.0, 0.0), (-1e-300, 0.0), (-9.0, 0.0), (1e18, 1e9)])
 def test_root(x: float, root: float) -> None:
+    """The root of a negative number is 0."""
     assert value(Root(X), x=x) == root
 
 
 @pytest.mark.parametrize("y", [-1.0, -0.0, 0.0, 2.0])
 @pytest.mark.parametrize("x", [-3.0, -0.0, 0.0, 1.0])
 def test_atan2_is_exact_in_all_quadrants_and_knows_no_negative_zero(y: float, x: float) -> None:
+    """`Atan2` is exact in all quadrants, and ignores the sign of a zero."""
     assert value(Atan2(Y, X), y=y, x=x) == atan2(y + 0.0, x + 0.0)
     assert -pi < value(Atan2(Y, X), y=y, x=x) <= pi
 
 
 def test_select_evaluates_both_and_takes_one() -> None:
+    """A choice takes the side of its condition, whatever the other side is."""
     choice = Select(sp.Gt(X, 0), 1 / X, Y)
     with np.errstate(divide="ignore"):
         assert value(choice, x=2.0, y=7.0) == 0.5
@@ -60,6 +63,7 @@ def test_select_evaluates_both_and_takes_one() -> None:
 
 
 def test_arithmetic_and_logic() -> None:
+    """Arithmetic, comparisons and logic have their usual values, row by row."""
     assert value(X**-2 * 3 + sp.Rational(1, 4) - sp.Abs(Y), x=2.0, y=-5.0) == -4.0
     assert value(sp.cos(X * DEGREE) + sp.sin(Y * DEGREE), x=60.0, y=30.0) == pytest.approx(1.0)
     both, either = sp.And(sp.Ge(X, 1), sp.Lt(X, 2)), sp.Or(sp.Gt(X, 5), sp.Le(X, 0))
@@ -74,6 +78,7 @@ TURNS = st.floats(-1e5, 1e5)
 
 @given(angle=TURNS, centre=TURNS)
 def test_nearest_period(angle: float, centre: float) -> None:
+    """The nearest period differs by whole turns, and is within half a turn of the centre."""
     found = float(nearest_period(np.asarray(angle), np.asarray(centre)))
     turns = (found - angle) / 360
     assert abs(turns - round(turns)) <= 1e-11
@@ -111,6 +116,7 @@ def test_the_commanded_period_brings_an_axis_back(axis: float) -> None:
 
 @pytest.mark.parametrize("edge", [-900.0, -540.0, -180.0, 180.0, 540.0, 900.0])
 def test_the_period_of_an_edge_is_stable(edge: float) -> None:
+    """Values within rounding of an edge belong to the same turn."""
     for axis in (edge, nextafter(edge, -INFINITY), nextafter(edge, INFINITY), edge - 4e-10, edge + 4e-10):
         turns = int(np.floor((axis + 180 + 1e-9) / 360))
         assert turns == (edge + 180) / 360
@@ -125,6 +131,7 @@ HALVES = st.one_of(st.floats(0.0, pi), st.sampled_from([0.0, pi / 2, pi]))
 
 @given(angle=st.floats(-50, 50), centre=st.floats(-50, 50), half=HALVES)
 def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
+    """The nearest angle of an arc is on the arc, and no other angle of the arc is nearer."""
     found = float(nearest_on_arc(*(np.asarray(v) for v in (angle, centre, half))))
     assert abs(found - centre) <= half + 1e-13
     off = distance(angle, centre)
@@ -132,11 +139,13 @@ def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
 
 
 def test_an_angle_on_the_arc_is_itself_up_to_turns() -> None:
+    """An angle on the arc is unchanged except for whole turns."""
     found = nearest_on_arc(np.asarray([0.3, 0.3 + 4 * pi, -1.2, 2.0, -2.0]), np.asarray(0.0), np.asarray(pi / 2))
     assert found == pytest.approx([0.3, 0.3, -1.2, pi / 2, -pi / 2], abs=1e-14)
 
 
 def test_the_first_failing_condition_gives_the_status() -> None:
+    """The status of a row is that of the first condition that fails."""
     program = Program(
         "p",
         (X,),
@@ -160,11 +169,13 @@ def test_the_first_failing_condition_gives_the_status() -> None:
     ids=str,
 )
 def test_garbage_fails_positive_conditions(garbage: float, condition: sp.Basic) -> None:
+    """NaN and infinite numbers fail every condition that is written positively."""
     _, status = run(Program("p", (X,), (Require(condition, Status.BAD_INPUT),), ()), {"x": np.asarray(garbage)})
     assert status.item() is Status.BAD_INPUT
 
 
 def test_scalars_and_arrays_go_together() -> None:
+    """Inputs may be plain numbers and arrays, and the outputs have their common shape."""
     program = Program("p", (X, Y), (Let(Z, X * 2),), (Output("sum", Z + Y), Output("one", sp.Integer(1))))
     outputs, status = run(program, {"x": np.asarray(3.0), "y": np.arange(4.0)})
     assert list(outputs["sum"]) == [6.0, 7.0, 8.0, 9.0]
@@ -172,6 +183,7 @@ def test_scalars_and_arrays_go_together() -> None:
 
 
 def test_a_program_without_inputs() -> None:
+    """A program without inputs gives its constant outputs and the status OK."""
     outputs, status = run(Program("p", (), (), (Output("one", sp.Integer(1)),)), {})
     assert outputs["one"] == 1.0
     assert status.item() is Status.OK

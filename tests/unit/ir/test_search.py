@@ -67,6 +67,7 @@ def roots_of(found: list[tuple[float, float, float]], value: Callable[[Array], A
 def test_simple_roots(
     search: Callable[[Trial, float], list[tuple[float, float, float]]], count: int, start: float
 ) -> None:
+    """The scan finds all simple roots, from any start."""
     found = search(free_of_guard(lambda t: np.sin(count * t + 0.3), lambda t: count * np.cos(count * t + 0.3)), start)
     assert len(roots_of(found, lambda t: np.sin(count * t + 0.3))) == 2 * count
 
@@ -89,6 +90,8 @@ def test_two_roots_close_to_each_other(
 def test_three_roots_close_to_each_other(
     search: Callable[[Trial, float], list[tuple[float, float, float]]], apart: float
 ) -> None:
+    """The scan finds three roots that are close to each other."""
+
     def value(t: Array) -> Array:
         return np.sin(t) * (np.cos(apart) - np.cos(t))
 
@@ -102,6 +105,7 @@ def test_three_roots_close_to_each_other(
 
 @BOTH
 def test_a_root_that_is_touched(search: Callable[[Trial, float], list[tuple[float, float, float]]]) -> None:
+    """The scan finds a root at which the value does not change its sign."""
     for start in (0.0, 0.3, 2.0):
         found = search(free_of_guard(lambda t: 1 - np.cos(t), np.sin), start)
         assert found
@@ -110,11 +114,13 @@ def test_a_root_that_is_touched(search: Callable[[Trial, float], list[tuple[floa
 
 @BOTH
 def test_no_root(search: Callable[[Trial, float], list[tuple[float, float, float]]]) -> None:
+    """The scan finds no root where there is none."""
     assert search(free_of_guard(lambda t: 2 + np.sin(t), np.cos), 0.0) == []
 
 
 @BOTH
 def test_not_a_number_ends(search: Callable[[Trial, float], list[tuple[float, float, float]]]) -> None:
+    """The scan ends for a value or a start that is NaN."""
     search(free_of_guard(lambda t: t * np.nan, lambda t: t * np.nan), 0.0)
     search(free_of_guard(np.sin, np.cos), np.nan)
 

@@ -11,7 +11,7 @@ import sympy as sp
 from derive.emit.python.printer import ScalarPrinter
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
 from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Solve, Statement, Status
 from derive.ir.symbols import Flag, called, count, flag, real
@@ -33,6 +33,7 @@ A, B, N, M, X, Y = flag("a"), flag("b"), count("n"), count("m"), real("x"), real
     ],
 )  # fmt: skip
 def test_every_expression_has_a_type(value: sp.Basic, expected: Type) -> None:
+    """Every expression has the expected type."""
     assert type_of(value) is expected
 
 
@@ -46,6 +47,7 @@ def test_every_expression_has_a_type(value: sp.Basic, expected: Type) -> None:
     ],
 )  # fmt: skip
 def test_mixtures_are_refused(value: sp.Basic) -> None:
+    """An expression that mixes types is refused."""
     with pytest.raises(IllTypedError):
         type_of(value)
 
@@ -76,6 +78,7 @@ NAMES = (flag("is_far"), real("twice"), count("next"))
     ],
 )  # fmt: skip
 def test_values_of_the_type_of_their_names_pass(statement: Statement) -> None:
+    """A statement whose value has the type of its name is accepted."""
     verify(_program(statement))
 
 
@@ -93,20 +96,23 @@ def test_values_of_the_type_of_their_names_pass(statement: Statement) -> None:
     ],
 )  # fmt: skip
 def test_values_of_another_type_are_refused(statement: Statement) -> None:
+    """A statement whose value has another type than its name is refused."""
     with pytest.raises(BrokenProgram):
         verify(_program(statement))
 
 
 def test_a_name_that_is_read_as_another_type_is_refused() -> None:
+    """A name that is read as another type than it was bound is refused."""
     with pytest.raises(BrokenProgram, match="another type"):
         verify(_program(Let(flag("f"), X > 0), Let(real("v"), real("f") + 1)))
     with pytest.raises(BrokenProgram, match="mixes types"):
         verify(_program(outputs=(Output("o", N * X),)))
 
 
-def test_assembling_keeps_types_and_drops_what_else_is_known() -> None:
+def test_normalising_keeps_types_and_drops_what_else_is_known() -> None:
+    """The normal form of a program keeps the types of names, and drops all other assumptions."""
     length = sp.Symbol("length", positive=True)
-    program = assemble(
+    program = normalise(
         "p", [Let(A, length > 1), Let(X, Select(A, ToReal(N), length))], [Output("o", X), Output("n", N)]
     )
     assert [type(s) for s in program.bound()] == [Flag, sp.Symbol]
@@ -115,6 +121,7 @@ def test_assembling_keeps_types_and_drops_what_else_is_known() -> None:
 
 
 def test_programs_run_in_their_types() -> None:
+    """Outputs have the type of their expression: bool, int or float."""
     outputs = [Output("f", A), Output("k", N + 1), Output("v", Select(A, ToReal(N) / 2, X))]
     values, _ = run(
         _program(outputs=tuple(outputs)), {"a": [0, 1], "b": 0, "n": [3.0, 4.0], "m": 0, "x": 0.25, "y": 0.0}
@@ -142,6 +149,7 @@ ANGLES = {Q: Type.ANGLE, R: Type.ANGLE, real("h"): Type.HEADING}
     ],
 )  # fmt: skip
 def test_angles_are_added_and_asked_for_sines(value: sp.Basic, expected: Type) -> None:
+    """Sums of angles are angles, and their sines are real numbers."""
     assert type_of(value, ANGLES) is expected
 
 
@@ -157,6 +165,7 @@ def test_angles_are_added_and_asked_for_sines(value: sp.Basic, expected: Type) -
     ],
 )  # fmt: skip
 def test_an_angle_is_no_number_before_its_turn_is_chosen(value: sp.Basic) -> None:
+    """An angle that is used as a number before its turn is chosen is refused."""
     with pytest.raises(IllTypedError):
         type_of(value, ANGLES)
 
@@ -171,6 +180,7 @@ def test_an_angle_is_no_number_before_its_turn_is_chosen(value: sp.Basic) -> Non
     ],
 )  # fmt: skip
 def test_a_name_that_is_bound_to_an_angle_is_one(statement: Statement) -> None:
+    """A name that is bound to an angle is an angle."""
     angle = Let(Q, DIRECTION)
     with pytest.raises(BrokenProgram):
         verify(_program(angle, statement))
@@ -178,6 +188,7 @@ def test_a_name_that_is_bound_to_an_angle_is_one(statement: Statement) -> None:
 
 
 def test_a_loop_may_turn_and_a_call_answers_with_angles() -> None:
+    """The state of an iteration and the result of a call may be angles."""
     turning = _loop(start=(DIRECTION, sp.false, sp.Integer(0)), following=(real("s") + X, X > 0, count("k")))
     verify(_program(turning, Let(real("c"), sp.cos(real("s")))))
     told = Program("told", (X, Y), (), (Output("angle", DIRECTION),))
@@ -188,6 +199,7 @@ def test_a_loop_may_turn_and_a_call_answers_with_angles() -> None:
 
 
 def test_wrap_is_the_angle_of_a_direction() -> None:
+    """`wrap` gives the angle in (-pi, pi]."""
     angles = np.array([-3.5 * np.pi, -np.pi, -3.0, -1e-9, 0.0, 1.0, np.pi, np.pi + 0.5, 9.0, 40.0])
     values, _ = run(
         _program(outputs=(Output("w", Wrap(X)),)), {n: angles if n == "x" else np.zeros(10) for n in "abnmxy"}

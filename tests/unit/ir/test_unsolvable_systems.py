@@ -42,6 +42,7 @@ def assert_nothing(matrix: Array, right: Array = SIDES) -> None:
 
 @pytest.mark.parametrize("wrong", NO_NUMBERS)
 def test_an_entry_that_is_no_number(wrong: float) -> None:
+    """A system with an entry that is no number has no solution, in every language."""
     for place in np.ndindex(3, 3):
         matrix = REGULAR.copy()
         matrix[place] = wrong
@@ -50,6 +51,7 @@ def test_an_entry_that_is_no_number(wrong: float) -> None:
 
 @pytest.mark.parametrize("wrong", NO_NUMBERS)
 def test_a_right_hand_side_that_is_no_number(wrong: float) -> None:
+    """A system with a right-hand side that is no number has no solution, in every language."""
     for place in np.ndindex(3, 2):
         right = SIDES.copy()
         right[place] = wrong
@@ -57,6 +59,7 @@ def test_a_right_hand_side_that_is_no_number(wrong: float) -> None:
 
 
 def test_a_pivot_that_is_zero_in_every_step() -> None:
+    """A singular system of any rank has no solution, in every language."""
     for rank in (0, 1, 2):
         kept = np.arange(3) < rank
         assert_nothing(REGULAR * kept)
@@ -65,6 +68,7 @@ def test_a_pivot_that_is_zero_in_every_step() -> None:
 
 
 def test_the_sizes_of_numbers_that_are_solved() -> None:
+    """Systems with very small and very large entries are solved up to the limits of size."""
     wanted = np.linalg.solve(REGULAR, SIDES)
     for size in (3e-31, 2e29):
         for determinant, solution in answers(REGULAR * size, SIDES):

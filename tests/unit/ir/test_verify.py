@@ -38,6 +38,7 @@ def program(*body: Statement, inputs: tuple[sp.Symbol, ...] = (X, Y), output: sp
 
 
 def test_every_primitive_is_accepted() -> None:
+    """A program with every primitive is accepted."""
     far = sp.And(sp.Gt(X, 0), sp.Or(sp.Le(Y, 1), sp.Lt(X, Y)), sp.Ge(Y, -1))
     sample = program(
         Let(Z, sp.sin(X) + sp.cos(Y) * sp.Abs(X) - Root(X**2) / Y + X**-2 + sp.Rational(1, 3) + sp.Float(0.5)),
@@ -98,6 +99,7 @@ BROKEN = {
 
 @pytest.mark.parametrize("kind", BROKEN)
 def test_broken_programs_are_refused(kind: str) -> None:
+    """A broken program is refused with the message for its fault."""
     broken, message = BROKEN[kind]
     with pytest.raises(BrokenProgram, match="^sample: .*" + re.escape(message)):
         verify(broken)

@@ -56,6 +56,7 @@ def by_hand(name: str, axes: Values) -> dict[str, np.ndarray]:
 
 @EVERY
 def test_forward_is_what_the_description_means(name: str) -> None:
+    """Forward kinematics is that of the closure, computed by hand."""
     axes = axes_of(name)
     pose, expected = built(name).forward(axes), by_hand(name, axes)
     size = 1 + max(np.abs(expected[c]).max() for c in "xyz")
@@ -78,6 +79,7 @@ def test_the_way_back(name: str) -> None:
 
 @EVERY
 def test_every_slot_is_another_solution(name: str) -> None:
+    """Every slot is a different solution of the closure, with its own signs."""
     axes, own = axes_of(name), built(name)
     pose = own.forward(axes)
     assert len(own.slots) == 2 ** len(own.kinematics.branches)
@@ -97,6 +99,7 @@ def test_every_slot_is_another_solution(name: str) -> None:
 
 @EVERY
 def test_the_witness_finds_no_other_solution(name: str) -> None:
+    """Multi-start root finding finds exactly as many solutions as there are slots."""
     evidence = witness(built(name).kinematics)
     assert evidence.inverted is not None
     assert evidence.inverted.solutions == len(built(name).slots)
@@ -119,6 +122,7 @@ def test_the_jacobian(name: str) -> None:
 
 @EVERY
 def test_the_margins_multiply_to_the_determinant(name: str) -> None:
+    """The product of the margins is proportional to the determinant of the Jacobian."""
     axes, own = axes_of(name, seed=4), built(name)
     margins, _ = own.run(own.kinematics.singularity, axes)
     volume = np.abs(np.linalg.det(own.jacobian(axes)))
@@ -136,6 +140,7 @@ OFFERED = [n for n, i in INVENTIONS.items() if i.mechanism.offset_interface]
 @pytest.mark.parametrize("name", OFFERED)
 @pytest.mark.parametrize("point", [(0.0, 0.0, 0.0), (13.0, -21.0, 7.0)], ids=["the flange", "a point beside it"])
 def test_the_way_back_of_the_offset_interface(name: str, point: tuple[float, float, float]) -> None:
+    """The inverse of a point beside the flange brings that point back to its position."""
     axes, own = axes_of(name), built(name)
     pose = own.forward(axes)
     offset = dict(zip(("point_x", "point_y", "point_z"), (np.full(COUNT, v) for v in point), strict=True))
@@ -195,6 +200,7 @@ FAR = [n for n, i in INVENTIONS.items() if all(j.kind is not Kind.LINEAR for j i
 
 @pytest.mark.parametrize("name", FAR)
 def test_out_of_reach(name: str) -> None:
+    """A position far away is UNREACHABLE on every slot."""
     axes, own = axes_of(name), built(name)
     pose = {**own.forward(axes), "x": np.full(COUNT, 1e4)}
     for slot in own.slots:

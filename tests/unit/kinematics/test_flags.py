@@ -34,6 +34,7 @@ def _all(kin: Kinematics) -> Iterator[tuple[Program, Statement]]:
 
 
 def test_no_real_is_one_or_zero_by_a_condition(kinematics: Kinematics) -> None:
+    """No program stores a truth value in a real number."""
     flags = {(sp.Integer(1), sp.Integer(0)), (sp.Integer(0), sp.Integer(1))}
     lets = [s for _, s in _all(kinematics) if isinstance(s, Let)]
     assert not [s for s in lets if isinstance(s.value, Select) and s.value.args[1:] in flags]
@@ -43,6 +44,7 @@ def test_no_real_is_one_or_zero_by_a_condition(kinematics: Kinematics) -> None:
 
 
 def test_parameters_are_read_in_their_types(kinematics: Kinematics) -> None:
+    """The setup program reads every parameter in its type."""
     inputs = {s.name: s for s in kinematics.setup.inputs}
     for parameter in kinematics.parameters:
         name = inputs[parameter.name]
@@ -60,6 +62,7 @@ def test_parameters_are_read_in_their_types(kinematics: Kinematics) -> None:
 
 
 def test_a_search_and_its_loop_count_and_ask() -> None:
+    """The flags and counts of the root scan are Booleans and integers."""
     kin = build(BY_NAME["Kin_Ac6_RZRYRYRXRYRZ_J6Offset"])
     (search,) = (s for _, s in _all(kin) if isinstance(s, FindRoot))
     assert (
@@ -86,6 +89,7 @@ X, Y, Z, SWAP, IS_SWAPPED = (*map(real, ("x", "y", "z", "swap_xy")), flag("swap_
     ],
 )  # fmt: skip
 def test_what_calculates_with_a_flag_becomes_a_choice(value: sp.Basic, expected: sp.Basic) -> None:
+    """Arithmetic with a flag becomes a choice by that flag."""
     mechanism: Mechanism = BY_NAME["MC_KIN_TYPE_12_XY"]
     body = (Let(flag("f") if is_condition(value) else real("v"), value),)
     program = Program("p", tuple(sorted(value.free_symbols, key=str)), body, ())

@@ -55,6 +55,7 @@ def test_a_stretched_or_folded_arm_is_one_solution(name: str, elbow: float) -> N
 
 @pytest.mark.parametrize("reference", REFERENCES)
 def test_equal_links_folded_turn_freely(reference: float) -> None:
+    """Where equal links are folded the first axis keeps its reference, and the pose is reached."""
     own = built("a lift between the joints", link_1=250.0, link_2=250.0)
     axes = values(own, A1=20.0, A2=180.0, A3=-50.0, P1=5.0)
     at_reference = values(own, A1=reference, A2=150.0, A3=0.0, P1=0.0)
@@ -66,6 +67,7 @@ def test_equal_links_folded_turn_freely(reference: float) -> None:
 
 @pytest.mark.parametrize("reference", REFERENCES)
 def test_a_telescope_of_no_length_keeps_its_direction(reference: float) -> None:
+    """Where a telescope has no length its direction keeps the reference, and the pose is reached."""
     own = built("a telescope with a wrist")
     axes = values(own, A1=20.0, P1=0.0, A2=-50.0)
     assert abs(own.forward(axes)["branch_reach"]) <= 1e-11
@@ -88,6 +90,7 @@ def test_a_wrist_above_the_shoulder_leaves_the_column_free(reference: float) -> 
 
 
 def test_a_boom_that_stands_up_is_on_both_sides() -> None:
+    """Where a boom stands upright both slots hold the same solution."""
     own = built("a boom that tips over")
     axes = values(own, A1=20.0, A2=90.0, P1=100.0)
     first, second = slots_at(own, axes, values(own, A1=-70.0, A2=0.0, P1=0.0))
@@ -96,6 +99,7 @@ def test_a_boom_that_stands_up_is_on_both_sides() -> None:
 
 
 def test_what_is_free_does_not_depend_on_the_reference_elsewhere() -> None:
+    """At a regular pose the solution does not depend on the reference."""
     own = built("a lift between the joints")
     axes = values(own, A1=20.0, A2=60.0, A3=-50.0, P1=5.0)
     near = [slots_at(own, axes, values(own, A1=r, A2=r, A3=r, P1=r)) for r in (-100.0, 0.0, 100.0)]

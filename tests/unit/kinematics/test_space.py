@@ -191,6 +191,7 @@ CASES = [pytest.param(arm, marks=() if arm in QUICK else pytest.mark.slow) for a
 
 @pytest.mark.parametrize("make", CASES, ids=lambda f: f.__name__)
 def test_an_arm_in_space(make: Callable[[], Mechanism]) -> None:
+    """An invented spatial arm is derived, and the witness finds as many solutions as the inverse has."""
     kinematics = build(make())
     evidence = witness(kinematics)
     assert evidence.inverted is not None

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Status
 from derive.ir.symbols import real
@@ -21,7 +21,7 @@ CONSTANTS = ("c", "d")
 
 
 def program(*lets: Let | Require, outputs: tuple[sp.Symbol, ...]) -> Program:
-    return assemble("program", lets, [Output(o.name, o) for o in outputs])
+    return normalise("program", lets, [Output(o.name, o) for o in outputs])
 
 
 def lets_of(one: Program) -> dict[str, sp.Expr]:
@@ -29,6 +29,7 @@ def lets_of(one: Program) -> dict[str, sp.Expr]:
 
 
 def test_what_depends_on_constants_alone_is_hoisted_under_words() -> None:
+    """Values of constants alone are computed once, under names made of words."""
     one = program(Let(F, X * C * D + Y), Let(G, C - D + X), outputs=(F, G))
     (shorter,), hoisted = lowered([one], CONSTANTS)
     assert {str(let.name): let.value for let in hoisted} == {"c_times_d": C * D, "c_minus_d": C - D}
@@ -36,6 +37,7 @@ def test_what_depends_on_constants_alone_is_hoisted_under_words() -> None:
 
 
 def test_a_hoisted_value_keeps_the_name_that_it_had() -> None:
+    """A hoisted value that has a name keeps it."""
     one = program(Let(F, C + D), Let(G, F * X), outputs=(G,))
     (shorter,), hoisted = lowered([one], CONSTANTS)
     assert [(let.name, let.value) for let in hoisted] == [(F, C + D)] and lets_of(shorter) == {"g": F * X}
@@ -52,12 +54,14 @@ def test_a_constant_that_is_bound_elsewhere_is_read_by_its_name() -> None:
 
 
 def test_two_programs_share_what_is_hoisted() -> None:
+    """Equal constants of two programs are hoisted once."""
     first, second = program(Let(F, C * D * X), outputs=(F,)), program(Let(G, C * D * Y), outputs=(G,))
     _, hoisted = lowered([first, Program("other", second.inputs, second.body, second.outputs)], CONSTANTS)
     assert len(hoisted) == 1
 
 
 def test_a_common_divisor_divides_once_and_a_common_factor_multiplies_once() -> None:
+    """A sum whose terms share a divisor divides once, and one whose terms share a factor multiplies once."""
     one = program(Let(F, X * A / B + Y * Z / B), Let(G, X * A - X * Z + Y), outputs=(F, G))
     (shorter,), _ = lowered([one], ())
     assert cost_of(shorter).divisions == 1 and cost_of(shorter).multiplications == 3
@@ -71,12 +75,14 @@ def test_a_named_value_is_one_factor() -> None:
 
 
 def test_a_pair_of_terms_that_sums_have_in_common_is_added_once_whatever_its_sign() -> None:
+    """Two sums with the same pair of terms add the pair once, also with opposite signs."""
     one = program(Let(F, X - Y + A), Let(G, Y - X + B), outputs=(F, G))
     (shorter,), _ = lowered([one], ())
     assert cost_of(shorter).additions == 3 and len(shorter.lets()) == 3
 
 
 def test_what_divides_three_values_is_inverted() -> None:
+    """A divisor of three values is inverted once, and multiplied."""
     one = program(*(Let(name, value / A) for name, value in zip((F, G, H), (X, Y, Z), strict=True)), outputs=(F, G, H))
     (shorter,), _ = lowered([one], ())
     assert cost_of(shorter).divisions == 1 and cost_of(shorter).multiplications == 3
@@ -99,18 +105,21 @@ def test_the_words_of_a_name_are_those_of_its_value() -> None:
 
 
 def test_a_factor_takes_the_sign_that_leaves_no_minus_in_front() -> None:
+    """Signs are distributed so that a product has no minus sign in front."""
     lets = (Let(F, -X * A - Y * B), Let(G, Y * A - X * B), Let(H, (F * Y - G * X) * A))
     (shorter,), _ = lowered([program(*lets, outputs=(F, G, H))], ())
     assert lets_of(shorter)["h"] == A * (F * Y - G * X)
 
 
 def test_an_equal_value_under_another_name_is_not_computed_again() -> None:
+    """A value and its negative under two names are computed once."""
     one = program(Let(F, X - Y), Let(G, Y - X), Let(H, G * F), outputs=(F, G, H))
     (shorter,), _ = lowered([one], ())
     assert [let.name for let in shorter.lets()] == [F, H] and shorter.outputs[1].value == -F
 
 
 def test_a_condition_stays_where_it_was_and_tells_what_it_told() -> None:
+    """Lowering keeps the status and the note of a condition, and rewrites its expression."""
     refusal = Require(sp.Gt(X * C * D, Y), Status.UNREACHABLE, "too far")
     one = program(refusal, Let(F, X / Y), outputs=(F,))
     (shorter,), _ = lowered([one], CONSTANTS)
@@ -122,6 +131,7 @@ def test_a_condition_stays_where_it_was_and_tells_what_it_told() -> None:
 
 
 def test_a_loop_keeps_what_moves_inside_and_what_stays_outside() -> None:
+    """Values that do not depend on the state of an iteration are computed before it."""
     step = (Let(F, X * Y * A), Let(G, F + X * Y))
     loop = Iterate((A,), (B,), step, (A + F,), sp.Le(G, 1), 3, Status.UNREACHABLE)
     one = program(loop, outputs=(G,))
@@ -132,8 +142,9 @@ def test_a_loop_keeps_what_moves_inside_and_what_stays_outside() -> None:
 
 
 def test_a_caller_calls_the_program_as_it_is_now() -> None:
+    """A call refers to the lowered program, and passes the constants that it now reads."""
     shared = Program("shared", (X, C), (Let(F, X * C * C),), (Output("f", F),))
-    caller = assemble("caller", [Call(shared, ((X, Y),), (F,))], [Output("f", F)])
+    caller = normalise("caller", [Call(shared, ((X, Y),), (F,))], [Output("f", F)])
     (inner, outer), _ = lowered([shared, caller], CONSTANTS)
     (call,) = (s for s in outer.body if isinstance(s, Call))
     assert call.program == inner and "c_squared" in {s.name for s in outer.inputs}
@@ -168,16 +179,17 @@ def random_program(draw: st.DrawFn) -> Program:
     for k in range(draw(st.integers(2, 7))):
         lets.append(Let(real(f"value_{k}"), draw(expression(list(names)))))
         names.append(lets[-1].name)
-    return assemble("program", lets, [Output(name.name, name) for name in names[-3:]])
+    return normalise("program", lets, [Output(name.name, name) for name in names[-3:]])
 
 
 @settings(max_examples=150)
 @given(random_program(), st.integers(0, 2**16))
 def test_values_stay_the_same(one: Program, seed: int) -> None:
+    """A lowered program has the outputs of the program before."""
     (shorter,), hoisted = lowered([one], CONSTANTS)
     rng = np.random.default_rng(seed)
     given_ = {name: rng.uniform(-2.0, 2.0, 5) for name in "xyzcd"}
-    constants, _ = run(assemble("setup", hoisted, [Output(let.name.name, let.name) for let in hoisted]), given_)
+    constants, _ = run(normalise("setup", hoisted, [Output(let.name.name, let.name) for let in hoisted]), given_)
     before, _ = run(one, given_)
     after, _ = run(shorter, {**given_, **constants})
     for name, value in before.items():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from derive.ir.constants import DEGREE
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, ToReal, Wrap
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import Sign, count, real
@@ -21,7 +21,7 @@ ELBOW = Sign(count("sigma_elbow"), ("down", "up"))
 
 
 def of(*lets: Let, outputs: tuple[sp.Symbol, ...]) -> Program:
-    return assemble("p", lets, [Output(o.name, o) for o in outputs])
+    return normalise("p", lets, [Output(o.name, o) for o in outputs])
 
 
 def shorter(program: Program, constants: str = "") -> Program:
@@ -30,6 +30,7 @@ def shorter(program: Program, constants: str = "") -> Program:
 
 
 def test_products_of_both_branches_are_computed_once() -> None:
+    """Products that two branches share are computed once after unrolling."""
     swing = Let(R, ToReal(ELBOW.symbol) * Root(X))
     program = unroll(of(swing, Let(C, P * Y - Q * R), Let(S, Q * Y + P * R), outputs=(C, S)), (ELBOW,))
     found = shorter(program)
@@ -38,6 +39,7 @@ def test_products_of_both_branches_are_computed_once() -> None:
 
 
 def test_the_angle_of_a_mirrored_direction_is_the_negative() -> None:
+    """The angle of a mirrored direction is the negative of the angle, and costs no arc tangent."""
     swing = (
         Let(R, ToReal(ELBOW.symbol) * Root(X)),
         Let(ANGLE, Atan2(R, C)),
@@ -64,6 +66,7 @@ def test_minus_signs_that_meet_are_not_written() -> None:
 
 
 def test_an_opposite_has_no_name_of_its_own() -> None:
+    """The negative of a sum is read from the sum, and gets no name."""
     program = of(Let(A, X - Y), Let(B, X - Y + P), Let(C, Y - X + Q), outputs=(A, B, C))
     found = shorter(program)
     assert cost_of(found).additions == 3
@@ -71,5 +74,6 @@ def test_an_opposite_has_no_name_of_its_own() -> None:
 
 
 def test_a_division_is_as_good_as_a_product() -> None:
+    """Divisions of the trusted functions are not replaced by products with an inverse."""
     program = of(Let(A, X / L), Let(B, Y / L), Let(C, P / L), outputs=(A, B, C))
     assert cost_of(shorter(program)).divisions == 3

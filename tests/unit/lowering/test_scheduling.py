@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -41,6 +41,7 @@ def shape(items: tuple[Item, ...]) -> list[object]:
 
 
 def test_choices_by_one_condition_are_gathered_with_what_they_alone_need() -> None:
+    """Choices by one condition become one IF, which holds the values that they alone read."""
     body = [
         Let(A, Root(X)),
         Let(B, sp.sin(X)),
@@ -52,11 +53,13 @@ def test_choices_by_one_condition_are_gathered_with_what_they_alone_need() -> No
 
 
 def test_what_is_read_elsewhere_stays_before() -> None:
+    """A value that something outside of the choice reads stays in front of the IF."""
     body = [Let(A, Root(X)), Let(C, Select(REGULAR, A, Y)), Let(E, Select(REGULAR, A + 1, Y + 1)), Let(F, A + C + E)]
     assert shape(scheduled(body, [F])) == [A, (REGULAR, [C, E], [C, E]), F]
 
 
 def test_a_name_for_a_name_disappears_where_nobody_else_reads_it() -> None:
+    """A name that stands for another name on one side is replaced there."""
     body = [
         Let(A, Select(REGULAR, R, sp.Integer(1))),
         Let(B, Select(REGULAR, X / A, Y)),
@@ -69,12 +72,14 @@ def test_a_name_for_a_name_disappears_where_nobody_else_reads_it() -> None:
 
 
 def test_a_result_is_no_copy_of_what_its_side_computes() -> None:
+    """A side binds a result directly, without an intermediate name."""
     body = [Let(A, sp.sin(X)), Let(B, Select(REGULAR, A, Y)), Let(C, Select(REGULAR, A + 1, X))]
     (choice,) = scheduled(body, [B, C])
     assert isinstance(choice, If) and choice.holds == (Let(B, sp.sin(X)), Let(C, B + 1))
 
 
 def test_a_negative_is_taken_from_what_has_been_computed() -> None:
+    """The negative of a result on the same side is read from that result."""
     body = [Let(B, Select(REGULAR, X / R, Y)), Let(C, Select(REGULAR, -X / R, Y))]
     (arms,) = scheduled(body, [B, C])
     assert isinstance(arms, If) and arms.holds == (Let(B, X / R), Let(C, -B))
@@ -108,12 +113,14 @@ def test_what_needs_a_choice_before_it_is_not_gathered_with_that() -> None:
 
 
 def test_a_condition_is_not_crossed() -> None:
+    """Choices on both sides of a refusal stay on their sides."""
     refused = Require(NEAR, Status.UNREACHABLE)
     body = [Let(A, Select(REGULAR, X, Y)), refused, Let(B, Select(REGULAR, Y, X))]
     assert scheduled(body, [A, B]) == tuple(body)
 
 
 def test_what_only_second_sides_read_is_bound_on_each_of_them() -> None:
+    """A value that only the second sides of two choices read is bound on both of these sides."""
     body = [
         Let(D, sp.sin(Y)),
         Let(A, Select(REGULAR, X, D)),
@@ -132,15 +139,17 @@ def test_a_side_keeps_a_statement() -> None:
 
 
 def test_a_single_choice_stays_an_expression() -> None:
+    """A single choice stays an expression, and is no IF."""
     body = [Let(A, Root(X)), Let(B, Select(REGULAR, A, Y))]
     assert scheduled(body, [B]) == tuple(body)
 
 
 def refusing(*body: Statement) -> Program:
-    return assemble("branch", body, [Output("a", A), Output("b", B)])
+    return normalise("branch", body, [Output("a", A), Output("b", B)])
 
 
 def test_choices_on_both_sides_of_a_refusal_are_one_where_the_first_stands() -> None:
+    """In a program whose conditions may move, choices on both sides of a refusal become one IF."""
     program = refusing(
         Let(A, Select(REGULAR, X, Y)),
         Require(sp.Gt(A, 0), Status.UNREACHABLE),

@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 
 from derive.ir.constants import DEGREE
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, Wrap
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import real
@@ -32,7 +32,7 @@ def with_symmetry(program: Program) -> Program:
 def axes(*lets: Let, down: sp.Expr, up: sp.Expr) -> Program:
     """A program with two axes on the turns that are nearest to N."""
     ends = [Let(AXIS_DOWN, NearestPeriod(down, N)), Let(AXIS_UP, NearestPeriod(up, N))]
-    return assemble("axes", [*lets, *ends], [Output("down", AXIS_DOWN), Output("up", AXIS_UP)])
+    return normalise("axes", [*lets, *ends], [Output("down", AXIS_DOWN), Output("up", AXIS_UP)])
 
 
 def wrist() -> Program:
@@ -77,7 +77,7 @@ def test_a_mirrored_or_opposite_direction_has_the_same_angle_but_for_half_a_turn
 def test_half_a_turn_in_a_sine_is_written_out() -> None:
     angles = [Let(S_DOWN, Atan2(X, Y)), Let(S_UP, Atan2(-X, -Y))]
     ends = [Let(A, sp.sin(S_UP + R * DEGREE)), Let(B, sp.cos(S_DOWN - R * DEGREE))]
-    program = assemble("sines", [*angles, *ends], [Output("a", A), Output("b", B)])
+    program = normalise("sines", [*angles, *ends], [Output("a", A), Output("b", B)])
     same(program, with_symmetry(program))
 
 
@@ -89,7 +89,7 @@ def test_another_value_on_the_other_side_is_kept() -> None:
         Let(M_DOWN, A * C_DOWN),
         Let(M_UP, A * C_UP),
     ]
-    program = assemble("other", lets, [Output("down", M_DOWN + 1), Output("up", M_UP + 1)])
+    program = normalise("other", lets, [Output("down", M_DOWN + 1), Output("up", M_UP + 1)])
     assert values(with_symmetry(program))["m_up"] == Select(REGULAR, -M_DOWN, A * C_UP)
     same(program, with_symmetry(program))
 
@@ -97,7 +97,7 @@ def test_another_value_on_the_other_side_is_kept() -> None:
 def test_values_that_differ_on_the_first_side_stay() -> None:
     lets = [Let(C_DOWN, Select(REGULAR, X, T)), Let(C_UP, Select(REGULAR, -2 * X, T))]
     lets += [Let(M_DOWN, Root(A + C_DOWN)), Let(M_UP, Root(A + C_UP))]
-    program = assemble("other", lets, [Output("down", M_DOWN + 1), Output("up", M_UP + 1)])
+    program = normalise("other", lets, [Output("down", M_DOWN + 1), Output("up", M_UP + 1)])
     assert values(with_symmetry(program)) == values(program)
 
 
@@ -107,7 +107,7 @@ def test_a_choice_is_the_negative_of_another_whatever_the_signs_of_its_sides() -
     lets = [Let(C_DOWN, Select(REGULAR, X, T)), Let(C_UP, Select(REGULAR, -X, T))]
     for second in (Y, sp.Integer(0)):
         ends = [Let(M_DOWN, Select(far, A * C_DOWN, -second)), Let(M_UP, Select(far, A * C_UP, second))]
-        program = assemble("signs", [*lets, *ends], [Output(str(s), s) for s in (C_DOWN, C_UP, M_DOWN, M_UP)])
+        program = normalise("signs", [*lets, *ends], [Output(str(s), s) for s in (C_DOWN, C_UP, M_DOWN, M_UP)])
         found = values(with_symmetry(program))["m_up"]
         assert found.args[:2] == (REGULAR, -M_DOWN)
         same(program, with_symmetry(program))
@@ -119,7 +119,7 @@ def test_the_condition_that_gives_most_values_decides() -> None:
     lets += [Let(M_DOWN, Select(sp.Gt(R, 2), X, A * C_DOWN)), Let(M_UP, Select(sp.Gt(R, 2), -X, A * C_UP))]
     ends = [Let(S_DOWN, M_DOWN * Y), Let(S_UP, M_UP * Y), Let(AXIS_DOWN, C_DOWN * Y), Let(AXIS_UP, C_UP * Y)]
     outputs = [Output(str(s), s) for s in (S_DOWN, S_UP, AXIS_DOWN, AXIS_UP)]
-    program = assemble("most", [*lets, *ends], outputs)
+    program = normalise("most", [*lets, *ends], outputs)
     found = values(with_symmetry(program))
     assert all(found[name].args[0] == REGULAR for name in ("s_up", "axis_up"))
     same(program, with_symmetry(program))
@@ -130,7 +130,7 @@ def test_what_one_side_of_a_choice_alone_reads_is_not_computed_for_another_value
     far = sp.Gt(R, 2)
     lets = [Let(C_DOWN, Select(REGULAR, X, T)), Let(C_UP, Select(REGULAR, -X, T))]
     lets += [Let(M_DOWN, A * C_DOWN + 1), Let(M_UP, -A * C_UP + 1), Let(B, Select(far, M_DOWN, Y))]
-    program = assemble("rare", lets, [Output("down", B), Output("up", M_UP)])
+    program = normalise("rare", lets, [Output("down", B), Output("up", M_UP)])
     assert values(with_symmetry(program))["m_up"] == 1 - A * C_UP
     same(program, with_symmetry(program))
 

@@ -11,7 +11,7 @@ import sympy as sp
 
 from derive.description.catalogue import MECHANISMS, load
 from derive.ir.interpret import run
-from derive.ir.passes import assemble, renamed
+from derive.ir.passes import normalise, renamed
 from derive.ir.primitives import (
     NearestPeriod,
     Root,
@@ -61,6 +61,7 @@ def lets(program: Program) -> dict[str, sp.Expr]:
 
 
 def test_a_statement_stands_once_for_every_assignment_of_the_signs_it_depends_on() -> None:
+    """Unrolling writes a statement once for each choice of the signs that it depends on."""
     body = (Let(A, Root(X)), Let(B, A * ELBOW.symbol + Y), Let(C, Root(B) + A * WRIST.symbol))
     found = unroll(program(*body, outputs={"o": C}), (ELBOW, WRIST))
     assert lets(found) == {
@@ -79,12 +80,14 @@ def test_a_statement_stands_once_for_every_assignment_of_the_signs_it_depends_on
 
 
 def test_a_negative_is_not_computed_again() -> None:
+    """A value that is the negative of the other branch is not computed again."""
     found = unroll(program(Let(A, Root(X) * ELBOW.symbol), outputs={"o": A + 1}), (ELBOW,))
     assert lets(found) == {"a_right": Root(X)}
     assert {o.name: o.value for o in found.outputs}["o_left"] == 1 - real("a_right")
 
 
 def test_a_condition_without_a_sign_stays_one() -> None:
+    """A condition that depends on no sign is tested once, for all branches."""
     body = (Require(sp.Gt(X, 0), Status.UNREACHABLE), Let(A, X * ELBOW.symbol))
     found = unroll(program(*body, outputs={"o": A}), (ELBOW,))
     assert [r.condition for r in found.requires()] == [sp.Gt(X, 0)]
@@ -114,6 +117,7 @@ def test_the_refusal_of_a_slot_is_its_first_condition_that_does_not_hold() -> No
 
 
 def test_linear_equations_are_unrolled_too() -> None:
+    """A system of linear equations is solved for each branch, with the same solutions as before."""
     system = Solve((A,), (X + ELBOW.symbol,), (Y,), determinant=B)
     looped = Program("p", (ELBOW.symbol, X, Y), (system,), (Output("o", A), Output("d", B)))
     values = {"x": np.array([3.0, 1.0, -1.0]), "y": np.array([2.0, 5.0, 7.0])}
@@ -121,6 +125,7 @@ def test_linear_equations_are_unrolled_too() -> None:
 
 
 def test_what_iterates_is_not_unrolled() -> None:
+    """A program with an iteration cannot be unrolled."""
     loop = Iterate((A,), (X,), (), (A / 2,), sp.Lt(A, 1), 9, Status.IMPOSSIBLE)
     looped = Program("p", (X,), (loop,), (Output("o", A),))
     assert not is_straight(looped)
@@ -129,6 +134,7 @@ def test_what_iterates_is_not_unrolled() -> None:
 
 
 def test_names_that_a_language_would_join_stay_apart() -> None:
+    """The names of unrolled values differ from all other names."""
     taken = Let(real("a_right"), Y + 7)
     body = (taken, Let(A, X * ELBOW.symbol + Y))
     found = unroll(program(*body, outputs={"o": A, "t": taken.name}), (ELBOW,))
@@ -137,11 +143,13 @@ def test_names_that_a_language_would_join_stay_apart() -> None:
 
 
 def test_what_is_given_decides_choices() -> None:
+    """A given value decides the choices that depend on it."""
     choice = Let(A, Select(sp.Gt(sp.Abs(X), 0), X, Y))
     assert specialised(program(choice, outputs={"o": A}), {X: sp.Integer(0)}).outputs == (Output("o", Y),)
 
 
 def test_any_turn_knows_no_periods_and_trusts_its_input() -> None:
+    """Trusted functions choose no turn, and do not test the size of inputs."""
     body = (
         Require(sp.Le(sp.Abs(X), 9), Status.BAD_INPUT),
         Require(sp.Gt(X, 0), Status.UNREACHABLE),
@@ -181,11 +189,12 @@ def with_limits(branch: Program, limits: Program) -> Program:
     own = {name: called(f"limit_{name.name}", name) for name in limits.bound()}
     values = {**own, **{real(o.name): o.value for o in branch.outputs}}
     checks = [rewritten(renamed(s, lambda n: own[n]), lambda e: e.xreplace(values)) for s in limits.body]
-    return assemble(branch.name, (*branch.body, *checks), branch.outputs)
+    return normalise(branch.name, (*branch.body, *checks), branch.outputs)
 
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_every_slot_is_the_branch_of_its_signs(name: str) -> None:
+    """The unrolled program answers each slot as the program of one branch does, with fewer statements."""
     kin = kinematics(name)
     signs = tuple(Sign(count(f"sigma_{b.name}"), b.names) for b in kin.branches)
     looped = with_limits(kin.branch, kin.limits)

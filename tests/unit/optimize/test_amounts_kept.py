@@ -7,7 +7,7 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select
 from derive.ir.program import Let, Output, Program, Require, Status
 from derive.ir.reason import Why, about
@@ -31,7 +31,7 @@ def refusing(amount: sp.Expr) -> Program:
     require = Require(sp.Gt(R, 0), Status.UNREACHABLE, reason=about("it", Why.TOO_LARGE, amount))
     turned = NearestPeriod(ANGLE / DEGREE, sp.Integer(0))
     earlier = Require(sp.Le(turned, 175), Status.UNREACHABLE, reason=about("angle", Why.TOO_LARGE))
-    return assemble("p", [*DIRECTION, Let(ANGLE, Atan2(S, C)), earlier, require, TURN], [Output("axis", AXIS)])
+    return normalise("p", [*DIRECTION, Let(ANGLE, Atan2(S, C)), earlier, require, TURN], [Output("axis", AXIS)])
 
 
 def amounts(program: Program) -> np.ndarray:
@@ -39,7 +39,7 @@ def amounts(program: Program) -> np.ndarray:
     require = program.requires()[-1]
     assert require.reason is not None and require.reason.amount is not None
     before = [s for s in program.body[: program.body.index(require)] if isinstance(s, Let)]
-    alone = assemble("amount", before, [Output("amount", require.reason.amount)])
+    alone = normalise("amount", before, [Output("amount", require.reason.amount)])
     rng = np.random.default_rng(5)
     given = {name: rng.uniform(-2.0, 2.0, 200) for name in "lnrtuv"}
     return np.asarray(run(alone, {s.name: given[s.name] for s in alone.inputs})[0]["amount"])
@@ -54,6 +54,7 @@ def test_of_a_direction_that_is_taken_without_its_length() -> None:
 
 
 def test_an_amount_that_reads_nothing_of_it_changes_nothing() -> None:
+    """A direction is not divided where the amount of a reason reads something else."""
     found = plain_directions(refusing(U + R))
     assert "direction_x_q1" in {name.name for name in found.bound()}
     np.testing.assert_allclose(amounts(found), amounts(refusing(U + R)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -32,10 +32,11 @@ A, B, C, P, Q, R, X, Y = (real(n) for n in "abcpqrxy")
 
 
 def unrolled(*body: Statement, outputs: dict[str, sp.Expr]) -> Program:
-    return unroll(assemble("p", body, [Output(name, value) for name, value in outputs.items()]), SIGNS)
+    return unroll(normalise("p", body, [Output(name, value) for name, value in outputs.items()]), SIGNS)
 
 
 def test_branches_come_one_after_the_other_and_the_opposite_takes_no_minus() -> None:
+    """The outputs of the branches are in the order of the slots."""
     body = (Let(P, -Root(X) * ELBOW.symbol), Let(Q, Y * ARM.symbol + P), Let(R, Root(Q) + P))
     program = unrolled(*body, outputs={"o": R})
     outputs = [o.name for o in program.outputs if o.name.startswith("o_")]
@@ -44,6 +45,7 @@ def test_branches_come_one_after_the_other_and_the_opposite_takes_no_minus() -> 
 
 
 def test_a_branch_uses_the_names_of_the_one_before() -> None:
+    """A branch reuses the names of values that the branch before no longer needs."""
     body = (Let(P, Y * ARM.symbol + Root(X)), Let(Q, Root(P) + ELBOW.symbol), Let(R, Root(Q) + P))
     program = unrolled(*body, outputs={"o": R})
     wanted = [o.value for o in program.outputs]
@@ -57,6 +59,7 @@ def test_a_branch_uses_the_names_of_the_one_before() -> None:
 
 
 def test_what_is_needed_at_the_same_time_keeps_its_words() -> None:
+    """Values that are needed at the same time keep different names."""
     body = (Let(P, Root(X) + ELBOW.symbol), Let(Q, P * ARM.symbol))
     program = unrolled(*body, outputs={"o": Q + P})
     wanted = [o.value for o in program.outputs]
@@ -65,12 +68,14 @@ def test_what_is_needed_at_the_same_time_keeps_its_words() -> None:
 
 
 def test_words_behind_a_name() -> None:
+    """A name is split into the neutral name and the words of its branches."""
     assert without_words("axis_a1_front_up", SIGNS) == ("axis_a1", ("front", "up"))
     assert without_words("cos_q1_back", SIGNS) == ("cos_q1", ("back",))
     assert without_words("up", SIGNS) == ("up", ())
 
 
 def test_what_only_later_second_sides_read_is_not_bound_on_the_first() -> None:
+    """A value that only second sides read is not computed on a first side."""
     regular = sp.Gt(R, 1)
     body = [
         Let(P, Select(regular, X, sp.sin(Y))),

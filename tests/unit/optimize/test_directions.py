@@ -8,7 +8,7 @@ import sympy as sp
 from derive.ir.constants import (
     DEGREE,
 )
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Atan2,
     NearestPeriod,
@@ -46,7 +46,7 @@ def axis(name: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Let:
 
 
 def of(*lets: Let, outputs: tuple[sp.Symbol, ...]) -> Program:
-    return assemble("p", lets, [Output(o.name, o) for o in outputs])
+    return normalise("p", lets, [Output(o.name, o) for o in outputs])
 
 
 def length(value: sp.Expr) -> Let:
@@ -63,6 +63,7 @@ SUM = (Let(C12, C1 * C2 - S1 * S2, "by the sum"), Let(S12, S1 * C2 + C1 * S2))
 
 
 def test_nothing_is_divided_for_a_direction() -> None:
+    """An angle is taken from a direction that is not divided by its length."""
     program = of(*DIRECTION, axis(AXIS1, S1, C1), outputs=(AXIS1,))
     found = values(plain_directions(program))
     assert found["direction_x_q1"] == Select(REGULAR, U, sp.cos(T)) and found["direction_y_q1"] == Select(
@@ -73,6 +74,7 @@ def test_nothing_is_divided_for_a_direction() -> None:
 
 
 def test_nor_for_what_is_made_of_it_in_proportion() -> None:
+    """The angle of a vector that is proportional to the direction needs no division, either."""
     made = (Let(real("made_y"), X * C1 - Y * S1), Let(real("made_x"), X * S1 + B * C1))
     program = of(*DIRECTION, *made, axis(AXIS1, made[0].name, made[1].name), outputs=(AXIS1,))
     assert "l" not in values(plain_directions(program))
@@ -85,13 +87,15 @@ def test_nor_for_what_is_made_of_it_in_proportion() -> None:
     ids=str,
 )
 def test_what_else_is_made_of_it_keeps_the_division(read: sp.Expr) -> None:
+    """The division stays where another value reads sine or cosine."""
     program = of(*DIRECTION, axis(AXIS1, S1, C1), Let(E, read), outputs=(AXIS1, E))
     assert "l" in values(plain_directions(program))
 
 
 def test_a_condition_on_it_keeps_the_division() -> None:
+    """The division stays where a condition reads the cosine."""
     body = (*DIRECTION, axis(AXIS1, S1, C1), Require(sp.Ge(C1, 0), Status.UNREACHABLE))
-    program = assemble("p", body, [Output("o", AXIS1)])
+    program = normalise("p", body, [Output("o", AXIS1)])
     assert plain_directions(program) == program
 
 
@@ -104,6 +108,7 @@ def test_a_divisor_that_is_no_length_is_kept() -> None:
 @pytest.mark.parametrize("senses", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_the_angle_of_a_rotated_direction_is_a_sum(senses: tuple[int, int], sign: int) -> None:
+    """The angle of a direction that another angle rotates is the sum or difference of both angles."""
     first, second = senses
     lets = (
         Let(C1, X / 2), Let(S1, Y / 2), Let(C2, U / 2), Let(S2, V / 2),
@@ -121,6 +126,7 @@ def test_the_angle_of_a_rotated_direction_is_a_sum(senses: tuple[int, int], sign
 
 
 def test_a_sum_of_three_takes_one_new_angle() -> None:
+    """A sum of three angles needs one arc tangent besides those of the other axes."""
     lets = (
         Let(C1, X / 2), Let(S1, Y / 2), Let(C2, U / 2), Let(S2, V / 2), Let(C12, C1 * C2 - S1 * S2),
         Let(S12, S1 * C2 + C1 * S2),
@@ -133,11 +139,13 @@ def test_a_sum_of_three_takes_one_new_angle() -> None:
 
 
 def test_two_new_angles_for_one_are_no_gain() -> None:
+    """A sum of angles is not used where it needs two arc tangents instead of one."""
     program = of(*SUM, axis(AXIS3, S12, C12), outputs=(AXIS3,))
     assert plain_directions(program) == program
 
 
 def test_a_rotated_direction_that_something_else_reads_is_left_alone() -> None:
+    """A rotated direction that is needed in any case gives its angle by an arc tangent."""
     program = of(
         *SUM, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), axis(AXIS3, S12, C12), outputs=(AXIS1, AXIS2, AXIS3, C12)
     )
@@ -145,6 +153,7 @@ def test_a_rotated_direction_that_something_else_reads_is_left_alone() -> None:
 
 
 def test_what_a_constant_angle_turned_is_turned_back() -> None:
+    """The angle of a direction that a constant angle rotates is a sum with that constant."""
     lets = (
         Let(E, Root(A**2 + B**2)),
         Let(C1, A / E * X - B / E * Y),
@@ -161,6 +170,7 @@ def test_what_a_constant_angle_turned_is_turned_back() -> None:
 
 
 def test_a_name_that_is_read_as_its_negative_is_bound_as_that() -> None:
+    """A value that is read only as its negative is computed as the negative."""
     program = of(Let(U, -X - Y, "the sum"), Let(V, -U), Let(R, V * V + X), outputs=(R,))
     found = shorter(program)
     assert values(found)["v"] == X + Y and "u" not in values(found)
@@ -171,6 +181,7 @@ def test_a_name_that_is_read_as_its_negative_is_bound_as_that() -> None:
 
 
 def test_angles_first_where_nothing_reads_sines_but_the_sum() -> None:
+    """Where only a sum of angles reads sines and cosines, the angles are added instead."""
     lets = (
         Let(real("along"), X * U + Y * V), Let(real("across"), Y * U - X * V),
         length(real("along") ** 2 + real("across") ** 2),
@@ -184,7 +195,7 @@ def test_angles_first_where_nothing_reads_sines_but_the_sum() -> None:
     assert found["angle_q2"] == real("angle_of_a") + real("angle_of_q3") and found["angle_of_a"] == Atan2(B, A)
     assert not {"along", "across", "l", "cos_q1", "sin_q2"} & set(found)
     turn = (Let(A, sp.cos(E)), Let(B, sp.sin(E)))  # of length one
-    same(*(assemble("p", (*turn, *p.body), p.outputs) for p in (program, with_added_angles(program, frozenset("ab")))))
+    same(*(normalise("p", (*turn, *p.body), p.outputs) for p in (program, with_added_angles(program, frozenset("ab")))))
     other = of(*lets, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), outputs=(AXIS1, AXIS2, C12, S12, C2))
     assert "cos_q2" in values(with_added_angles(other, frozenset("ab")))
 
@@ -200,6 +211,7 @@ def test_a_sum_of_mere_directions_is_no_cosine() -> None:
 
 
 def test_an_angle_whose_turns_count_is_no_sum() -> None:
+    """An angle that becomes a number by `wrap` is not replaced by a sum of angles."""
     lets = (Let(C1, X * U + Y * V), Let(S1, Y * U - X * V))
     counted = of(*lets, Let(AXIS1, Wrap(Atan2(S1, C1)) / DEGREE), outputs=(AXIS1,))
     assert with_added_angles(counted, frozenset()) == counted
@@ -209,6 +221,7 @@ def test_an_angle_whose_turns_count_is_no_sum() -> None:
 
 
 def test_turns_count_wherever_more_than_a_sine_or_the_nearest_turn_is_taken() -> None:
+    """An angle is free modulo a turn only if sine, cosine and the nearest period alone read it."""
     angle, other = real("angle"), real("other")
     bound = (Let(angle, Atan2(X, Y)), Let(other, angle - T))
     assert angles_modulo_turns(of(*bound, Let(R, sp.sin(other + X)), outputs=(R,))) == {angle, other}
@@ -222,6 +235,7 @@ def test_turns_count_wherever_more_than_a_sine_or_the_nearest_turn_is_taken() ->
 
 
 def test_a_chain_of_negatives_is_bound_throughout() -> None:
+    """Negatives of negatives are resolved, and every name that is read is bound."""
     program = of(Let(U, -X - Y), Let(V, -U), Let(T, -V), Let(R, T * T + X), outputs=(R,))
     assert shorter(program).inputs == (X, Y)
     same(program, shorter(program))
@@ -246,11 +260,13 @@ def test_a_quotient_that_reads_another_keeps_its_division() -> None:
 
 
 def test_an_angle_times_a_coordinate_of_its_direction_keeps_the_division() -> None:
+    """A product of an angle with its own cosine keeps the division."""
     program = of(*DIRECTION, axis(AXIS1, S1, C1), Let(E, C1 * Wrap(Atan2(S1, C1))), outputs=(AXIS1, E))
     assert "l" in values(plain_directions(program))
 
 
 def test_half_an_angle_counts_turns_though_its_sines_cancel() -> None:
+    """Half of an angle modulo a turn is refused: it has two values."""
     angle = real("angle")
     halves = {half: sp.cos(half / 2) - sp.sin(half / 2) for half in (angle, Wrap(angle))}
     with pytest.raises(BrokenProgram):

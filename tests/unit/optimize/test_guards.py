@@ -32,6 +32,7 @@ def asked(bound: sp.Expr) -> Require:
 
 @pytest.mark.parametrize("bound", [sp.Float("-1e-12"), sp.Integer(0), -3 * D**2, -(D**2) - 2 * Y**4])
 def test_where_the_root_is_positive_it_is_not_asked(bound: sp.Expr) -> None:
+    """A condition that a positive radicand implies is tested only where the radicand is not positive."""
     square, choice, last = guarded([SQUARE, asked(bound), ROOT, Let(B, A + 1)])
     assert square == SQUARE and last == Let(B, A + 1)
     assert choice == If(sp.Gt(S, 0), (Let(A, R * PositiveRoot(S)),), (asked(bound), Let(A, sp.Integer(0))), (A,))
@@ -39,16 +40,19 @@ def test_where_the_root_is_positive_it_is_not_asked(bound: sp.Expr) -> None:
 
 @pytest.mark.parametrize("bound", [sp.Float("1e-12"), -D, D**2, -(D**3), Y - D**2])
 def test_a_bound_that_may_be_positive_is_always_asked(bound: sp.Expr) -> None:
+    """A condition with a bound that may be positive is always tested."""
     body = (SQUARE, asked(bound), ROOT)
     assert guarded(body) == body
 
 
 def test_what_is_known_of_a_constant_decides() -> None:
+    """The sign of a constant, known from its definition, decides whether the condition is implied."""
     body = (SQUARE, asked(-D), ROOT)
     assert isinstance(guarded(body, [Let(D, Y**2)])[1], If) and guarded(body, [Let(D, Y**3)]) == body
 
 
 def test_a_root_that_is_known_later_is_not_taken_before_the_condition() -> None:
+    """A root is not taken before the values that its statement reads, and conditions keep their order."""
     body = (SQUARE, asked(sp.Integer(-1)), Let(B, sp.sin(X)), Let(A, B * Root(S)))
     assert guarded(body) == body
     between = (SQUARE, asked(sp.Integer(-1)), Require(sp.Gt(X, 1), Status.UNREACHABLE), ROOT)
@@ -56,17 +60,20 @@ def test_a_root_that_is_known_later_is_not_taken_before_the_condition() -> None:
 
 
 def test_a_root_that_something_is_divided_by_is_taken_as_it_was() -> None:
+    """A root in a divisor stays as it is."""
     body = (SQUARE, asked(sp.Integer(-1)), Let(A, R / Root(S)))
     assert guarded(body) == body
 
 
 def test_another_comparison_is_always_asked() -> None:
+    """A condition that a positive radicand does not imply is always tested."""
     for condition in (sp.Le(S, 1), sp.Gt(S, -1), sp.Ge(S + X, -1)):
         body = (SQUARE, Require(condition, Status.UNREACHABLE), ROOT)
         assert guarded(body) == body
 
 
 def test_as_it_is_written() -> None:
+    """The printed text tests the radicand first, and the bound only where the radicand is not positive."""
     lines = item_lines(guarded([asked(sp.Float("-1e-12")), ROOT]), Refusals(lambda _: "None"), ScalarPrinter())
     assert lines == [
         "if s > 0.0:", "    a = sqrt(s)*r", "else:",

@@ -10,7 +10,7 @@ from derive.ir.constants import (
     DEGREE,
 )
 from derive.ir.interpret import run
-from derive.ir.passes import assemble, hoist
+from derive.ir.passes import hoist, normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -41,75 +41,88 @@ def values(program: Program) -> dict[str, sp.Expr]:
 
 
 def test_an_alias_is_folded() -> None:
-    program = assemble("p", [Let(A, X), Let(B, A + 1), Require(sp.Gt(A, 0), Status.OK)], [Output("o", A * B)])
+    """A name for another name is replaced by that name everywhere."""
+    program = normalise("p", [Let(A, X), Let(B, A + 1), Require(sp.Gt(A, 0), Status.OK)], [Output("o", A * B)])
     assert values(program) == {"b": X + 1}
     assert program.requires()[0].condition == sp.Gt(X, 0)
     assert program.outputs == (Output("o", X * B),)
 
 
 def test_an_alias_of_an_alias_and_a_number_are_folded() -> None:
-    program = assemble("p", [Let(A, X), Let(B, A), Let(C, sp.Integer(2))], [Output("o", B * C)])
+    """Chains of names, and names of numbers, are replaced."""
+    program = normalise("p", [Let(A, X), Let(B, A), Let(C, sp.Integer(2))], [Output("o", B * C)])
     assert program.body == ()
     assert program.outputs[0].value == 2 * X
 
 
 def test_the_same_let_again_is_dropped() -> None:
-    program = assemble("p", [Let(A, X + 1), Let(B, A * 2), Let(A, X + 1)], [Output("o", A + B)])
+    """A statement that repeats an earlier one is dropped."""
+    program = normalise("p", [Let(A, X + 1), Let(B, A * 2), Let(A, X + 1)], [Output("o", A + B)])
     assert [let.name for let in program.lets()] == [A, B]
 
 
 def test_another_value_under_the_same_name_is_refused() -> None:
+    """Two values under one name raise `BrokenProgram`."""
     with pytest.raises(BrokenProgram, match=r"a is bound twice, to x \+ 1 and to x \+ 2"):
-        assemble("p", [Let(A, X + 1), Let(A, X + 2)], [Output("o", A)])
+        normalise("p", [Let(A, X + 1), Let(A, X + 2)], [Output("o", A)])
 
 
 def test_what_nothing_needs_disappears() -> None:
-    program = assemble("p", [Let(A, X + 1), Let(B, A + Y), Let(C, X * 2)], [Output("o", C)])
+    """A value that nothing reads is dropped, and so are its inputs."""
+    program = normalise("p", [Let(A, X + 1), Let(B, A + Y), Let(C, X * 2)], [Output("o", C)])
     assert body(program) == [C]
     assert program.inputs == (X,)
 
 
 def test_a_let_stands_just_before_its_first_use() -> None:
+    """Every value is bound just before the first statement that reads it."""
     statements = [Let(A, X + 1), Let(B, Y + 1), FAR, Let(C, A * 2), Require(sp.Gt(C, 0), Status.OK), Let(D, B * 3)]
-    program = assemble("p", statements, [Output("o", D)])
+    program = normalise("p", statements, [Output("o", D)])
     assert body(program) == [FAR.condition, A, C, sp.Gt(C, 0), B, D]
 
 
 def test_conditions_keep_their_order() -> None:
+    """Conditions stay in the order in which they were written."""
     conditions = [Require(sp.Gt(s, 0), status) for s, status in ((Y, Status.BAD_INPUT), (X, Status.UNREACHABLE))]
-    assert assemble("p", conditions, []).requires() == tuple(conditions)
+    assert normalise("p", conditions, []).requires() == tuple(conditions)
 
 
 def test_statements_may_come_in_any_order() -> None:
-    program = assemble("p", [Let(C, B + 1), Let(B, A + 1), Let(A, X + 1)], [Output("o", C)])
+    """Statements are put into an order in which every value is bound before it is read."""
+    program = normalise("p", [Let(C, B + 1), Let(B, A + 1), Let(A, X + 1)], [Output("o", C)])
     assert body(program) == [A, B, C]
 
 
 def test_a_circle_is_refused() -> None:
+    """Values that need each other raise `BrokenProgram`."""
     with pytest.raises(BrokenProgram, match="is read before it is bound"):
-        assemble("p", [Let(A, B + 1), Let(B, A + 1)], [Output("o", A)])
+        normalise("p", [Let(A, B + 1), Let(B, A + 1)], [Output("o", A)])
 
 
 def test_inputs_are_what_is_free_in_the_order_of_their_names() -> None:
-    program = assemble("p", [Let(D, C + X)], [Output("o", D + A * DEGREE)])
+    """The inputs are the names that no statement binds, in alphabetical order."""
+    program = normalise("p", [Let(D, C + X)], [Output("o", D + A * DEGREE)])
     assert program.inputs == (A, C, X)
 
 
 def test_a_name_is_a_name_whatever_is_known_of_its_sign() -> None:
+    """Symbols with the same name are one name, whatever their assumptions."""
     long = sp.Symbol("a", positive=True)
-    program = assemble("p", [Let(B, long + 1), Require(sp.Gt(B, 0), Status.OK)], [Output("o", A + B)])
+    program = normalise("p", [Let(B, long + 1), Require(sp.Gt(B, 0), Status.OK)], [Output("o", A + B)])
     assert program.inputs == (A,)
     assert program.lets()[0].value == A + 1
 
 
 def test_a_positive_name_does_not_decide_a_condition() -> None:
+    """The assumptions of a symbol decide no condition."""
     long = sp.Symbol("a", positive=True)
-    program = assemble("p", [Let(B, Select(sp.Gt(long - X, 0), X, Y))], [Output("o", B)])
+    program = normalise("p", [Let(B, Select(sp.Gt(long - X, 0), X, Y))], [Output("o", B)])
     assert program.inputs == (A, X, Y)
 
 
 def test_pi_is_half_a_turn_and_a_surd_a_root() -> None:
-    program = assemble(
+    """Pi becomes 180 degrees, and an irrational square root becomes `Root`."""
+    program = normalise(
         "p", [Let(A, X * sp.pi / 4), Let(B, X * sp.cos(sp.pi / 12) + sp.sin(sp.pi / 5))], [Output("o", A + B)]
     )
     assert values(program)["a"] == 45 * DEGREE * X
@@ -119,8 +132,9 @@ def test_pi_is_half_a_turn_and_a_surd_a_root() -> None:
 
 
 def test_hoisting_moves_what_depends_on_constants_alone() -> None:
-    first = assemble("first", [Let(A, C * 2), Let(B, A + X)], [Output("o", B * A)])
-    second = assemble("second", [Let(D, C * 2), FAR], [Output("o", D)])
+    """Values of constants alone are moved out of programs, and computed once."""
+    first = normalise("first", [Let(A, C * 2), Let(B, A + X)], [Output("o", B * A)])
+    second = normalise("second", [Let(D, C * 2), FAR], [Output("o", D)])
     (lowered_first, lowered_second), hoisted = hoist([first, second], ["c"])
     assert hoisted == (Let(A, C * 2),)
     assert body(lowered_first) == [B]
@@ -131,7 +145,8 @@ def test_hoisting_moves_what_depends_on_constants_alone() -> None:
 
 
 def test_hoisting_goes_through_lets_and_conditions() -> None:
-    program = assemble("p", [Let(A, C * 2), Let(B, A + 1), Require(sp.Gt(B, 0), Status.OK)], [Output("o", B + X)])
+    """Hoisting follows chains of values, and leaves conditions where they are."""
+    program = normalise("p", [Let(A, C * 2), Let(B, A + 1), Require(sp.Gt(B, 0), Status.OK)], [Output("o", B + X)])
     (lowered,), hoisted = hoist([program], ["c"])
     assert [let.name for let in hoisted] == [A, B]
     assert body(lowered) == [sp.Gt(B, 0)]
@@ -139,9 +154,9 @@ def test_hoisting_goes_through_lets_and_conditions() -> None:
 
 def test_a_hoisted_name_makes_way_for_others() -> None:
     """One name is a constant of the first program and a temporary of the second: both survive."""
-    first = assemble("first", [Let(A, C * 2)], [Output("o", A)])
-    second = assemble("second", [Let(A, X * 2)], [Output("o", A)])
-    third = assemble("third", [Let(A, C * 3)], [Output("o", A)])
+    first = normalise("first", [Let(A, C * 2)], [Output("o", A)])
+    second = normalise("second", [Let(A, X * 2)], [Output("o", A)])
+    third = normalise("third", [Let(A, C * 3)], [Output("o", A)])
     lowered, hoisted = hoist([first, second, third], ["c"])
     assert [str(let.name) for let in hoisted] == ["a_2", "a_3"]
     assert [p.outputs[0].value for p in lowered] == [real("a_2"), A, real("a_3")]
@@ -149,11 +164,12 @@ def test_a_hoisted_name_makes_way_for_others() -> None:
 
 
 def test_hoisting_changes_no_value() -> None:
+    """A program gives the same results after hoisting."""
     statements = [Let(A, Root(C) + D), Let(B, A * X), Require(sp.Gt(B, A), Status.UNREACHABLE), Let(Y, B / A + C)]
-    program = assemble("p", statements, [Output("o", Y), Output("q", A)])
+    program = normalise("p", statements, [Output("o", Y), Output("q", A)])
     (lowered,), hoisted = hoist([program], ["c", "d"])
     given = {"c": np.asarray(2.0), "d": np.asarray(0.5), "x": np.linspace(-2, 2, 9)}
-    constants, _ = run(assemble("setup", hoisted, [Output(let.name.name, let.name) for let in hoisted]), given)
+    constants, _ = run(normalise("setup", hoisted, [Output(let.name.name, let.name) for let in hoisted]), given)
     before, after = run(program, given), run(lowered, {"x": given["x"], "c": given["c"], **constants})
     assert all(np.array_equal(before[0][k], after[0][k]) for k in before[0])
     assert np.array_equal(before[1], after[1])

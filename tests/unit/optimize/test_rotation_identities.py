@@ -11,7 +11,7 @@ from derive.ir.constants import (
     KNOWN_ANGLE,
 )
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -52,7 +52,7 @@ def crossed(row: int, column: int, other: int, sign: int = 1) -> Program:
         Let(DY, Select(REGULAR, sign * R[row, column], sp.sin(U))),
         Let(MADE_Y, DX * R[row, other] + DY * third),
     ]
-    return assemble("p", lets, [Output("y", MADE_Y), Output("a", A)])
+    return normalise("p", lets, [Output("y", MADE_Y), Output("a", A)])
 
 
 def rotations(count: int) -> dict[str, np.ndarray]:
@@ -65,6 +65,7 @@ def rotations(count: int) -> dict[str, np.ndarray]:
 @pytest.mark.parametrize("columns", [(2, 0), (2, 1), (0, 1), (1, 0)])
 @pytest.mark.parametrize("row", range(3))
 def test_the_third_column_takes_its_place(row: int, columns: tuple[int, int], sign: int) -> None:
+    """An entry of the cross product of two columns is the entry of the third column."""
     program = crossed(row, *columns, sign)
     found = with_rotation_identities(program)
     (value,) = (let.value for let in found.lets() if let.name == MADE_Y)
@@ -77,12 +78,13 @@ def test_the_third_column_takes_its_place(row: int, columns: tuple[int, int], si
 
 
 def test_what_is_no_such_product_is_left_alone() -> None:
+    """Expressions that only resemble such a cross product stay as they are."""
     program = crossed(0, 2, 0)
     made = [s for s in program.body if isinstance(s, Let) and s.name == MADE_Y][0].value
     dx, dy = sp.Add.make_args(made)
     for other in (dx - dy, dx + 2 * dy, dx + dy + R[0, 0], dx * R[1, 1], dx):
         body = [Let(MADE_Y, other) if isinstance(s, Let) and s.name == MADE_Y else s for s in program.body]
-        changed = assemble("p", body, program.outputs)
+        changed = normalise("p", body, program.outputs)
         assert with_rotation_identities(changed) == changed
 
 

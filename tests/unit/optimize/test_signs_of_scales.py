@@ -8,7 +8,7 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, ToReal
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import Sign, count, real
@@ -25,7 +25,7 @@ def _scaled(length: sp.Expr, condition: sp.Basic) -> Program:
     axis = NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
     divisor = Let(DIVISOR, Select(condition, LENGTH, 1))
     lets = [Let(LENGTH, length), divisor, Let(COS, X / DIVISOR), Let(SIN, Y / DIVISOR), Let(AXIS, axis)]
-    return assemble("p", lets, [Output("axis_q", AXIS)])
+    return normalise("p", lets, [Output("axis_q", AXIS)])
 
 
 def mirrored(program: Program) -> Program:
@@ -54,6 +54,7 @@ def _agree(first: Program, second: Program) -> None:
 def test_a_divisor_leaves_a_direction_only_where_it_is_a_length(
     length: sp.Expr, condition: sp.Basic, is_proven: bool
 ) -> None:
+    """A divisor is dropped from a direction only if it is proven to be positive."""
     program = _scaled(length, condition)
     found = plain_directions(program)
     _agree(program, found)
@@ -63,17 +64,19 @@ def test_a_divisor_leaves_a_direction_only_where_it_is_a_length(
 
 @pytest.mark.parametrize("factor", [K, -K, X * K, -Root(K**2), sp.Integer(-1)])
 def test_a_factor_of_any_sign_turns_a_direction(factor: sp.Expr) -> None:
+    """A factor of unknown sign keeps its effect on the angle of a direction."""
     axis = NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
-    program = assemble("p", [Let(COS, factor * X), Let(SIN, factor * Y), Let(AXIS, axis)], [Output("axis_q", AXIS)])
+    program = normalise("p", [Let(COS, factor * X), Let(SIN, factor * Y), Let(AXIS, axis)], [Output("axis_q", AXIS)])
     for change in (plain_directions, mirrored):
         _agree(program, change(program))
 
 
 def test_a_branch_sign_turns_a_direction() -> None:
+    """A branch sign in front of a direction turns the angle by half a turn on one branch."""
     sigma = Sign(count("sigma_elbow"), ("up", "down"))
     sign, axis = real("sign_elbow"), NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
     lets = [Let(sign, ToReal(sigma.symbol)), Let(COS, sign * X), Let(SIN, sign * Y), Let(AXIS, axis)]
-    program = assemble("p", lets, [Output("axis_q", AXIS)])
+    program = normalise("p", lets, [Output("axis_q", AXIS)])
     given = {name: SAMPLES[name] for name in ("x", "y", "ref")}
     every, _ = run(unroll(mirrored(program), (sigma,)), given)
     for number, word in ((1, "up"), (-1, "down")):

@@ -39,6 +39,7 @@ def with_cones(mechanism: Mechanism, base: list[sp.Expr | None], plate: list[sp.
     ],
 )
 def test_what_cannot_be_a_cone(mechanism: Mechanism, cone: sp.Expr, word: str) -> None:
+    """A cone without a home pose, or with a width that is no parameter, is refused."""
     nothing = [None] * (len(mechanism.rods) - 1)
     for side in (([cone, *nothing], [None, *nothing]), ([None, *nothing], [*nothing, cone])):
         with pytest.raises(DescriptionError, match=word):
@@ -67,5 +68,6 @@ def test_a_rod_without_a_cone_is_free_and_others_have_their_own() -> None:
 
 
 def test_the_hexapod_has_them() -> None:
+    """The rods of the hexapod have cones at both ends."""
     assert {r.base_cone for r in MECHANISM.rods} == {BASE_CONE * DEGREE}
     assert {r.plate_cone for r in MECHANISM.rods} == {PLATFORM_CONE * DEGREE}

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from derive.algebra.normal_form import polynomial
 from derive.equations.problem import Binding, Equation, Problem
 from derive.ir.interpret import evaluate, run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.program import (
     Let,
     Output,
@@ -89,7 +89,7 @@ def execute(
     """Every value that the statements bind, beside the given ones; and the status."""
     statements = tuple(statements)
     names = dict.fromkeys(s.name.name for s in statements if isinstance(s, Let))
-    program = assemble("rule", statements, [Output(n, real(n)) for n in names])
+    program = normalise("rule", statements, [Output(n, real(n)) for n in names])
     given = {s.name: np.asarray(v, dtype=float) for s, v in values.items()}
     outputs, status = run(program, given)
     return {**given, **outputs}, status.item()

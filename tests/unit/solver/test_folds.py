@@ -15,10 +15,10 @@ import sympy as sp
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from derive.equations.problem import Equation, Measure, Problem, Slope
+from derive.equations.problem import Conditioning, Equation, Problem, StepDeterminant
 from derive.ir.constants import FOLD, ROUNDING
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Output, Program, Statement
 from derive.ir.symbols import cosine, real, sine
@@ -48,32 +48,32 @@ def problem(*angles: sp.Symbol) -> Problem:
     return Problem(angles, (), (), (V, U), {V: real("free_v"), U: real("free_u")}, SCALE)
 
 
-def aimed() -> tuple[tuple[Statement, ...], Slope]:
+def aimed() -> tuple[tuple[Statement, ...], StepDeterminant]:
     """The two-root step: -sin v x + cos v y = beside."""
     equation = Equation("sideways", cosine(V) * Y - sine(V) * X - BESIDE)
     (binding,) = trigonometric(problem(V), (equation,))
-    assert binding.slope is not None and binding.slope.legs is not None
-    return binding.statements, binding.slope
+    assert binding.determinant is not None and binding.determinant.legs is not None
+    return binding.statements, binding.determinant
 
 
 def program(statements: tuple[Statement, ...], *names: sp.Symbol) -> Program:
     own = (cosine(V), sine(V), NEEDED, real("ahead_v"), *names)
-    return assemble("fold", statements, [Output(n.name, n) for n in own])
+    return normalise("fold", statements, [Output(n.name, n) for n in own])
 
 
 @cache
 def turning(*, is_ruled: bool) -> Program:
     """The later step needs e = p cos v + q sin v."""
-    statements, slope = aimed()
+    statements, determinant = aimed()
     statements = (*statements, Let(NEEDED, P * cosine(V) + Q * sine(V)))
-    later = Slope(real("sigma_w"), real("unused"), SCALE, reach=(SIZE, NEEDED))
-    return program(beyond_folds(statements, (slope, later), (), SCALE) if is_ruled else statements)
+    later = StepDeterminant(real("sigma_w"), real("unused"), SCALE, reach=(SIZE, NEEDED))
+    return program(beyond_folds(statements, (determinant, later), (), SCALE) if is_ruled else statements)
 
 
 @cache
 def sweeping(*, is_ruled: bool) -> Program:
     """Between them u is the direction of (x1 cos v + x2 sin v, y1 cos v + y2 sin v); e = level + p cos u + q sin u."""
-    statements, slope = aimed()
+    statements, determinant = aimed()
     along, across, radius = real("part_x"), real("part_y"), real("radius_u")
     statements = (
         *statements,
@@ -81,13 +81,13 @@ def sweeping(*, is_ruled: bool) -> Program:
         Let(across, Y1 * cosine(V) + Y2 * sine(V)),
         Let(radius, Root(along**2 + across**2)),
         *direction(
-            problem(U), U, along=along, across=across, measure=radius, note="", is_length=True, scale=sp.Integer(1)
+            problem(U), U, along=along, across=across, conditioning=radius, note="", is_length=True, scale=sp.Integer(1)
         ),
         Let(NEEDED, LEVEL + P * cosine(U) + Q * sine(U)),
     )
-    later = Slope(real("sigma_w"), real("unused"), SCALE, reach=(SIZE, NEEDED))
-    measures = (Measure(U, radius, sp.Integer(1)),)
-    ruled = beyond_folds(statements, (slope, later), measures, SCALE)
+    later = StepDeterminant(real("sigma_w"), real("unused"), SCALE, reach=(SIZE, NEEDED))
+    conditionings = (Conditioning(U, radius, sp.Integer(1)),)
+    ruled = beyond_folds(statements, (determinant, later), conditionings, SCALE)
     return program(ruled if is_ruled else statements, cosine(U), sine(U), radius)
 
 
@@ -115,6 +115,7 @@ def left(values: Values, found: Values) -> float:
 def test_it_turns_to_where_the_later_step_reaches_within_rounding_and_no_farther(
     angle: float, share: float, beside: float, side: float, phase: float, turn: float, way: float
 ) -> None:
+    """Near a fold the angle turns to the nearest value at which the later step has a solution, within rounding."""
     values = point(angle, side * share * UNIT, beside) | {"sigma_v": side, "free_v": 0.0, "size": 0.0}
     slope_at = angle + phase  # e = sin(v - slope_at + ...) is steep there
     values |= {"p": -np.sin(slope_at), "q": np.cos(slope_at)}
@@ -141,6 +142,7 @@ def test_it_turns_to_where_the_later_step_reaches_within_rounding_and_no_farther
 def test_it_stays_where_the_later_step_reaches(
     angle: float, share: float, beside: float, side: float, slope_at: float, more: float
 ) -> None:
+    """Where the later step has a solution the angle does not change."""
     values = point(angle, side * share * UNIT, beside) | {"sigma_v": side, "free_v": 0.0, "size": 0.0}
     values |= {"p": -np.sin(slope_at), "q": np.cos(slope_at)}
     before = outputs(turning(is_ruled=False), values)

@@ -8,7 +8,7 @@ import sympy as sp
 
 from derive.equations.problem import Equation, Problem
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.program import (
     Output,
     Status,
@@ -29,7 +29,7 @@ def solved(x: float, y: float, beside: float, side: float, free: float = 0.7) ->
     equation = Equation("sideways", cosine(Q) * Y - sine(Q) * X - (BESIDE if beside else 0))
     problem = Problem((Q,), (), (equation,), (Q,), {Q: real("free")}, SCALE)
     (binding,) = trigonometric(problem, (equation,))
-    program = assemble("aim", binding.statements, [Output("c", cosine(Q)), Output("s", sine(Q))])
+    program = normalise("aim", binding.statements, [Output("c", cosine(Q)), Output("s", sine(Q))])
     given = {"x": x, "y": y, "beside": beside, "sigma_q": side, "free": free, "reach": 1000.0}
     outputs, status = run(program, {k: np.asarray(v) for k, v in given.items()})
     return float(outputs["c"]), float(outputs["s"]), Status(status.item())
@@ -38,6 +38,7 @@ def solved(x: float, y: float, beside: float, side: float, free: float = 0.7) ->
 @pytest.mark.parametrize("side", (1.0, -1.0))
 @pytest.mark.parametrize("beside", (0.0, 40.0, -40.0))
 def test_both_ways_meet_the_point(side: float, beside: float) -> None:
+    """Both roots point the arm with its lateral offset at the point."""
     for angle in np.linspace(-3.0, 3.0, 13):
         x, y = 300.0 * np.cos(angle), 300.0 * np.sin(angle)
         c, s, status = solved(x, y, beside, side)
@@ -47,23 +48,27 @@ def test_both_ways_meet_the_point(side: float, beside: float) -> None:
 
 
 def test_the_two_ways_are_two() -> None:
+    """The two signs give two different angles."""
     (c1, s1, _), (c2, s2, _) = (solved(120.0, 50.0, 40.0, side) for side in (1.0, -1.0))
     assert abs(c1 - c2) + abs(s1 - s2) > 0.1
 
 
 @pytest.mark.parametrize("side", (1.0, -1.0))
 def test_on_the_axis_the_angle_is_free(side: float) -> None:
+    """A point on the axis, without a lateral offset, leaves the angle at the reference."""
     c, s, status = solved(0.0, 0.0, 0.0, side, free=0.7)
     assert (c, s, status) == (pytest.approx(np.cos(0.7)), pytest.approx(np.sin(0.7)), Status.OK)
 
 
 def test_nearer_to_the_axis_than_the_arm_is_beside_it() -> None:
+    """A point closer to the axis than the lateral offset is UNREACHABLE."""
     assert solved(30.0, 10.0, 40.0, 1.0)[2] is Status.UNREACHABLE
     assert solved(0.0, 0.0, 40.0, 1.0)[2] is Status.UNREACHABLE
 
 
 @pytest.mark.parametrize("angle", np.linspace(-3.0, 3.0, 7))
 def test_on_the_cylinder_both_ways_meet(angle: float) -> None:
+    """At the distance of the lateral offset both roots coincide."""
     x, y = 40.0 * np.cos(angle), 40.0 * np.sin(angle)
     (c1, s1, first), (c2, s2, second) = (solved(x, y, 40.0, side) for side in (1.0, -1.0))
     assert first is second is Status.OK

@@ -58,6 +58,7 @@ KINDS = {
 @pytest.mark.parametrize("kind", KINDS)
 @given(a=NUMBERS, b=NUMBERS, u=ANGLES, free=ANGLES)
 def test_the_root(kind: str, a: float, b: float, u: float, free: float) -> None:
+    """The root solves both equations, for each kind of pair."""
     given_problem, sense = KINDS[kind]
     right = complex(a, b) * np.exp(1j * sense * u)
     binding = answer(pair, given_problem)
@@ -68,7 +69,7 @@ def test_the_root(kind: str, a: float, b: float, u: float, free: float) -> None:
     assert abs(np.hypot(values["cos_u"], values["sin_u"]) - 1) <= 1e-15
     is_free = abs(right) <= 1e-11
     assert distance(angle_of(values, U), free if is_free else u) <= 1e-14 or 1e-12 <= abs(right) <= 1e-9
-    assert binding.slope is None
+    assert binding.determinant is None
 
 
 @pytest.mark.parametrize("size, is_free", [(0.0, True), (0.999e-8, True), (1.001e-8, False)])
@@ -83,10 +84,11 @@ def test_a_vanishing_arm_leaves_the_reference(size: float, is_free: bool, free: 
     assert distance(angle_of(values, U), free if is_free else 0.7) <= 1e-12
 
 
-def test_the_measure_is_what_turns() -> None:
-    measure = answer(pair, TURNED).measure
-    assert measure is not None
-    assert (measure.angle, measure.scale) == (U, SCALE)
+def test_the_conditioning_is_what_turns() -> None:
+    """The conditioning of a rotation is the length of the vector that it rotates."""
+    conditioning = answer(pair, TURNED).conditioning
+    assert conditioning is not None
+    assert (conditioning.angle, conditioning.scale) == (U, SCALE)
 
 
 HALVES = {
@@ -97,6 +99,7 @@ HALVES = {
 
 @pytest.mark.parametrize("half", HALVES)
 def test_the_reference_stays_on_the_half_circle_of_the_machine(half: str) -> None:
+    """A free angle takes the reference, moved onto the half circle of the machine."""
     positive, cases = HALVES[half]
     excluded = problem(*(e.expression for e in TURNED.equations), angles=(U,), positive=(positive,))
     for free, wanted in cases:
@@ -107,9 +110,10 @@ def test_the_reference_stays_on_the_half_circle_of_the_machine(half: str) -> Non
 @few
 @given(w=ANGLES, u=ANGLES)
 def test_an_arm_of_length_one_has_no_degenerate_case(w: float, u: float) -> None:
+    """A vector of length one always determines its angle, and nothing is divided."""
     known = problem(sp.cos(U + W) - E, sp.sin(U + W) - F, angles=(U,), known=(W,))
     binding = answer(pair, known)
-    assert binding.measure is None
+    assert binding.conditioning is None
     values, status = execute(binding.statements, {**trigonometry(w=w), E: cos(u + w), F: sin(u + w)})
     assert status is Status.OK
     assert distance(angle_of(values, U), u) <= 1e-14
@@ -118,10 +122,10 @@ def test_an_arm_of_length_one_has_no_degenerate_case(w: float, u: float) -> None
 @few
 @given(link_1=LENGTHS, link_2=LENGTHS, b=NUMBERS, u=ANGLES)
 def test_cramer(link_1: float, link_2: float, b: float, u: float) -> None:
-    """Rows that are no rotated vector, with a slope that never vanishes: two lengths of the machine."""
+    """Rows that are no rotated vector, with a determinant that never vanishes: two lengths of the machine."""
     oblique = problem(L1 * sp.cos(U) - E, B * sp.cos(U) + L2 * sp.sin(U) - F, angles=(U,))
     binding = answer(pair, oblique)
-    assert binding.measure is binding.slope is None
+    assert binding.conditioning is binding.determinant is None
     right = {E: link_1 * cos(u), F: b * cos(u) + link_2 * sin(u)}
     values, _ = execute(binding.statements, {L1: link_1, L2: link_2, B: b, **right})
     assert abs(values["cos_u"] - cos(u)) <= 1e-14
@@ -144,10 +148,12 @@ def test_cramer(link_1: float, link_2: float, b: float, u: float) -> None:
     ids=lambda e: str(e),
 )
 def test_not_taken(first: sp.Expr, second: sp.Expr) -> None:
+    """The rule takes no pair of another form."""
     assert answers(pair, problem(first, second, angles=(U, W), lengths=(V,))) == []
 
 
 def test_three_equations_are_three_pairs() -> None:
+    """The rule offers every pair of equations that it can solve."""
     assert len(answers(pair, problem(sp.cos(U) - E, sp.sin(U) - F, sp.cos(U) - 2 * sp.sin(U) - A, angles=(U,)))) == 3
 
 

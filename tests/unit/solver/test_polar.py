@@ -54,6 +54,7 @@ ELLIPSE = problem(K * F * sp.cos(V) - A, -2 * F * sp.sin(V) - B, angles=(V,), le
 @pytest.mark.parametrize("sigma", [1.0, -1.0])
 @given(a=NUMBERS, b=NUMBERS, free=ANGLES)
 def test_both_roots(sigma: float, a: float, b: float, free: float) -> None:
+    """Both roots solve the equations, with the length positive on one branch."""
     binding = answer(polar, PLAIN)
     values, status = execute(binding.statements, {A: a, B: b, SIGMA: sigma, SCALE: 1.0, FREE: free})
     assert status is Status.OK
@@ -63,16 +64,17 @@ def test_both_roots(sigma: float, a: float, b: float, free: float) -> None:
     assert abs(hypot(c, s) - 1) <= 1e-13
     if hypot(a, b) > 1e-10:
         assert distance(angle_of(values, V), np.arctan2(sigma * b, sigma * a)) <= 1e-13
-    assert binding.slope is not None
-    assert binding.slope.sigma == SIGMA
-    assert sigma * at(binding.slope.value, values) >= 0
+    assert binding.determinant is not None
+    assert binding.determinant.sigma == SIGMA
+    assert sigma * at(binding.determinant.value, values) >= 0
 
 
 @few
 @given(a=NUMBERS, b=NUMBERS)
 def test_a_positive_radius_has_one_root(a: float, b: float) -> None:
+    """A radius that is stated to be positive has one root."""
     binding = answer(polar, RADIUS)
-    assert binding.slope is None
+    assert binding.determinant is None
     values, _ = execute(binding.statements, {A: a, B: b, SCALE: 1.0, FREE: 0.0})
     assert values["f"] >= 0
     assert abs(values["f"] - hypot(a, b)) <= 1e-13 * hypot(a, b)
@@ -81,6 +83,7 @@ def test_a_positive_radius_has_one_root(a: float, b: float) -> None:
 @few
 @given(a=NUMBERS, b=NUMBERS, c=NUMBERS, sigma=st.sampled_from([1.0, -1.0]))
 def test_the_equations_may_stand_the_other_way_round(a: float, b: float, c: float, sigma: float) -> None:
+    """The rule solves the equations in either order, and with shifted right sides."""
     values, _ = execute(answer(polar, COMPASS).statements, {A: a, B: b, C: c, SIGMA: sigma, SCALE: 1.0, FREE: 0.0})
     size = hypot(b, a + c)
     assert abs(values["f"] * values["cos_v"] - b) <= max(1e-13 * size, AT_CENTRE)
@@ -90,6 +93,7 @@ def test_the_equations_may_stand_the_other_way_round(a: float, b: float, c: floa
 @few
 @given(f=NUMBERS, v=ANGLES, k=LENGTHS)
 def test_factors_of_the_radius(f: float, v: float, k: float) -> None:
+    """The rule solves equations whose radius has constant factors."""
     right = {A: k * f * cos(v), B: -2 * f * sin(v), K: k}
     for sigma in (1.0, -1.0):
         values, _ = execute(answer(polar, ELLIPSE).statements, {**right, SIGMA: sigma, SCALE: 1.0, FREE: 0.0})
@@ -101,6 +105,7 @@ def test_factors_of_the_radius(f: float, v: float, k: float) -> None:
 @pytest.mark.parametrize("given_problem", [PLAIN, RADIUS], ids=["two roots", "one root"])
 @pytest.mark.parametrize("size, is_free", [(0.0, True), (0.999e-8, True), (1.001e-8, False)])
 def test_the_centre_leaves_the_reference(given_problem: object, size: float, is_free: bool) -> None:
+    """At the centre the angle takes the reference, and just beside it does not."""
     binding = answer(polar, given_problem)  # type: ignore[arg-type]
     angles = set()
     for sigma in (1.0, -1.0):
@@ -108,7 +113,7 @@ def test_the_centre_leaves_the_reference(given_problem: object, size: float, is_
         values, status = execute(binding.statements, right)
         assert status is Status.OK
         angles.add(round(angle_of(values, V), 9))
-    assert angles == ({0.4} if is_free else {2.0} if binding.slope is None else {2.0, round(2.0 - np.pi, 9)})
+    assert angles == ({0.4} if is_free else {2.0} if binding.determinant is None else {2.0, round(2.0 - np.pi, 9)})
 
 
 @few
@@ -131,7 +136,7 @@ def test_a_sum_becomes_known(f: float, k: float, v: float) -> None:
     """A radius that is longer than the axis by a fixed part."""
     telescope = problem(A - (F + K) * sp.cos(V), B - (F + K) * sp.sin(V), angles=(V,), lengths=(F,), positive=(F + K,))
     binding = answer(polar, telescope)
-    assert binding.slope is None
+    assert binding.determinant is None
     radius = abs(f + k)
     values, _ = execute(binding.statements, {A: radius * cos(v), B: radius * sin(v), K: k, SCALE: 1.0, FREE: v})
     assert distance(angle_of(values, V), v) <= 1e-12
@@ -154,6 +159,7 @@ def test_a_sum_becomes_known(f: float, k: float, v: float) -> None:
     ids=lambda e: str(e),
 )
 def test_not_taken(first: sp.Expr, second: sp.Expr) -> None:
+    """The rule takes no pair of another form."""
     assert answers(polar, problem(first, second, angles=(V, W), lengths=(F, G))) == []
 
 
@@ -163,6 +169,7 @@ def test_not_taken(first: sp.Expr, second: sp.Expr) -> None:
 )
 @given(a=ANYTHING, b=ANYTHING, c=ANYTHING, free=ANYTHING, k=st.floats(1e-9, 1e9), sigma=st.sampled_from([1.0, -1.0]))
 def test_total(given_problem: object, a: float, b: float, c: float, free: float, k: float, sigma: float) -> None:
+    """The statements give finite numbers for any finite input."""
     binding = answer(polar, given_problem)  # type: ignore[arg-type]
     values, _ = execute(binding.statements, {A: a, B: b, C: c, K: k, SIGMA: sigma, SCALE: k, FREE: free})
     assert all_finite(values)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.program import Let, Output
 from derive.ir.reason import Reason, Unit, Why
 from derive.ir.symbols import real
@@ -25,7 +25,7 @@ Q = real("q")
 def value(reason: Reason, **values: float) -> float:
     """The amount at numbers."""
     assert reason.amount is not None
-    found, _ = run(assemble("amount", [], [Output("amount", reason.amount)]), values)
+    found, _ = run(normalise("amount", [], [Output("amount", reason.amount)]), values)
     return float(found["amount"])
 
 
@@ -36,6 +36,9 @@ def triangle(first: sp.Expr, second: sp.Expr, third: sp.Expr) -> sp.Expr:
 
 @given(LENGTH, LENGTH, LENGTH)
 def test_the_third_side_is_so_much_too_long_or_too_short(first: float, second: float, reach: float) -> None:
+    """The missing amount of a triangle that does not close is the length by which its third side is too long or too
+    short.
+    """
     missing = max(reach - first - second, abs(first - second) - reach)
     assume(missing > 1e-6)
     reason = out_of_reach(Q, triangle(FIRST, SECOND, REACH), [])
@@ -45,6 +48,7 @@ def test_the_third_side_is_so_much_too_long_or_too_short(first: float, second: f
 
 @given(SIGNED, SIGNED, LENGTH)
 def test_whatever_signs_the_lengths_have(left: float, right: float, reach: float) -> None:
+    """The missing amount does not depend on the signs of the lengths."""
     missing = max(reach - abs(left) - abs(right), abs(abs(left) - abs(right)) - reach)
     assume(missing > 1e-6)
     reason = out_of_reach(Q, triangle(LEFT, RIGHT, REACH), [])
@@ -53,6 +57,7 @@ def test_whatever_signs_the_lengths_have(left: float, right: float, reach: float
 
 @given(LENGTH, st.floats(-800.0, 800.0), st.floats(-800.0, 800.0))
 def test_a_rod_would_have_to_be_so_much_longer(rod: float, x: float, y: float) -> None:
+    """The missing amount of a rod that does not reach is the length that it lacks."""
     assume(x * x + y * y > (rod + 1e-3) ** 2)
     reason = cannot_reach("rod 1", sp.factor(ROD**2 - X**2 - Y**2), [])
     assert reason.words == "rod 1 cannot reach"
@@ -61,6 +66,7 @@ def test_a_rod_would_have_to_be_so_much_longer(rod: float, x: float, y: float) -
 
 @given(LENGTH, st.floats(-800.0, 800.0), st.sampled_from([1, -1]), st.sampled_from([1, -1]))
 def test_in_whatever_signs_the_factors_are_written(rod: float, x: float, first: int, second: int) -> None:
+    """The missing amount does not depend on the signs of the factors of the radicand."""
     assume(abs(x) > rod + 1e-3)
     radicand = sp.Mul(first * second, first * (ROD - X), second * (ROD + X), evaluate=False)
     assert abs(value(cannot_reach("rod 1", radicand, []), rod=rod, x=x) - (abs(x) - rod)) < 1e-9 * abs(x)
@@ -81,5 +87,6 @@ def test_a_rod_in_a_product_that_has_a_name(arm: float, distance: float, rod: fl
 
 
 def test_what_is_no_length_has_no_amount() -> None:
+    """A radicand without a length as factor gives a reason without an amount."""
     reason = out_of_reach(Q, 4 * DEGREE * X * Y, [])
     assert (reason.amount, reason.unit) == (None, Unit.NONE)

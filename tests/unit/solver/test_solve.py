@@ -17,7 +17,7 @@ import sympy as sp
 
 from derive.equations.problem import Problem
 from derive.ir.interpret import run
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Atan2,
     Wrap,
@@ -153,27 +153,32 @@ def sampled(expression: sp.Expr, numbers: Mapping[str, np.ndarray]) -> np.ndarra
 
 def solutions(case: Case, derivation: Derivation, given: Mapping[str, np.ndarray]) -> list[dict[str, np.ndarray]]:
     """The values of all unknowns for every assignment of the signs."""
-    names = [*(f(a) for a in case.angles for f in (cosine, sine)), *case.lengths, *(s.value for s in derivation.slopes)]
+    names = [
+        *(f(a) for a in case.angles for f in (cosine, sine)),
+        *case.lengths,
+        *(s.value for s in derivation.determinants),
+    ]
     outputs = [Output(f"o{k}", n) for k, n in enumerate(names)]
-    program = assemble("solution", derivation.statements, outputs)
+    program = normalise("solution", derivation.statements, outputs)
     heading = {"cos_heading": np.cos(given["heading"]), "sin_heading": np.sin(given["heading"])}
     free = {reference(a).name: np.zeros(COUNT) for a in case.angles}
     found = []
-    for signs in product((1.0, -1.0), repeat=len(derivation.slopes)):
-        sigma = {s.sigma.name: np.asarray(v) for s, v in zip(derivation.slopes, signs, strict=True)}
+    for signs in product((1.0, -1.0), repeat=len(derivation.determinants)):
+        sigma = {s.sigma.name: np.asarray(v) for s, v in zip(derivation.determinants, signs, strict=True)}
         values, status = run(program, {**given, **heading, **free, **sigma})
         assert set(status) == {Status.OK}
         columns = iter(values.values())
         unknowns = {a.name: np.arctan2(*reversed([next(columns), next(columns)])) for a in case.angles}
         unknowns |= {v.name: next(columns) for v in case.lengths}
-        for sign, slope in zip(signs, columns, strict=True):
-            assert np.all(sign * slope > 0)
+        for sign, determinant in zip(signs, columns, strict=True):
+            assert np.all(sign * determinant > 0)
         found.append(unknowns)
     return found
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_all_solutions(name: str) -> None:
+    """The derivation finds all solutions of the closure, each on the branch of its signs."""
     case = CASES[name]
     derivation, given = case.derivation, samples(case)
     found = solutions(case, derivation, given)
@@ -197,13 +202,14 @@ def _apart(case: Case, first: Mapping[str, float], second: Mapping[str, float]) 
 
 @pytest.mark.parametrize("name", CASES)
 def test_by_these_rules(name: str) -> None:
+    """The driver uses the expected rules in the expected order."""
     assert CASES[name].derivation.rules == CASES[name].rules
 
 
 def test_what_cannot_vanish_is_preferred() -> None:
     """First the rotation that is commanded directly, although the wrist stands first; then the shorter formula."""
     turn = {"cos_turn": sp.cos(A1 + HEADING), "sin_turn": sp.sin(A1 + HEADING)}
-    assert Case({**plane((L1, A1)), **turn}, (A1,)).derivation.measures == ()
+    assert Case({**plane((L1, A1)), **turn}, (A1,)).derivation.conditionings == ()
     long, short = Case({"x": 2 * P + L1 * L2 - K * TOOL_X, "y": P}, (), (P,)), Case({"y": P}, (), (P,))
     assert [str(s.value) for s in long.derivation.statements] == [str(s.value) for s in short.derivation.statements]
 
@@ -227,6 +233,7 @@ UNSOLVED = {
 
 @pytest.mark.parametrize("name", UNSOLVED)
 def test_unsolved_says_what_is_left(name: str) -> None:
+    """The error for an unsolved mechanism names the equations and unknowns that are left."""
     case, message = UNSOLVED[name]
     with pytest.raises(Unsolved) as refusal:
         solve(case.problem, case.arguments, lambda angle: ())
@@ -234,6 +241,7 @@ def test_unsolved_says_what_is_left(name: str) -> None:
 
 
 def test_a_step_binds_a_name_once() -> None:
+    """Two values under one name in a derivation raise `BrokenProgram`."""
     record = DerivationRecord()
     record.append((Let(P, X), Let(P, X), Let(Q, P + Y)))
     with pytest.raises(BrokenProgram, match="a step binds p twice, to x and to y"):
@@ -254,7 +262,7 @@ def test_turns_count_once_they_are_chosen() -> None:
     derivation = solve(case.problem, case.arguments, resolve)
     assert turned == [A1]
     assert derivation.rules == ("pair", "affine")
-    program = assemble("screw", derivation.statements, [Output("p", P)])
+    program = normalise("screw", derivation.statements, [Output("p", P)])
     values, _ = run(
         program, {n: np.asarray(v) for n, v in {"x": 0.0, "y": 1.0, "z": 3.0, "k": 2.0, "turn": 10.0}.items()}
     )
@@ -262,6 +270,7 @@ def test_turns_count_once_they_are_chosen() -> None:
 
 
 def test_no_turn_is_chosen_that_nothing_needs() -> None:
+    """The turn of an angle is chosen only where a value needs the angle as a number."""
     case = Case({"x": sp.cos(A1), "y": sp.sin(A1)}, (A1,))
     asked: list[sp.Symbol] = []
 
@@ -277,11 +286,12 @@ DERIVE = """
 from tests.unit.solver.test_solve import CASES
 for name in ("2R with a tool beside the arm", "2R with absolute angles", "shoulder and elbow"):
     derivation = CASES[name].derivation
-    print(derivation.rules, derivation.slopes, derivation.measures, *derivation.statements, sep="\\n")
+    print(derivation.rules, derivation.determinants, derivation.conditionings, *derivation.statements, sep="\\n")
 """
 
 
 def test_the_same_text_in_every_process() -> None:
+    """The derivation is the same for two hash seeds of Python."""
     root = Path(__file__).resolve().parents[3]
     texts = set()
     for seed in ("0", "4711"):

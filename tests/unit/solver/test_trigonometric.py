@@ -1,4 +1,4 @@
-"""Trigonometric: a cos u + b sin u = e has two roots, told apart by the sign of the slope."""
+"""Trigonometric: a cos u + b sin u = e has two roots, told apart by the sign of the determinant."""
 
 from __future__ import annotations
 
@@ -90,6 +90,7 @@ def machine(link_1: float, link_2: float, p: float, q: float) -> dict[sp.Symbol,
 @pytest.mark.parametrize("name", [n for n in KINDS if n != "law of cosines"])
 @given(link_1=LENGTHS, link_2=LENGTHS, p=NUMBERS, q=NUMBERS, u=ANGLES)
 def test_both_roots(name: str, link_1: float, link_2: float, p: float, q: float, u: float) -> None:
+    """Both roots solve the equation, and the sign of the determinant is that of the branch."""
     case = KINDS[name]
     values = machine(link_1, link_2, p, q)
     named = {s.name: np.asarray(v) for s, v in values.items()}
@@ -107,10 +108,10 @@ def test_both_roots(name: str, link_1: float, link_2: float, p: float, q: float,
         cos_u, sin_u = found["cos_u"], found["sin_u"]
         assert abs(cos_u**2 + sin_u**2 - 1) <= 1e-11
         assert abs(a * cos_u + b * sin_u - values[E]) <= 1e-13 * h
-        assert case.binding.slope is not None
-        slope = at(case.binding.slope.value, found)
-        assert sigma * slope >= -1e-12 * h
-        assert abs(abs(slope) - h * np.sin(half)) <= 1e-6 * h
+        assert case.binding.determinant is not None
+        determinant = at(case.binding.determinant.value, found)
+        assert sigma * determinant >= -1e-12 * h
+        assert abs(abs(determinant) - h * np.sin(half)) <= 1e-6 * h
         roots[sigma] = angle_of(found, U)
     expected = [middle + half, middle - half]
     for root in expected:  # no true root is missing, and the two slots do not hold the same one
@@ -135,6 +136,7 @@ def test_law_of_cosines(link_1: float, p: float, q: float, w: float, sigma: floa
 @pytest.mark.parametrize("name", ["cosine alone", "sine alone", "a fixed direction", "any direction", "sums"])
 @pytest.mark.parametrize("side", [1, -1])
 def test_the_boundary_belongs_to_the_workspace(name: str, side: int) -> None:
+    """A right side that exceeds the amplitude by rounding is solved, and one that exceeds it by more is refused."""
     case = KINDS[name]
     values = machine(325.0, 225.0, -40.0, 30.0)
     h = amplitude(case, values)
@@ -156,6 +158,7 @@ def test_the_boundary_belongs_to_the_workspace(name: str, side: int) -> None:
 @pytest.mark.parametrize("factor", MOST)
 @given(turn=ANGLES)
 def test_what_is_too_short_cannot_be_aimed(factor: float, turn: float) -> None:
+    """An amplitude below 1e-9 of its scale is refused."""
     case = KINDS["an arm and an offset"]
     short = 1e-9 * 300.0 * factor
     values = {**machine(300.0, 200.0, short * np.cos(turn), short * np.sin(turn)), E: 0.0}
@@ -169,18 +172,20 @@ def test_what_is_too_short_cannot_be_aimed(factor: float, turn: float) -> None:
 @pytest.mark.parametrize("name", KINDS)
 @given(link_1=st.floats(1e-3, 1e9), link_2=st.floats(1e-3, 1e9), p=ANYTHING, q=ANYTHING, e=ANYTHING, sigma=SIGNS)
 def test_total(name: str, link_1: float, link_2: float, p: float, q: float, e: float, sigma: float) -> None:
+    """The statements give finite numbers for any finite input."""
     found, _ = solved(KINDS[name], {**machine(link_1, link_2, p, q), E: e, REACH: e}, sigma)
     assert all_finite(found)
 
 
 def test_the_margin_needs_no_unit() -> None:
-    """Where the amplitude is one of the machine's lengths, the slope over its scale is a plain sine."""
+    """Where the amplitude is one of the machine's lengths, the determinant over its scale is a plain sine."""
     for name in ("cosine alone", "sine alone", "negative sine", "a fixed direction"):
         case = KINDS[name]
-        assert case.binding.slope is not None
+        assert case.binding.determinant is not None
         small, large = ({**machine(k * 3.0, k * 2.0, 0.0, 0.0), E: 0.0} for k in (1.0, 1000.0))
         margins = [
-            at(case.binding.slope.value / case.binding.slope.scale, solved(case, v, 1.0)[0]) for v in (small, large)
+            at(case.binding.determinant.value / case.binding.determinant.scale, solved(case, v, 1.0)[0])
+            for v in (small, large)
         ]
         assert margins == pytest.approx([1.0, 1.0])
 
@@ -200,4 +205,5 @@ def test_the_margin_needs_no_unit() -> None:
     ids=str,
 )
 def test_not_taken(expression: sp.Expr) -> None:
+    """The rule takes no equation of another form."""
     assert answers(trigonometric, problem(expression, angles=(U, W), lengths=(V,))) == []

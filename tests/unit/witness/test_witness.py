@@ -53,6 +53,7 @@ def refusing(program: Program, condition: sp.Basic) -> Program:
 
 
 def test_the_scara_agrees(scara: Kinematics) -> None:
+    """The witness agrees with the derived programs of a SCARA, and finds two solutions."""
     evidence = witness(scara)
     assert evidence.poses == 144
     assert evidence.inverted is not None
@@ -153,6 +154,7 @@ WRONG: dict[str, tuple[str, Callable[[Kinematics], Kinematics]]] = {
 
 @pytest.mark.parametrize("what", WRONG)
 def test_a_wrong_formula_is_refused(scara: Kinematics, what: str) -> None:
+    """The witness refuses each kind of wrong program with its own message."""
     message, spoil = WRONG[what]
     with pytest.raises(Disagreement) as refused:
         witness(spoil(scara))
@@ -163,4 +165,5 @@ def test_a_wrong_formula_is_refused(scara: Kinematics, what: str) -> None:
 
 
 def test_measured_numbers_are_rounded_up_to_a_decade() -> None:
+    """Measured errors are rounded up to a power of ten, and are at least 1e-12."""
     assert [decade(v) for v in (0.0, 3e-16, 1e-12, 1.1e-12, 9e-11, 1e-10)] == [1e-12, 1e-12, 1e-12, 1e-11, 1e-10, 1e-10]

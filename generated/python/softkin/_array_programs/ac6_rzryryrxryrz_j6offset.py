@@ -113,14 +113,14 @@ class ArrayPrograms(Programs):
         reach_tried = sqrt(
             wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
         )
-        part_of_one_less_cos_q3_tried = k.a2_plus_effective_q3_tried - reach_tried
-        part_of_one_less_cos_q3_tried_2 = k.a2_plus_effective_q3_tried + reach_tried
+        sum_in_one_less_cos_q3_tried = k.a2_plus_effective_q3_tried - reach_tried
+        sum_in_one_less_cos_q3_tried_2 = k.a2_plus_effective_q3_tried + reach_tried
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_tried = part_of_one_less_cos_q3_tried * part_of_one_less_cos_q3_tried_2
-        part_of_one_plus_cos_q3_tried = k.a2_minus_effective_q3_tried - reach_tried
-        part_of_one_plus_cos_q3_tried_2 = k.a2_minus_effective_q3_tried + reach_tried
+        one_less_cos_q3_tried = sum_in_one_less_cos_q3_tried * sum_in_one_less_cos_q3_tried_2
+        sum_in_one_plus_cos_q3_tried = k.a2_minus_effective_q3_tried - reach_tried
+        sum_in_one_plus_cos_q3_tried_2 = k.a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried * part_of_one_plus_cos_q3_tried_2
+        one_plus_cos_q3_tried = -sum_in_one_plus_cos_q3_tried * sum_in_one_plus_cos_q3_tried_2
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = k.j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
@@ -136,11 +136,11 @@ class ArrayPrograms(Programs):
             / select(reach_tried > 0.0, reach_tried, 1.0),
             0.0,
         )
-        slope_one_less_cos_q3_tried = (
-            part_of_one_less_cos_q3_tried - part_of_one_less_cos_q3_tried_2
-        ) * slope_reach_tried
+        slope_one_less_cos_q3_tried = slope_reach_tried * (
+            sum_in_one_less_cos_q3_tried - sum_in_one_less_cos_q3_tried_2
+        )
         slope_one_plus_cos_q3_tried = (
-            part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried
+            sum_in_one_plus_cos_q3_tried_2 - sum_in_one_plus_cos_q3_tried
         ) * slope_reach_tried
         slope_divisor_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
         holds = sum_q3_tried > 0.0
@@ -195,7 +195,7 @@ class ArrayPrograms(Programs):
         # rotation by q2 that takes the arm to its target point
         along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
         across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
-        part_of_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
+        sum_in_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
         slope_arm_along_q2_tried = k.a3 * slope_sin_q3_tried + k.d4 * slope_cos_q3_tried
         slope_arm_across_q2_tried = k.a3 * slope_cos_q3_tried - k.d4 * slope_sin_q3_tried
         slope_along_q2_tried = (
@@ -210,14 +210,14 @@ class ArrayPrograms(Programs):
             - arm_along_q2_tried * slope_wrist_z_tried
             - slope_arm_along_q2_tried * wrist_z_from_q1_tried
         )
-        length_q2_tried = root(part_of_length_q2_tried)
+        length_q2_tried = root(sum_in_length_q2_tried)
         slope_length_q2_tried = select(
             length_q2_tried > 0.0,
             (across_q2_tried * slope_across_q2_tried + along_q2_tried * slope_along_q2_tried)
             / select(length_q2_tried > 0.0, length_q2_tried, 1.0),
             0.0,
         )
-        holds = (part_of_length_q2_tried > 0.0) & (reach_tried > k.machine_scale_times_free_angle)
+        holds = (reach_tried > k.machine_scale_times_free_angle) & (sum_in_length_q2_tried > 0.0)
         length_q2_tried = select(holds, length_q2_tried, 1.0)
         slope_length_q2_tried = select(holds, slope_length_q2_tried, 0.0)
         one_by_root_of_length_q2_tried = 1.0 / length_q2_tried
@@ -375,10 +375,10 @@ class ArrayPrograms(Programs):
         # rotation by q2 that takes the arm to its target point
         along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
         across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
-        part_of_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
+        sum_in_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
         length_q2_tried = select(
-            (part_of_length_q2_tried > 0.0) & (reach_tried > k.machine_scale_times_free_angle),
-            root(part_of_length_q2_tried),
+            (reach_tried > k.machine_scale_times_free_angle) & (sum_in_length_q2_tried > 0.0),
+            root(sum_in_length_q2_tried),
             1.0,
         )
         cos_q2_tried = along_q2_tried / length_q2_tried
@@ -629,9 +629,9 @@ class ArrayPrograms(Programs):
                 ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
             )
             step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
-            part_of_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
-            step_q2 = part_of_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
-            step_q3 = part_of_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
+            step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_q4 = (
                 multiplier_1 * rate_1_4
                 + multiplier_2 * rate_2_4
@@ -697,7 +697,7 @@ class ArrayPrograms(Programs):
         fits = (
             (error <= 1e-10)
             & (select(k.size_of_j6_offset_x > 0.0, sin_q4, cos_q5) * wanted_wrist >= -1e-6)
-            & (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * k.part_of_fits >= -1e-6)
+            & (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * k.quotient_in_fits >= -1e-6)
             & (wanted_elbow * (k.a3 * sin(q3) + cos(q3) * k.d4) * k.one_by_machine_scale >= -1e-6)
             & (
                 wanted_shoulder * (k.a1 + k.a2 * sin_q2 + k.a3 * sin_q23 + k.d4 * cos_q23) * k.one_by_machine_scale
@@ -915,7 +915,7 @@ class ArrayPrograms(Programs):
                 -select(branch_shoulder >= 0.0, 1.0, -1.0)
                 * select(margin_elbow_closed >= 0.0, 1.0, -1.0)
                 * determinant
-                * k.part_of_fits
+                * k.quotient_in_fits
             )
         else:
             branch_shoulder = k.one_by_machine_scale * (wrist_x_closed * cos_q1 + wrist_y_closed * sin_q1)
@@ -930,7 +930,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         sigma_shoulder, sigma_elbow, sigma_wrist, sigma_crossing = signs
@@ -972,7 +972,7 @@ class ArrayPrograms(Programs):
         reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
         # q3: out of reach
         require(status, k.searched | (absolute(cos_swing_q3_closed) <= 1.0000000000005), Status.UNREACHABLE)
-        # without the offset there is no second crossing
+        # without an offset, only the first branch of the crossing has a solution
         require(status, k.searched | (sigma_crossing > 0), Status.UNREACHABLE)
         # root scan along A6
         found = self.find_root(
@@ -1051,8 +1051,8 @@ class ArrayPrograms(Programs):
             across_q2_closed = (
                 arm_across_q2_closed * wrist_x_from_q1_closed - arm_along_q2_closed * wrist_z_from_q1_closed
             )
-            part_of_length_q2_closed = across_q2_closed * across_q2_closed + along_q2_closed * along_q2_closed
-            length_q2_closed = select(part_of_length_q2_closed > 0.0, root(part_of_length_q2_closed), 1.0)
+            sum_in_length_q2_closed = across_q2_closed * across_q2_closed + along_q2_closed * along_q2_closed
+            length_q2_closed = select(sum_in_length_q2_closed > 0.0, root(sum_in_length_q2_closed), 1.0)
             cos_q2_closed = along_q2_closed / length_q2_closed
             sin_q2_closed = across_q2_closed / length_q2_closed
             # where it is singular: the angle of the reference

@@ -111,7 +111,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         sigma_shoulder, sigma_elbow, sigma_wrist = signs
@@ -352,10 +352,10 @@ class ArrayPrograms(Programs):
                     ) * one_by_turned_length_q1_for_q3
                     return (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
 
-                part_of_across_q6_q1_for_q3 = k.d1_times_d5_times_2 - k.twice_d5 * wrist_z
-                part_of_across_q6_q1_for_q3_2 = ahead_q1_before_q1_for_q3 * k.twice_d5 * cos_q5_before_q1_for_q3
-                along_q6_q1_for_q3 = -part_of_across_q6_q1_for_q3 * r32 - part_of_across_q6_q1_for_q3_2 * r31
-                across_q6_q1_for_q3 = part_of_across_q6_q1_for_q3_2 * r32 - part_of_across_q6_q1_for_q3 * r31
+                sum_in_across_q6_q1_for_q3 = k.d1_times_d5_times_2 - k.twice_d5 * wrist_z
+                product_in_across_q6_q1_for_q3 = ahead_q1_before_q1_for_q3 * k.twice_d5 * cos_q5_before_q1_for_q3
+                along_q6_q1_for_q3 = -product_in_across_q6_q1_for_q3 * r31 - r32 * sum_in_across_q6_q1_for_q3
+                across_q6_q1_for_q3 = product_in_across_q6_q1_for_q3 * r32 - r31 * sum_in_across_q6_q1_for_q3
                 swing_q6_q1_for_q3 = sqrt(
                     across_q6_q1_for_q3 * across_q6_q1_for_q3 + along_q6_q1_for_q3 * along_q6_q1_for_q3
                 )
@@ -364,21 +364,23 @@ class ArrayPrograms(Programs):
                     - across_q6_q1_for_q3 * sin_q6_before_q1_for_q3
                     - along_q6_q1_for_q3 * cos_q6_before_q1_for_q3
                 )
-                part_of_highest_q6_q1_for_q3_2 = (
-                    k.part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3
+                quotient_in_highest_q6_q1_for_q3 = (
+                    k.product_in_highest_q6_q1_for_q3 - level_q6_q1_for_q3
                 ) / swing_q6_q1_for_q3
                 highest_q6_q1_for_q3 = select(
-                    part_of_highest_q6_q1_for_q3_2 > 1.0,
+                    quotient_in_highest_q6_q1_for_q3 > 1.0,
                     1.0,
-                    select(part_of_highest_q6_q1_for_q3_2 < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2),
+                    select(quotient_in_highest_q6_q1_for_q3 < -1.0, -1.0, quotient_in_highest_q6_q1_for_q3),
                 )
-                part_of_lowest_q6_q1_for_q3 = (level_q6_q1_for_q3 + k.part_of_highest_q6_q1_for_q3) / swing_q6_q1_for_q3
+                quotient_in_lowest_q6_q1_for_q3 = (
+                    level_q6_q1_for_q3 + k.product_in_highest_q6_q1_for_q3
+                ) / swing_q6_q1_for_q3
                 lowest_q6_q1_for_q3 = select(
-                    -part_of_lowest_q6_q1_for_q3 > 1.0,
+                    -quotient_in_lowest_q6_q1_for_q3 > 1.0,
                     1.0,
-                    select(-part_of_lowest_q6_q1_for_q3 < -1.0, -1.0, -part_of_lowest_q6_q1_for_q3),
+                    select(-quotient_in_lowest_q6_q1_for_q3 < -1.0, -1.0, -quotient_in_lowest_q6_q1_for_q3),
                 )
-                holds = swing_q6_q1_for_q3 > k.part_of_divisor_q6_q1_for_q3
+                holds = swing_q6_q1_for_q3 > k.product_in_divisor_q6_q1_for_q3
                 # feasible arc: cosines of its ends
                 highest_q6_q1_for_q3 = select(holds, highest_q6_q1_for_q3, 1.0)
                 lowest_q6_q1_for_q3 = select(holds, lowest_q6_q1_for_q3, -1.0)
@@ -416,9 +418,9 @@ class ArrayPrograms(Programs):
                     near_along_q1_for_q3,
                 )
                 near_side_q1_for_q3 = select(near_towards_q1_for_q3 < 0.0, -1.0, 1.0)
-                part_of_near_cos_q1_for_q3 = near_side_q1_for_q3 / near_radius_q1_for_q3
-                near_cos_q1_for_q3 = -near_q_q1_for_q3 * part_of_near_cos_q1_for_q3
-                near_sin_q1_for_q3 = near_p_q1_for_q3 * part_of_near_cos_q1_for_q3
+                quotient_in_near_cos_q1_for_q3 = near_side_q1_for_q3 / near_radius_q1_for_q3
+                near_cos_q1_for_q3 = -near_q_q1_for_q3 * quotient_in_near_cos_q1_for_q3
+                near_sin_q1_for_q3 = near_p_q1_for_q3 * quotient_in_near_cos_q1_for_q3
                 holds = near_radius_q1_for_q3 > 1e-12
                 # the earlier angle follows
                 # it stays where it has no effect
@@ -450,9 +452,9 @@ class ArrayPrograms(Programs):
                     mirrored_along_q1_for_q3,
                 )
                 mirrored_side_q1_for_q3 = select(mirrored_towards_q1_for_q3 < 0.0, -1.0, 1.0)
-                part_of_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3 / mirrored_radius_q1_for_q3
-                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3 * part_of_mirrored_cos_q1_for_q3
-                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3 * part_of_mirrored_cos_q1_for_q3
+                quotient_in_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3 / mirrored_radius_q1_for_q3
+                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3 * quotient_in_mirrored_cos_q1_for_q3
+                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3 * quotient_in_mirrored_cos_q1_for_q3
                 holds = mirrored_radius_q1_for_q3 > 1e-12
                 # the earlier angle follows
                 # it stays where it has no effect
@@ -637,17 +639,17 @@ class ArrayPrograms(Programs):
                 level_q6_of_q3 = (
                     value_q6_of_q3 - across_q6_of_q3 * sin_q6_before_q6_of_q3 - along_q6_of_q3 * cos_q6_before_q6_of_q3
                 )
-                part_of_highest_q6_of_q3 = (k.size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
+                quotient_in_highest_q6_of_q3 = (k.size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                 highest_q6_of_q3 = select(
-                    part_of_highest_q6_of_q3 > 1.0,
+                    quotient_in_highest_q6_of_q3 > 1.0,
                     1.0,
-                    select(part_of_highest_q6_of_q3 < -1.0, -1.0, part_of_highest_q6_of_q3),
+                    select(quotient_in_highest_q6_of_q3 < -1.0, -1.0, quotient_in_highest_q6_of_q3),
                 )
-                part_of_lowest_q6_of_q3 = (level_q6_of_q3 + k.size_q1_for_q3) / swing_q6_of_q3
+                quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + k.size_q1_for_q3) / swing_q6_of_q3
                 lowest_q6_of_q3 = select(
-                    -part_of_lowest_q6_of_q3 > 1.0,
+                    -quotient_in_lowest_q6_of_q3 > 1.0,
                     1.0,
-                    select(-part_of_lowest_q6_of_q3 < -1.0, -1.0, -part_of_lowest_q6_of_q3),
+                    select(-quotient_in_lowest_q6_of_q3 < -1.0, -1.0, -quotient_in_lowest_q6_of_q3),
                 )
                 holds = swing_q6_of_q3 > k.size_q1_for_q3_times_rounding
                 # feasible arc: cosines of its ends
@@ -667,14 +669,11 @@ class ArrayPrograms(Programs):
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
-                part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
+                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
+                sum_in_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
-                    sqrt(
-                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
-                        + part_of_cost_q6_of_q3_2 * part_of_cost_q6_of_q3_2
-                    )
+                    sqrt(sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3 + sum_in_cost_q6_of_q3_2 * sum_in_cost_q6_of_q3_2)
                     * radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11)
@@ -686,7 +685,7 @@ class ArrayPrograms(Programs):
 
             # moved so that q3 has a solution
             cos_q6, sin_q6 = elsewhere(
-                (radius_q6 > 0.1) & (absolute(value_q6_of_q3) > k.part_of_cos_q6),
+                (radius_q6 > 0.1) & (absolute(value_q6_of_q3) > k.product_in_cos_q6),
                 (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
                 elsewhere_cos_q6,
                 (

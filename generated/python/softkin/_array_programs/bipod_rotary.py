@@ -54,7 +54,7 @@ class ArrayPrograms(Programs):
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
-        normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)  # distance between the centres
         # square of the height over the line of the centres
         height_square = (
@@ -79,7 +79,7 @@ class ArrayPrograms(Programs):
         # the rods do not meet
         require(
             status,
-            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.outer_arm_squared_times_rounding),
+            (normal_square > k.product_in_normal_divisor) & (height_square >= -k.outer_arm_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return (
@@ -91,7 +91,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2 = signs
         turn_a1, turn_a2 = turns
@@ -162,7 +162,7 @@ class ArrayPrograms(Programs):
             (effective_a2 > k.inner_arm_times_shortest_link) & (absolute(cos_swing_a2) <= 1.0000000000005),
             Status.UNREACHABLE,
         )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_arms_aligned >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2), status
 

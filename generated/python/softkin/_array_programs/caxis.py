@@ -45,7 +45,7 @@ class ArrayPrograms(OrientationPrograms):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         (turn_c,) = turns
         (ref_c,) = reference
@@ -73,7 +73,7 @@ class ArrayPrograms(OrientationPrograms):
         require(status, (axis_c >= k.lowest_c) & (axis_c <= k.highest_c), Status.UNREACHABLE)
         return status
 
-    def carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
-        """From a flange that turns to the end point."""
+    def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
+        """The vector from a flange that turns to the end point."""
         status = passed(rotation, flange_axis, base_axis)
         return (0.0, 0.0, 0.0), status

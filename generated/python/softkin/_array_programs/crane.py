@@ -65,7 +65,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (turn_theta,) = turns
         _, ref_theta, ref_phi = reference
@@ -95,9 +95,9 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_phi(ref_phi: Real) -> Reals:
             reference_phi = (ref_phi - k.offset_phi) * DEGREE
-            part_of_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
-            direction_x_phi = cos(part_of_direction_y_phi)
-            direction_y_phi = sin(part_of_direction_y_phi)
+            value_in_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
+            direction_x_phi = cos(value_in_direction_y_phi)
+            direction_y_phi = sin(value_in_direction_y_phi)
             return (direction_x_phi, direction_y_phi)
 
         # where it is singular: the angle of the reference

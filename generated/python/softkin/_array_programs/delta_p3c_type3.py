@@ -40,10 +40,10 @@ class ArrayPrograms(Programs):
         require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
         a1 = DEGREE * (axis_a1 - k.offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = k.part_of_pivot_1_y + k.inner_arm_1_times_sin_azimuth_1 * cos_a1
+        pivot_1_y = k.sum_in_pivot_1_y + k.inner_arm_1_times_sin_azimuth_1 * cos_a1
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = k.part_of_pivot_2_y + k.inner_arm_2_times_sin_azimuth_2 * cos_a2
+        pivot_2_y = k.sum_in_pivot_2_y + k.inner_arm_2_times_sin_azimuth_2 * cos_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
         pivot_1_z = -k.inner_arm_1 * sin_a1
@@ -52,7 +52,7 @@ class ArrayPrograms(Programs):
         centre_1_to_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE * (axis_a3 - k.offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = k.part_of_pivot_3_y + k.inner_arm_3_times_sin_azimuth_3 * cos_a3
+        pivot_3_y = k.sum_in_pivot_3_y + k.inner_arm_3_times_sin_azimuth_3 * cos_a3
         centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
         pivot_3_z = -k.inner_arm_3 * sin_a3
@@ -60,26 +60,26 @@ class ArrayPrograms(Programs):
         # normal to the plane of the centres
         normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
         # rod 1: centre about which it swings
-        pivot_1_x = k.part_of_pivot_1_x + cos_a1 * k.cos_azimuth_1_times_inner_arm_1
+        pivot_1_x = k.sum_in_pivot_1_x + cos_a1 * k.cos_azimuth_1_times_inner_arm_1
         # rod 2: centre about which it swings
-        pivot_2_x = k.part_of_pivot_2_x + cos_a2 * k.cos_azimuth_2_times_inner_arm_2
+        pivot_2_x = k.sum_in_pivot_2_x + cos_a2 * k.cos_azimuth_2_times_inner_arm_2
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         # rod 3: centre about which it swings
-        pivot_3_x = k.part_of_pivot_3_x + cos_a3 * k.cos_azimuth_3_times_inner_arm_3
+        pivot_3_x = k.sum_in_pivot_3_x + cos_a3 * k.cos_azimuth_3_times_inner_arm_3
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
         # squared length of the normal
         normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = k.part_of_projection_2 + 0.5 * (
+        projection_2 = k.sum_in_projection_2 + 0.5 * (
             centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
         )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = k.part_of_projection_3 + 0.5 * (
+        projection_3 = k.sum_in_projection_3 + 0.5 * (
             centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
         )
-        normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
         one_by_normal_square = 1.0 / normal_divisor
         # foot of the perpendicular, seen from centre 1
         foot_x = one_by_normal_square * (
@@ -101,18 +101,18 @@ class ArrayPrograms(Programs):
         x = foot_x + pivot_1_x + height_by_normal * normal_x
         y = foot_y + pivot_1_y + height_by_normal * normal_y
         z = foot_z + pivot_1_z + height_by_normal * normal_z
-        span_1_x = x - k.part_of_pivot_1_x  # rod 1: known part of its vector
-        span_1_y = y - k.part_of_pivot_1_y
+        span_1_x = x - k.sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_y = y - k.sum_in_pivot_1_y
         branch_knee_1 = (
             (-span_1_x * k.cos_azimuth_1 - span_1_y * k.sin_azimuth_1) * sin_a1 - z * cos_a1
         ) / k.outer_arm_1
-        span_2_x = x - k.part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = y - k.part_of_pivot_2_y
+        span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - k.sum_in_pivot_2_y
         branch_knee_2 = (
             (-span_2_x * k.cos_azimuth_2 - span_2_y * k.sin_azimuth_2) * sin_a2 - z * cos_a2
         ) / k.outer_arm_2
-        span_3_x = x - k.part_of_pivot_3_x  # rod 3: known part of its vector
-        span_3_y = y - k.part_of_pivot_3_y
+        span_3_x = x - k.sum_in_pivot_3_x  # rod 3: known part of its vector
+        span_3_y = y - k.sum_in_pivot_3_y
         branch_knee_3 = (
             (-span_3_x * k.cos_azimuth_3 - span_3_y * k.sin_azimuth_3) * sin_a3 - z * cos_a3
         ) / k.outer_arm_3
@@ -120,7 +120,7 @@ class ArrayPrograms(Programs):
         # the rods do not meet
         require(
             status,
-            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.outer_arm_1_squared_times_rounding),
+            (normal_square > k.product_in_normal_divisor) & (height_square >= -k.outer_arm_1_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return (
@@ -132,7 +132,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
         turn_a1, turn_a2, turn_a3 = turns
@@ -141,14 +141,14 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a1, ref_a2, ref_a3, x, y, z), Status.BAD_INPUT)
-        span_1_x = x - k.part_of_pivot_1_x  # rod 1: known part of its vector
-        span_1_y = y - k.part_of_pivot_1_y
+        span_1_x = x - k.sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_y = y - k.sum_in_pivot_1_y
         along_a1 = span_1_x * k.cos_azimuth_1 + span_1_y * k.sin_azimuth_1
         z_squared = z * z
         effective_a1 = root(z_squared + along_a1 * along_a1)  # effective length of the arm that a1 turns
-        part_of_third_square_a1 = span_1_y * k.cos_azimuth_1 - span_1_x * k.sin_azimuth_1
+        sum_in_third_square_a1 = span_1_y * k.cos_azimuth_1 - span_1_x * k.sin_azimuth_1
         # square of the third side of the triangle
-        third_square_a1 = (k.outer_arm_1 + part_of_third_square_a1) * (k.outer_arm_1 - part_of_third_square_a1)
+        third_square_a1 = (k.outer_arm_1 + sum_in_third_square_a1) * (k.outer_arm_1 - sum_in_third_square_a1)
         divisor_a1 = select(effective_a1 > k.inner_arm_1_times_shortest_link, effective_a1, 1.0)
         effective_a1_minus_inner_arm_1 = divisor_a1 - k.inner_arm_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
@@ -160,13 +160,13 @@ class ArrayPrograms(Programs):
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
-        span_2_x = x - k.part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = y - k.part_of_pivot_2_y
+        span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - k.sum_in_pivot_2_y
         along_a2 = span_2_x * k.cos_azimuth_2 + span_2_y * k.sin_azimuth_2
         effective_a2 = root(z_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
-        part_of_third_square_a2 = span_2_y * k.cos_azimuth_2 - span_2_x * k.sin_azimuth_2
+        sum_in_third_square_a2 = span_2_y * k.cos_azimuth_2 - span_2_x * k.sin_azimuth_2
         # square of the third side of the triangle
-        third_square_a2 = (k.outer_arm_2 + part_of_third_square_a2) * (k.outer_arm_2 - part_of_third_square_a2)
+        third_square_a2 = (k.outer_arm_2 + sum_in_third_square_a2) * (k.outer_arm_2 - sum_in_third_square_a2)
         divisor_a2 = select(effective_a2 > k.inner_arm_2_times_shortest_link, effective_a2, 1.0)
         effective_a2_minus_inner_arm_2 = divisor_a2 - k.inner_arm_2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
@@ -178,13 +178,13 @@ class ArrayPrograms(Programs):
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
-        span_3_x = x - k.part_of_pivot_3_x  # rod 3: known part of its vector
-        span_3_y = y - k.part_of_pivot_3_y
+        span_3_x = x - k.sum_in_pivot_3_x  # rod 3: known part of its vector
+        span_3_y = y - k.sum_in_pivot_3_y
         along_a3 = span_3_x * k.cos_azimuth_3 + span_3_y * k.sin_azimuth_3
         effective_a3 = root(z_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
-        part_of_third_square_a3 = span_3_y * k.cos_azimuth_3 - span_3_x * k.sin_azimuth_3
+        sum_in_third_square_a3 = span_3_y * k.cos_azimuth_3 - span_3_x * k.sin_azimuth_3
         # square of the third side of the triangle
-        third_square_a3 = (k.outer_arm_3 + part_of_third_square_a3) * (k.outer_arm_3 - part_of_third_square_a3)
+        third_square_a3 = (k.outer_arm_3 + sum_in_third_square_a3) * (k.outer_arm_3 - sum_in_third_square_a3)
         divisor_a3 = select(effective_a3 > k.inner_arm_3_times_shortest_link, effective_a3, 1.0)
         effective_a3_minus_inner_arm_3 = divisor_a3 - k.inner_arm_3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
@@ -223,7 +223,7 @@ class ArrayPrograms(Programs):
         sin_a3 = (along_a3 * sin_swing_a3 - z * cos_swing_a3) / divisor_a3
         pivot_3_z = -k.inner_arm_3 * sin_a3
         rod_3_z = z - pivot_3_z
-        type2_rods_coplanar = -k.part_of_type2_rods_coplanar * (
+        type2_rods_coplanar = -k.quotient_in_type2_rods_coplanar * (
             (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
             + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
@@ -258,7 +258,7 @@ class ArrayPrograms(Programs):
             (effective_a3 > k.inner_arm_3_times_shortest_link) & (absolute(cos_swing_a3) <= 1.0000000000005),
             Status.UNREACHABLE,
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_rods_coplanar >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3), status
 

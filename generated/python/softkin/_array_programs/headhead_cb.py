@@ -65,7 +65,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         (sigma_tilt,) = signs
@@ -90,10 +90,10 @@ class ArrayPrograms(Programs):
         # where it is singular: the angle of the reference
         cos_c, sin_c = elsewhere(radius_c > 1e-11, (cos_c, sin_c), elsewhere_cos_c, (ref_c,))
         c_radius_of_b = sigma_tilt * radius_c
-        part_of_joint_x = k.fork_offset + k.head_offset * r33 - c_radius_of_b * k.pivot_length
-        joint_x = x - part_of_joint_x * cos_c  # joint_x from the x equation, which is linear in it
+        sum_in_joint_x = k.fork_offset + k.head_offset * r33 - c_radius_of_b * k.pivot_length
+        joint_x = x - sum_in_joint_x * cos_c  # joint_x from the x equation, which is linear in it
         axis_x = joint_x + k.offset_x
-        joint_y = y - part_of_joint_x * sin_c  # joint_y from the y equation, which is linear in it
+        joint_y = y - sum_in_joint_x * sin_c  # joint_y from the y equation, which is linear in it
         axis_y = joint_y + k.offset_y
         # joint_z from the z equation, which is linear in it
         joint_z = z + c_radius_of_b * k.head_offset + k.pivot_length * r33

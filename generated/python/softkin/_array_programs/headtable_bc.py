@@ -65,7 +65,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         (sigma_tilt,) = signs
@@ -90,9 +90,9 @@ class ArrayPrograms(Programs):
         # where it is singular: the angle of the reference
         cos_c, sin_c = elsewhere(radius_c > 1e-11, (cos_c, sin_c), elsewhere_cos_c, (ref_c,))
         c_radius_of_b = sigma_tilt * radius_c
-        part_of_joint_x = c_radius_of_b * k.pivot_length - k.head_offset * r33
+        sum_in_joint_x = c_radius_of_b * k.pivot_length - k.head_offset * r33
         # joint_x and joint_y from the x and y equations, linear in both
-        joint_x = cos_c * (x + part_of_joint_x * cos_c) + (part_of_joint_x * sin_c - y) * sin_c
+        joint_x = cos_c * (x + sum_in_joint_x * cos_c) + sin_c * (sum_in_joint_x * sin_c - y)
         axis_x = joint_x + k.offset_x
         joint_y = y * cos_c + x * sin_c
         axis_y = joint_y + k.offset_y

@@ -360,7 +360,7 @@ class ArrayPrograms(StartedPrograms):
     def forward_from(
         self, axes: Reals, start_position: Vector, start_rotation: Rotation
     ) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
-        """The same, found from a given start."""
+        """Position, rotation and the signed margin of every branch, found from a given start."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         start_x, start_y, start_z = start_position
         (start_r11, start_r12, start_r13), (start_r21, start_r22, start_r23), (start_r31, start_r32, start_r33) = (
@@ -399,7 +399,7 @@ class ArrayPrograms(StartedPrograms):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         k = self.constants
@@ -588,7 +588,7 @@ class ArrayPrograms(StartedPrograms):
         require(status, along_plate_cone_5 >= l5 * k.least_cos_plate, Status.UNREACHABLE)
         # leg 6: its joint on the plate bends beyond its cone
         require(status, along_plate_cone_6 >= l6 * k.least_cos_plate, Status.UNREACHABLE)
-        # rods_dependent: the other assembly mode, or too near to losing the plate
+        # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         require(status, k.assembly_sign * determinant >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6), status
 

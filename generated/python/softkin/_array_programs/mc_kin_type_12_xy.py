@@ -47,9 +47,9 @@ class ArrayPrograms(Programs):
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = k.part_of_scaled_pivot_rear_y * sin_a1 - k.part_of_scaled_pivot_rear_y_2 * cos_a2
+        scaled_pivot_rear_x = k.quotient_in_scaled_pivot_rear_y * sin_a1 - k.quotient_in_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y * cos_a1 + k.part_of_scaled_pivot_rear_y_2 * sin_a2
+        scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y * cos_a1 + k.quotient_in_scaled_pivot_rear_y_2 * sin_a2
         centre_1_x: Real
         centre_2_x: Real
         centre_1_y: Real
@@ -68,7 +68,7 @@ class ArrayPrograms(Programs):
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
-        normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)  # distance between the centres
         one_by_normal_square = 1.0 / normal_divisor
         # square of the height over the line of the centres
@@ -81,7 +81,7 @@ class ArrayPrograms(Programs):
             * one_by_normal_square
         )
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5 * (normal_divisor + k.part_of_foot_fraction) * one_by_normal_square
+        foot_fraction = 0.5 * (normal_divisor + k.product_in_foot_fraction) * one_by_normal_square
         foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
@@ -100,14 +100,14 @@ class ArrayPrograms(Programs):
         span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -k.link_length_3_by_link_length_2 * span_upper_y
         branch_w = (
-            (k.part_of_branch_w * cos_a1 - k.link_length_2 * span_rear_y) * cos_a2
-            + (k.part_of_branch_w * sin_a1 - k.link_length_2 * span_rear_x) * sin_a2
+            (k.product_in_branch_w * cos_a1 - k.link_length_2 * span_rear_y) * cos_a2
+            + (k.product_in_branch_w * sin_a1 - k.link_length_2 * span_rear_x) * sin_a2
         ) / k.link_length_2_times_link_length_4
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
             status,
-            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.link_length_2_squared_times_rounding),
+            (normal_square > k.product_in_normal_divisor) & (height_square >= -k.link_length_2_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_t, branch_w)), status
@@ -115,7 +115,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_t, sigma_w = signs
         turn_a1, turn_a2 = turns
@@ -153,11 +153,11 @@ class ArrayPrograms(Programs):
         sin_swing_a1 = -2.0 * root(sine_square_a1) * sigma_t / divisor_of_cos_a1
         sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - k.part_of_along_a2 * sin_a1
+        along_a2 = span_rear_x - k.quotient_in_along_a2 * sin_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
         span_rear_y = -k.link_length_3_by_link_length_2 * span_upper_y
-        across_a2 = k.part_of_along_a2 * cos_a1 - span_rear_y
+        across_a2 = k.quotient_in_along_a2 * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = select(effective_a2 > k.link_length_5_times_shortest_link, effective_a2, 1.0)
@@ -180,9 +180,9 @@ class ArrayPrograms(Programs):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = k.part_of_scaled_pivot_rear_y * sin_a1 - k.part_of_scaled_pivot_rear_y_2 * cos_a2
+        scaled_pivot_rear_x = k.quotient_in_scaled_pivot_rear_y * sin_a1 - k.quotient_in_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
-        scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y * cos_a1 + k.part_of_scaled_pivot_rear_y_2 * sin_a2
+        scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y * cos_a1 + k.quotient_in_scaled_pivot_rear_y_2 * sin_a2
         centre_1_x: Real
         centre_1_y: Real
         centre_2_x: Real
@@ -201,7 +201,7 @@ class ArrayPrograms(Programs):
         rod_1_y = y - centre_1_y
         rod_2_x = x - centre_2_x
         rod_2_y = y - centre_2_y
-        type2_arms_aligned = k.part_of_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
+        type2_arms_aligned = k.quotient_in_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: whole turns added
@@ -222,7 +222,7 @@ class ArrayPrograms(Programs):
             (effective_a2 > k.link_length_5_times_shortest_link) & (absolute(cos_swing_a2) <= 1.0000000000005),
             Status.UNREACHABLE,
         )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_arms_aligned >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2), status
 

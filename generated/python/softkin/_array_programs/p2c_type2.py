@@ -40,10 +40,10 @@ class ArrayPrograms(Programs):
         require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
         a1 = DEGREE * (axis_a1 - k.offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = k.part_of_pivot_1_x + k.inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = k.sum_in_pivot_1_x + k.inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = k.inner_arm * cos_a2 - k.part_of_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = k.inner_arm * cos_a2 - k.sum_in_pivot_1_x  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = k.inner_arm * sin_a1
@@ -52,7 +52,7 @@ class ArrayPrograms(Programs):
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
-        normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)  # distance between the centres
         # square of the height over the line of the centres
         height_square = (
@@ -69,15 +69,15 @@ class ArrayPrograms(Programs):
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         foot_y = 0.5 * centre_1_to_2_y
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
-        span_1_x = x - k.part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = x - k.sum_in_pivot_1_x  # rod 1: known part of its vector
         branch_knee_1 = (y * cos_a1 - span_1_x * sin_a1) / k.outer_arm
-        span_2_x = k.part_of_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = k.sum_in_pivot_1_x + x  # rod 2: known part of its vector
         branch_knee_2 = (span_2_x * sin_a2 - y * cos_a2) / k.outer_arm
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
             status,
-            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.outer_arm_squared_times_rounding),
+            (normal_square > k.product_in_normal_divisor) & (height_square >= -k.outer_arm_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return (
@@ -89,7 +89,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2 = signs
         turn_a1, turn_a2 = turns
@@ -100,7 +100,7 @@ class ArrayPrograms(Programs):
         require(status, reasonable(ref_a1, ref_a2, x, y, z), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
-        span_1_x = x - k.part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = x - k.sum_in_pivot_1_x  # rod 1: known part of its vector
         y_squared = y * y
         effective_a1 = root(y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
         divisor_a1 = select(effective_a1 > k.inner_arm_times_shortest_link, effective_a1, 1.0)
@@ -112,7 +112,7 @@ class ArrayPrograms(Programs):
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
-        span_2_x = k.part_of_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = k.sum_in_pivot_1_x + x  # rod 2: known part of its vector
         effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         divisor_a2 = select(effective_a2 > k.inner_arm_times_shortest_link, effective_a2, 1.0)
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
@@ -160,7 +160,7 @@ class ArrayPrograms(Programs):
             (effective_a2 > k.inner_arm_times_shortest_link) & (absolute(cos_swing_a2) <= 1.0000000000005),
             Status.UNREACHABLE,
         )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_arms_aligned >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2), status
 

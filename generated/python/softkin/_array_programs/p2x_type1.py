@@ -32,7 +32,7 @@ class ArrayPrograms(Programs):
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         # squared length of the normal
         normal_square = k.centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x
-        normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)  # distance between the centres
         one_by_normal_square = 1.0 / normal_divisor
         # square of the height over the line of the centres
@@ -45,7 +45,7 @@ class ArrayPrograms(Programs):
             * one_by_normal_square
         )
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5 * (normal_divisor + k.part_of_foot_fraction) * one_by_normal_square
+        foot_fraction = 0.5 * (normal_divisor + k.product_in_foot_fraction) * one_by_normal_square
         foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
@@ -58,7 +58,7 @@ class ArrayPrograms(Programs):
         # the rods do not meet
         require(
             status,
-            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.arm_length_1_squared_times_rounding),
+            (normal_square > k.product_in_normal_divisor) & (height_square >= -k.arm_length_1_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return (
@@ -70,7 +70,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2 = signs
         k = self.constants
@@ -89,14 +89,14 @@ class ArrayPrograms(Programs):
         span_2_x = k.tcp_offset_2 + x  # rod 2: known part of its vector
         a2 = span_2_x + root(radicand_a2) * sigma_carriage_2
         rod_2_x = span_2_x - a2
-        type2_arms_aligned = k.part_of_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
+        type2_arms_aligned = k.quotient_in_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
         axis_a1 = a1 + k.offset_a1
         axis_a2 = a2 + k.offset_a2
         # rod 1 cannot reach
         require(status, radicand_a1 >= -k.arm_length_1_squared_times_rounding, Status.UNREACHABLE)
         # rod 2 cannot reach
         require(status, radicand_a2 >= -k.arm_length_2_squared_times_rounding, Status.UNREACHABLE)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_arms_aligned >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2), status
 

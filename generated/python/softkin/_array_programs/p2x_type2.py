@@ -40,7 +40,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
@@ -56,8 +56,8 @@ class ArrayPrograms(Programs):
         axis_a1 = a1 + k.offset_a1
         axis_a2 = a2 + k.offset_a2
         # rod 1 (through x) cannot reach
-        require(status, radicand_a2 >= -k.part_of_constant, Status.UNREACHABLE)
-        # flat: the other assembly mode, or too near to losing the plate
+        require(status, radicand_a2 >= -k.shared_product, Status.UNREACHABLE)
+        # flat: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_flat >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2), status
 

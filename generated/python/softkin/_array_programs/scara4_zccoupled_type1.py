@@ -51,7 +51,7 @@ class ArrayPrograms(Programs):
         y = k.link_length_1 * sin_a1 + k.link_length_2 * sin_a12
         a3 = axis_a3 - k.offset_a3
         a4 = DEGREE * (axis_a4 - k.offset_a4)
-        z = a3 - a4 * k.part_of_z
+        z = a3 - a4 * k.quotient_in_z
         a1_plus_a2_plus_a4 = a1_plus_a2 + a4
         cos_a124 = cos(a1_plus_a2_plus_a4)
         sin_a124 = sin(a1_plus_a2_plus_a4)
@@ -61,7 +61,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
         (sigma_elbow,) = signs
@@ -119,7 +119,7 @@ class ArrayPrograms(Programs):
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4 = nearest_period(k.offset_a4 + (angle_heading - angle_a1 - angle_a2) / DEGREE, near_a4)
         a4 = DEGREE * (axis_a4 - k.offset_a4)  # A4: joint value with its whole turns
-        a3 = z + a4 * k.part_of_z  # a3 from the z equation, which is linear in it
+        a3 = z + a4 * k.quotient_in_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + k.offset_a3
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)

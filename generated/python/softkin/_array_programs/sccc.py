@@ -65,7 +65,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
         (sigma_elbow,) = signs
@@ -120,23 +120,23 @@ class ArrayPrograms(Programs):
         axis_a1 = nearest_period(k.offset_a1 + angle_a1 / DEGREE, near_a1)  # A1: whole turns added
         angle_a2 = atan2(sin_a2, cos_a2)
         motor_a1 = DEGREE * (axis_a1 - k.offset_a1)
-        part_of_axis_a2 = k.offset_a2 - motor_a1 * k.part_of_open_a2
+        sum_in_axis_a2 = k.offset_a2 - motor_a1 * k.quotient_in_open_a2
 
-        def elsewhere_near_a2(part_of_axis_a2: Real, ref_a1: Real, ref_a2: Real) -> Reals:
+        def elsewhere_near_a2(ref_a1: Real, ref_a2: Real, sum_in_axis_a2: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
             ref_motor_a2 = (ref_a2 - k.offset_a2) * DEGREE
             reference_a2 = ref_motor_a2 + k.coupling_12 * reference_a1
-            near_a2 = select(k.single_a2, k.mid_a2, part_of_axis_a2 + reference_a2 / DEGREE)
+            near_a2 = select(k.single_a2, k.mid_a2, sum_in_axis_a2 + reference_a2 / DEGREE)
             return (near_a2,)
 
         near_a2 = 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2)
-        (near_a2,) = elsewhere(turn_a2 != 0, (near_a2,), elsewhere_near_a2, (part_of_axis_a2, ref_a1, ref_a2))
-        axis_a2 = nearest_period(part_of_axis_a2 + angle_a2 / DEGREE, near_a2)  # A2: whole turns added
+        (near_a2,) = elsewhere(turn_a2 != 0, (near_a2,), elsewhere_near_a2, (ref_a1, ref_a2, sum_in_axis_a2))
+        axis_a2 = nearest_period(sum_in_axis_a2 + angle_a2 / DEGREE, near_a2)  # A2: whole turns added
         angle_heading = atan2(sin_heading, cos_heading)
         motor_a2 = DEGREE * (axis_a2 - k.offset_a2)
-        part_of_axis_a3 = k.coupling_13 * motor_a1 + k.coupling_23 * motor_a2
+        sum_in_axis_a3 = k.coupling_13 * motor_a1 + k.coupling_23 * motor_a2
 
-        def elsewhere_near_a3(part_of_axis_a3: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real) -> Reals:
+        def elsewhere_near_a3(ref_a1: Real, ref_a2: Real, ref_a3: Real, sum_in_axis_a3: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
             ref_motor_a2 = (ref_a2 - k.offset_a2) * DEGREE
             near_a3: Real
@@ -146,15 +146,13 @@ class ArrayPrograms(Programs):
                 ref_motor_a3 = (ref_a3 - k.offset_a3) * DEGREE
                 reference_a3 = ref_motor_a3 + k.coupling_13 * reference_a1 + k.coupling_23 * ref_motor_a2
                 # A3: without a commanded turn, the value nearest to this
-                near_a3 = k.offset_a3 + (reference_a3 - part_of_axis_a3) / DEGREE
+                near_a3 = k.offset_a3 + (reference_a3 - sum_in_axis_a3) / DEGREE
             return (near_a3,)
 
         near_a3 = 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3)
-        (near_a3,) = elsewhere(turn_a3 != 0, (near_a3,), elsewhere_near_a3, (part_of_axis_a3, ref_a1, ref_a2, ref_a3))
+        (near_a3,) = elsewhere(turn_a3 != 0, (near_a3,), elsewhere_near_a3, (ref_a1, ref_a2, ref_a3, sum_in_axis_a3))
         # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
-        axis_a3 = nearest_period(
-            k.offset_a3 + (angle_heading - angle_a1 - angle_a2 - part_of_axis_a3) / DEGREE, near_a3
-        )
+        axis_a3 = nearest_period(k.offset_a3 + (angle_heading - angle_a1 - angle_a2 - sum_in_axis_a3) / DEGREE, near_a3)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # z: a planar machine has none

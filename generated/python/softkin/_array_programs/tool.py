@@ -27,7 +27,7 @@ class ArrayPrograms(OrientationPrograms):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         status = passed(position, rotation, signs, turns, reference)
         return (), status
 
@@ -36,8 +36,8 @@ class ArrayPrograms(OrientationPrograms):
         status = passed(axes)
         return status
 
-    def carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
-        """From a flange that turns to the end point."""
+    def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
+        """The vector from a flange that turns to the end point."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self.constants

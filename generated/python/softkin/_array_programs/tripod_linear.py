@@ -26,9 +26,9 @@ class ArrayPrograms(Programs):
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
         a2 = axis_a2 - k.offset_a2
-        pivot_2_y = k.part_of_pivot_2_y_2 - a2 * k.part_of_pivot_2_y
+        pivot_2_y = k.sum_in_pivot_2_y - a2 * k.product_in_pivot_2_y
         a3 = axis_a3 - k.offset_a3
-        pivot_3_y = a3 * k.part_of_pivot_2_y - k.part_of_pivot_2_y_2
+        pivot_3_y = a3 * k.product_in_pivot_2_y - k.sum_in_pivot_2_y
         a1 = axis_a1 - k.offset_a1
         pivot_1_z = -a1 * k.cos_rail_angle
         pivot_2_z = -a2 * k.cos_rail_angle
@@ -37,9 +37,9 @@ class ArrayPrograms(Programs):
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         pivot_1_x = k.inner_radius_minus_outer_radius - a1 * k.sin_rail_angle  # rod 1: centre about which it swings
-        pivot_2_x = k.part_of_pivot_2_x + a2 * k.half_sin_rail_angle  # rod 2: centre about which it swings
+        pivot_2_x = k.sum_in_pivot_2_x + a2 * k.half_sin_rail_angle  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = k.part_of_pivot_2_x + a3 * k.half_sin_rail_angle  # rod 3: centre about which it swings
+        pivot_3_x = k.sum_in_pivot_2_x + a3 * k.half_sin_rail_angle  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
@@ -53,7 +53,7 @@ class ArrayPrograms(Programs):
         projection_3 = 0.5 * (
             centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
         )
-        normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
         one_by_normal_square = 1.0 / normal_divisor
         # foot of the perpendicular, seen from centre 1
         foot_x = one_by_normal_square * (
@@ -77,23 +77,23 @@ class ArrayPrograms(Programs):
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_x = x - k.inner_radius_minus_outer_radius  # rod 1: known part of its vector
         branch_carriage_1 = (a1 + z * k.cos_rail_angle + span_1_x * k.sin_rail_angle) / k.arm_length
-        span_2_y = y - k.part_of_pivot_2_y_2
-        span_2_x = x - k.part_of_pivot_2_x  # rod 2: known part of its vector
-        part_of_branch_carriage_2_2 = (
+        span_2_y = y - k.sum_in_pivot_2_y
+        span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
+        sum_in_branch_carriage_2 = (
             span_2_x * k.sin_rail_angle_times_half_by_arm_length - z * k.cos_rail_angle_by_arm_length
         )
         branch_carriage_2 = (
-            a2 * k.one_by_arm_length + k.part_of_branch_carriage_2 * span_2_y - part_of_branch_carriage_2_2
+            a2 * k.one_by_arm_length + k.quotient_in_branch_carriage_2 * span_2_y - sum_in_branch_carriage_2
         )
-        span_3_y = k.part_of_pivot_2_y_2 + y
+        span_3_y = k.sum_in_pivot_2_y + y
         branch_carriage_3 = (
-            a3 * k.one_by_arm_length - part_of_branch_carriage_2_2 - k.part_of_branch_carriage_2 * span_3_y
+            a3 * k.one_by_arm_length - sum_in_branch_carriage_2 - k.quotient_in_branch_carriage_2 * span_3_y
         )
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
             status,
-            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.arm_length_squared_times_rounding),
+            (normal_square > k.product_in_normal_divisor) & (height_square >= -k.arm_length_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return (
@@ -105,7 +105,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self.constants
@@ -117,30 +117,28 @@ class ArrayPrograms(Programs):
         # quadratic equation for a1: rod 1
         radicand_a1 = (
             k.arm_length_squared
-            + (k.part_of_radicand_a1 * span_1_x - z_minus_cos_rail_angle_squared_times_z) * z
+            + (k.product_in_radicand_a1 * span_1_x - z_minus_cos_rail_angle_squared_times_z) * z
             - y * y
             - k.one_minus_sin_rail_angle_squared * span_1_x * span_1_x
         )
-        span_2_x = x - k.part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = y - k.part_of_pivot_2_y_2
-        part_of_radicand_a2_4 = (
-            z_minus_cos_rail_angle_squared_times_z + span_2_x * k.cos_rail_angle_times_sin_rail_angle
-        )
-        part_of_radicand_a2_5 = span_2_x - span_2_x * k.sin_rail_angle_squared_times_1_by_4
+        span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - k.sum_in_pivot_2_y
+        sum_in_radicand_a2_2 = z_minus_cos_rail_angle_squared_times_z + span_2_x * k.cos_rail_angle_times_sin_rail_angle
+        sum_in_radicand_a2_3 = span_2_x - span_2_x * k.sin_rail_angle_squared_times_1_by_4
         # quadratic equation for a2: rod 2
         radicand_a2 = (
             k.arm_length_squared
-            + (-part_of_radicand_a2_5 - k.part_of_radicand_a2_2 * span_2_y) * span_2_x
-            + (k.part_of_radicand_a2 * span_2_y - part_of_radicand_a2_4) * z
-            - k.part_of_radicand_a2_3 * span_2_y * span_2_y
+            + (-sum_in_radicand_a2_3 - k.product_in_radicand_a2_2 * span_2_y) * span_2_x
+            + (k.product_in_radicand_a2 * span_2_y - sum_in_radicand_a2_2) * z
+            - span_2_y * span_2_y * k.sum_in_radicand_a2
         )
-        span_3_y = k.part_of_pivot_2_y_2 + y
+        span_3_y = k.sum_in_pivot_2_y + y
         # quadratic equation for a3: rod 3
         radicand_a3 = (
             k.arm_length_squared
-            + (k.part_of_radicand_a2_2 * span_3_y - part_of_radicand_a2_5) * span_2_x
-            + (-part_of_radicand_a2_4 - k.part_of_radicand_a2 * span_3_y) * z
-            - k.part_of_radicand_a2_3 * span_3_y * span_3_y
+            + (k.product_in_radicand_a2_2 * span_3_y - sum_in_radicand_a2_3) * span_2_x
+            + (-sum_in_radicand_a2_2 - k.product_in_radicand_a2 * span_3_y) * z
+            - span_3_y * span_3_y * k.sum_in_radicand_a2
         )
         cos_rail_angle_times_z = z * k.cos_rail_angle
         middle_a1 = cos_rail_angle_times_z + span_1_x * k.sin_rail_angle
@@ -148,25 +146,25 @@ class ArrayPrograms(Programs):
         rod_1_x = span_1_x + a1 * k.sin_rail_angle
         pivot_1_z = -a1 * k.cos_rail_angle
         rod_1_z = z - pivot_1_z
-        part_of_middle_a2 = cos_rail_angle_times_z - k.half_sin_rail_angle * span_2_x
-        middle_a2 = -part_of_middle_a2 - k.part_of_pivot_2_y * span_2_y
+        sum_in_middle_a2 = cos_rail_angle_times_z - k.half_sin_rail_angle * span_2_x
+        middle_a2 = -sum_in_middle_a2 - k.product_in_pivot_2_y * span_2_y
         a2 = middle_a2 + root(radicand_a2) * sigma_carriage_2
         rod_2_x = span_2_x - a2 * k.half_sin_rail_angle
-        rod_2_y = span_2_y + a2 * k.part_of_pivot_2_y
+        rod_2_y = span_2_y + a2 * k.product_in_pivot_2_y
         pivot_2_z = -a2 * k.cos_rail_angle
         rod_2_z = z - pivot_2_z
-        middle_a3 = k.part_of_pivot_2_y * span_3_y - part_of_middle_a2
+        middle_a3 = k.product_in_pivot_2_y * span_3_y - sum_in_middle_a2
         a3 = middle_a3 + root(radicand_a3) * sigma_carriage_3
         rod_3_x = span_2_x - a3 * k.half_sin_rail_angle
-        rod_3_y = span_3_y - a3 * k.part_of_pivot_2_y
+        rod_3_y = span_3_y - a3 * k.product_in_pivot_2_y
         pivot_3_z = -a3 * k.cos_rail_angle
         rod_3_z = z - pivot_3_z
-        type2_rods_coplanar = -k.part_of_type2_rods_coplanar * (
+        type2_rods_coplanar = -k.quotient_in_type2_rods_coplanar * (
             (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
             + (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
         )
-        part = k.root_of_3_times_half_by_arm_length * x
+        shared_product = k.root_of_3_times_half_by_arm_length * x
         half_by_arm_length_times_y = k.half_by_arm_length * y
         axis_a1 = a1 + k.offset_a1
         axis_a2 = a2 + k.offset_a2
@@ -177,14 +175,22 @@ class ArrayPrograms(Programs):
         require(status, radicand_a2 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
         # rod 3 cannot reach
         require(status, radicand_a3 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_rods_coplanar >= k.min_type2_margin, Status.UNREACHABLE)
         # ball joint of rod 1
         require(status, absolute(y) / k.arm_length <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 2
-        require(status, absolute(half_by_arm_length_times_y + part) <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
+        require(
+            status,
+            absolute(half_by_arm_length_times_y + shared_product) <= k.sin_max_angle_ball_joint,
+            Status.UNREACHABLE,
+        )
         # ball joint of rod 3
-        require(status, absolute(half_by_arm_length_times_y - part) <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
+        require(
+            status,
+            absolute(half_by_arm_length_times_y - shared_product) <= k.sin_max_angle_ball_joint,
+            Status.UNREACHABLE,
+        )
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:

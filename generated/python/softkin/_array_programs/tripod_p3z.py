@@ -36,10 +36,10 @@ class ArrayPrograms(Programs):
         # squared length of the normal
         normal_square = k.normal_z_squared + normal_x * normal_x + normal_y * normal_y
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = k.part_of_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
+        projection_2 = k.sum_in_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = k.part_of_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
-        normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
+        projection_3 = k.sum_in_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
         one_by_normal_square = 1.0 / normal_divisor
         # foot of the perpendicular, seen from centre 1
         foot_x = one_by_normal_square * (
@@ -68,7 +68,7 @@ class ArrayPrograms(Programs):
         # the rods do not meet
         require(
             status,
-            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.arm_length_squared_times_rounding),
+            (normal_square > k.product_in_normal_divisor) & (height_square >= -k.arm_length_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return (
@@ -80,23 +80,23 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(x, y, z), Status.BAD_INPUT)
-        span_1_x = x - k.part_of_span_1_x  # rod 1: known part of its vector
-        span_1_y = y - k.part_of_span_1_y
+        span_1_x = x - k.sum_in_span_1_x  # rod 1: known part of its vector
+        span_1_y = y - k.sum_in_span_1_y
         # quadratic equation for a1: rod 1
         radicand_a1 = k.arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
-        span_2_x = x - k.part_of_span_2_x  # rod 2: known part of its vector
-        span_2_y = y - k.part_of_span_2_y
+        span_2_x = x - k.sum_in_span_2_x  # rod 2: known part of its vector
+        span_2_y = y - k.sum_in_span_2_y
         # quadratic equation for a2: rod 2
         radicand_a2 = k.arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
-        span_3_x = x - k.part_of_span_3_x  # rod 3: known part of its vector
-        span_3_y = y - k.part_of_span_3_y
+        span_3_x = x - k.sum_in_span_3_x  # rod 3: known part of its vector
+        span_3_y = y - k.sum_in_span_3_y
         # quadratic equation for a3: rod 3
         radicand_a3 = k.arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         rod_1_x = x - k.pivot_1_x
@@ -111,7 +111,7 @@ class ArrayPrograms(Programs):
         rod_3_y = y - k.pivot_3_y
         a3 = z + root(radicand_a3) * sigma_carriage_3
         rod_3_z = z - a3
-        type2_rods_coplanar = -k.part_of_type2_rods_coplanar * (
+        type2_rods_coplanar = -k.quotient_in_type2_rods_coplanar * (
             (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
             + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
@@ -125,7 +125,7 @@ class ArrayPrograms(Programs):
         require(status, radicand_a2 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
         # rod 3 cannot reach
         require(status, radicand_a3 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_rods_coplanar >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3), status
 

@@ -41,10 +41,10 @@ class ArrayPrograms(Programs):
         require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = k.part_of_pivot_2_y - k.arm_length_1_times_root_of_3_times_half * cos_a2
+        pivot_2_y = k.sum_in_pivot_2_y - k.arm_length_1_times_root_of_3_times_half * cos_a2
         a3 = DEGREE * (axis_a3 - k.offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = k.arm_length_1_times_root_of_3_times_half * cos_a3 - k.part_of_pivot_2_y
+        pivot_3_y = k.arm_length_1_times_root_of_3_times_half * cos_a3 - k.sum_in_pivot_2_y
         a1 = DEGREE * (axis_a1 - k.offset_a1)
         sin_a1 = sin(a1)
         pivot_1_z = k.fixed_length_2 - k.arm_length_1 * sin_a1
@@ -58,9 +58,9 @@ class ArrayPrograms(Programs):
         cos_a1 = cos(a1)
         # rod 1: centre about which it swings
         pivot_1_x = k.fixed_length_1_minus_arm_1_radius - k.arm_length_1 * cos_a1
-        pivot_2_x = k.part_of_pivot_2_x + k.half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
+        pivot_2_x = k.sum_in_pivot_2_x + k.half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = k.part_of_pivot_2_x + k.half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
+        pivot_3_x = k.sum_in_pivot_2_x + k.half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
         normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
         normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
@@ -74,7 +74,7 @@ class ArrayPrograms(Programs):
         projection_3 = 0.5 * (
             centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
         )
-        normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
         one_by_normal_square = 1.0 / normal_divisor
         # foot of the perpendicular, seen from centre 1
         foot_x = one_by_normal_square * (
@@ -99,13 +99,13 @@ class ArrayPrograms(Programs):
         span_1_x = x - k.fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         span_1_z = z - k.fixed_length_2
         branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / k.arm_length_2
-        span_2_x = x - k.part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = y - k.part_of_pivot_2_y
+        span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - k.sum_in_pivot_2_y
         root_of_3_2 = root(3.0)
         branch_knee_2 = (
             (root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2
         ) * k.half_by_arm_length_2
-        span_3_y = k.part_of_pivot_2_y + y
+        span_3_y = k.sum_in_pivot_2_y + y
         branch_knee_3 = (
             -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * k.half_by_arm_length_2
         )
@@ -113,7 +113,7 @@ class ArrayPrograms(Programs):
         # the rods do not meet
         require(
             status,
-            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.arm_length_2_squared_times_rounding),
+            (normal_square > k.product_in_normal_divisor) & (height_square >= -k.arm_length_2_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return (
@@ -125,7 +125,7 @@ class ArrayPrograms(Programs):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
         turn_a1, turn_a2, turn_a3 = turns
@@ -137,9 +137,9 @@ class ArrayPrograms(Programs):
         span_1_x = x - k.fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         span_1_z = z - k.fixed_length_2
         effective_a1 = sqrt(span_1_x * span_1_x + span_1_z * span_1_z)  # effective length of the arm that a1 turns
-        part_of_scaled_cosine_a1_2 = (k.fixed_length_2 - span_1_z) * z - k.part_of_scaled_cosine_a1
+        sum_in_scaled_cosine_a1 = (k.fixed_length_2 - span_1_z) * z - k.product_in_scaled_cosine_a1
         # cosine, times the scale, without cancellation
-        scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (k.fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
+        scaled_cosine_a1 = sum_in_scaled_cosine_a1 + (k.fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
         divisor_a1 = select(effective_a1 > k.arm_length_1_times_shortest_link, effective_a1, 1.0)
         twice_arm_length_1_times_effective_a1 = divisor_a1 * k.twice_arm_length_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
@@ -149,17 +149,17 @@ class ArrayPrograms(Programs):
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
-        span_2_x = x - k.part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = y - k.part_of_pivot_2_y
+        span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - k.sum_in_pivot_2_y
         root_of_3_2 = root(3.0)
         along_a2 = span_2_x - root_of_3_2 * span_2_y
         across_a2 = 2.0 * span_1_z
         across_a2_squared = across_a2 * across_a2
         effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
-        part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (k.part_of_pivot_2_x - span_2_x) * x
+        sum_in_scaled_cosine_a2 = sum_in_scaled_cosine_a1 + (k.sum_in_pivot_2_x - span_2_x) * x
         # cosine, times the scale, without cancellation
-        scaled_cosine_a2 = (span_2_y - k.part_of_pivot_2_y) * y - part_of_scaled_cosine_a2
-        divisor_a2 = select(effective_a2 > k.part_of_divisor_a2, effective_a2, 1.0)
+        scaled_cosine_a2 = (span_2_y - k.sum_in_pivot_2_y) * y - sum_in_scaled_cosine_a2
+        divisor_a2 = select(effective_a2 > k.product_in_divisor_a2, effective_a2, 1.0)
         arm_length_1_times_effective_a2 = k.arm_length_1 * divisor_a2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
@@ -168,12 +168,12 @@ class ArrayPrograms(Programs):
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
-        span_3_y = k.part_of_pivot_2_y + y
+        span_3_y = k.sum_in_pivot_2_y + y
         along_a3 = span_2_x + root_of_3_2 * span_3_y
         effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # cosine, times the scale, without cancellation
-        scaled_cosine_a3 = (k.part_of_pivot_2_y + span_3_y) * y - part_of_scaled_cosine_a2
-        divisor_a3 = select(effective_a3 > k.part_of_divisor_a2, effective_a3, 1.0)
+        scaled_cosine_a3 = (span_3_y + k.sum_in_pivot_2_y) * y - sum_in_scaled_cosine_a2
+        divisor_a3 = select(effective_a3 > k.product_in_divisor_a2, effective_a3, 1.0)
         arm_length_1_times_effective_a3 = k.arm_length_1 * divisor_a3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
@@ -205,12 +205,12 @@ class ArrayPrograms(Programs):
         rod_3_y = span_3_y - k.arm_length_1_times_root_of_3_times_half * cos_a3
         sin_a3 = (along_a3 * sin_swing_a3 - across_a2 * cos_swing_a3) / divisor_a3
         rod_3_z = span_1_z + k.arm_length_1 * sin_a3
-        type2_rods_coplanar = k.part_of_type2_rods_coplanar * (
+        type2_rods_coplanar = k.quotient_in_type2_rods_coplanar * (
             rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
             + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
         )
-        part = k.root_of_3_times_half_by_arm_length_2 * x
+        shared_product = k.root_of_3_times_half_by_arm_length_2 * x
         half_by_arm_length_2_times_y = k.half_by_arm_length_2 * y
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
@@ -232,24 +232,32 @@ class ArrayPrograms(Programs):
         # a2: out of reach
         require(
             status,
-            (effective_a2 > k.part_of_divisor_a2) & (absolute(cos_swing_a2) <= 1.0000000000005),
+            (effective_a2 > k.product_in_divisor_a2) & (absolute(cos_swing_a2) <= 1.0000000000005),
             Status.UNREACHABLE,
         )
         # a3: its effective length is too short
         # a3: out of reach
         require(
             status,
-            (effective_a3 > k.part_of_divisor_a2) & (absolute(cos_swing_a3) <= 1.0000000000005),
+            (effective_a3 > k.product_in_divisor_a2) & (absolute(cos_swing_a3) <= 1.0000000000005),
             Status.UNREACHABLE,
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_rods_coplanar >= k.min_type2_margin, Status.UNREACHABLE)
         # ball joint of rod 1
         require(status, absolute(y) / k.arm_length_2 <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 2
-        require(status, absolute(half_by_arm_length_2_times_y + part) <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
+        require(
+            status,
+            absolute(half_by_arm_length_2_times_y + shared_product) <= k.sin_max_angle_ball_joint,
+            Status.UNREACHABLE,
+        )
         # ball joint of rod 3
-        require(status, absolute(half_by_arm_length_2_times_y - part) <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
+        require(
+            status,
+            absolute(half_by_arm_length_2_times_y - shared_product) <= k.sin_max_angle_ball_joint,
+            Status.UNREACHABLE,
+        )
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -63,7 +63,7 @@ class ArrayPrograms(OrientationPrograms):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         (sigma_roll,) = signs
         turn_a, turn_b = turns
@@ -109,8 +109,8 @@ class ArrayPrograms(OrientationPrograms):
         require(status, (axis_b >= k.lowest_b) & (axis_b <= k.highest_b), Status.UNREACHABLE)
         return status
 
-    def carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
-        """From a flange that turns to the end point."""
+    def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
+        """The vector from a flange that turns to the end point."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis

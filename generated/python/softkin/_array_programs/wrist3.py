@@ -69,7 +69,7 @@ class ArrayPrograms(OrientationPrograms):
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch, on their turns; limits are not tested."""
         (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
         (sigma_hand,) = signs
         turn_a, turn_b, turn_c = turns
@@ -121,8 +121,8 @@ class ArrayPrograms(OrientationPrograms):
         require(status, (axis_c >= k.lowest_c) & (axis_c <= k.highest_c), Status.UNREACHABLE)
         return status
 
-    def carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
-        """From a flange that turns to the end point."""
+    def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
+        """The vector from a flange that turns to the end point."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         k = self.constants
         status = passed(rotation, flange_axis, base_axis)

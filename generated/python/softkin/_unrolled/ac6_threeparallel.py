@@ -27,9 +27,9 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
     offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-    offset_a6, part_of_cos_q6, rounding_q1, single_a1 = k.offset_a6, k.part_of_cos_q6, k.rounding_q1, k.single_a1
-    single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
-    single_a6, size_q1_for_q3 = k.single_a6, k.size_q1_for_q3
+    offset_a6, product_in_cos_q6, rounding_q1 = k.offset_a6, k.product_in_cos_q6, k.rounding_q1
+    single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
+    single_a5, single_a6, size_q1_for_q3 = k.single_a5, k.single_a6, k.size_q1_for_q3
     size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
@@ -59,13 +59,13 @@ def unrolled(k: Constants) -> Unrolled:
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             d4_times_wrist_y = d4 * wrist_y
-            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
-            cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - part_of_cos_q1_before_q1_for_q3) / divisor_q1
+            product_in_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
+            cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - product_in_cos_q1_before_q1_for_q3) / divisor_q1
             d4_times_wrist_x = d4 * wrist_x
-            part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
-            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - part_of_sin_q1_before_q1_for_q3) / divisor_q1
-            cos_q1_before_q1_for_q3_right = (part_of_cos_q1_before_q1_for_q3 - d4_times_wrist_y) / divisor_q1
-            sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + part_of_sin_q1_before_q1_for_q3) / divisor_q1
+            product_in_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
+            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - product_in_sin_q1_before_q1_for_q3) / divisor_q1
+            cos_q1_before_q1_for_q3_right = (product_in_cos_q1_before_q1_for_q3 - d4_times_wrist_y) / divisor_q1
+            sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + product_in_sin_q1_before_q1_for_q3) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3_left = cos(reference_a1)
@@ -122,18 +122,20 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q5_left_times_d5 = d5 * cos_q5
             wrist_x_from_q1_along = -r31 * cos_q5_left_times_d5
             wrist_y_from_q1_along = d5 * r32
-            part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            product_in_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
             wrist_x_from_q1_across = r32 * cos_q5_left_times_d5
             wrist_y_from_q1_across = d5 * r31
-            part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
+            product_in_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
                 wrist_x_from_q1_fixed = radius_q6_left_times_r33_times_d5 - ahead_q1_before_q1_for_q3
-                along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                along_q6_of_q3 = 2.0 * product_in_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
+                across_q6_of_q3 = (
+                    2.0 * product_in_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
@@ -142,17 +144,17 @@ def unrolled(k: Constants) -> Unrolled:
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3_down
                         - along_q6_of_q3 * cos_q6_before_q6_of_q3_down
                     )
-                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
+                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if part_of_highest_q6_of_q3 > 1.0
-                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
+                        if quotient_in_highest_q6_of_q3 > 1.0
+                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
                     )
-                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
+                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if -part_of_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
+                        if -quotient_in_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -172,13 +174,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
-                part_of_cost_q6_of_q3_left_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
+                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                sum_in_cost_q6_of_q3_left_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
-                        + part_of_cost_q6_of_q3_left_down_2 * part_of_cost_q6_of_q3_left_down_2
+                        sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3
+                        + sum_in_cost_q6_of_q3_left_down_2 * sum_in_cost_q6_of_q3_left_down_2
                     )
                     * radius_q6
                 )
@@ -217,12 +219,12 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_left_up_down = reference_a2
             angle_q2_left_down_down = reference_a2
         angle_q3_down = arctan2(sin_q3, cos_q3)
-        part_of_axis_a3_left_up_down = angle_q3_down * RADIAN
+        quotient_in_axis_a3_left_up_down = angle_q3_down * RADIAN
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_left_up_down - angle_q3_down) * RADIAN
-        part_of_axis_a5 = arctan2(radius_q6, cos_q5) * RADIAN
-        axis_a5_left_down = offset_a5 + part_of_axis_a5
+        quotient_in_axis_a5 = arctan2(radius_q6, cos_q5) * RADIAN
+        axis_a5_left_down = offset_a5 + quotient_in_axis_a5
         axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         if radius_q6 > 1e-11:
             r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
@@ -255,18 +257,20 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q5_left_times_d5 = d5 * cos_q5
             wrist_x_from_q1_along = -r31 * cos_q5_left_times_d5
             wrist_y_from_q1_along = d5 * r32
-            part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            product_in_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
             wrist_x_from_q1_across = r32 * cos_q5_left_times_d5
             wrist_y_from_q1_across = d5 * r31
-            part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
+            product_in_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
                 wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - radius_q6_left_times_r33_times_d5
-                along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                along_q6_of_q3 = 2.0 * product_in_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
+                across_q6_of_q3 = (
+                    2.0 * product_in_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
@@ -275,17 +279,17 @@ def unrolled(k: Constants) -> Unrolled:
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3_up
                         - along_q6_of_q3 * cos_q6_before_q6_of_q3_up
                     )
-                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
+                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if part_of_highest_q6_of_q3 > 1.0
-                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
+                        if quotient_in_highest_q6_of_q3 > 1.0
+                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
                     )
-                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
+                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if -part_of_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
+                        if -quotient_in_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -304,13 +308,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
-                part_of_cost_q6_of_q3_left_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
+                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                sum_in_cost_q6_of_q3_left_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
-                        + part_of_cost_q6_of_q3_left_up_2 * part_of_cost_q6_of_q3_left_up_2
+                        sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3
+                        + sum_in_cost_q6_of_q3_left_up_2 * sum_in_cost_q6_of_q3_left_up_2
                     )
                     * radius_q6
                 )
@@ -348,11 +352,11 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_left_up_up = reference_a2
             angle_q2_left_down_up = reference_a2
         angle_q3_up = arctan2(sin_q3, cos_q3)
-        part_of_axis_a3_left_up_up = angle_q3_up * RADIAN
+        quotient_in_axis_a3_left_up_up = angle_q3_up * RADIAN
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_left_up_up - angle_q3_up) * RADIAN
-        axis_a5_left_up = offset_a5 - part_of_axis_a5
+        axis_a5_left_up = offset_a5 - quotient_in_axis_a5
         axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_left_down_down) * RADIAN
@@ -404,21 +408,23 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             wrist_y_from_q1_along = d5 * r32
-            part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            product_in_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
             wrist_y_from_q1_across = d5 * r31
-            part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
+            product_in_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
             radius_q6_right_times_r33_times_d5 = d5 * radius_q6_right_times_r33
             cos_q5_right_times_d5 = d5 * cos_q5
             wrist_x_from_q1_along = -r31 * cos_q5_right_times_d5
             wrist_x_from_q1_across = r32 * cos_q5_right_times_d5
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
                 wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + radius_q6_right_times_r33_times_d5
-                along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                along_q6_of_q3 = 2.0 * product_in_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
+                across_q6_of_q3 = (
+                    2.0 * product_in_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
@@ -427,17 +433,17 @@ def unrolled(k: Constants) -> Unrolled:
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3_down
                         - along_q6_of_q3 * cos_q6_before_q6_of_q3_down
                     )
-                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
+                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if part_of_highest_q6_of_q3 > 1.0
-                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
+                        if quotient_in_highest_q6_of_q3 > 1.0
+                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
                     )
-                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
+                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if -part_of_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
+                        if -quotient_in_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -457,13 +463,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
-                part_of_cost_q6_of_q3_right_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
+                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                sum_in_cost_q6_of_q3_right_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
-                        + part_of_cost_q6_of_q3_right_down_2 * part_of_cost_q6_of_q3_right_down_2
+                        sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3
+                        + sum_in_cost_q6_of_q3_right_down_2 * sum_in_cost_q6_of_q3_right_down_2
                     )
                     * radius_q6
                 )
@@ -502,12 +508,12 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_right_up_down = reference_a2
             angle_q2_right_down_down = reference_a2
         angle_q3_down = arctan2(sin_q3, cos_q3)
-        part_of_axis_a3_right_up_down = angle_q3_down * RADIAN
+        quotient_in_axis_a3_right_up_down = angle_q3_down * RADIAN
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_up_down = offset_a4 + (angle_with_q4_down - angle_q2_right_up_down - angle_q3_down) * RADIAN
-        part_of_axis_a5 = arctan2(radius_q6, cos_q5) * RADIAN
-        axis_a5_right_down = offset_a5 + part_of_axis_a5
+        quotient_in_axis_a5 = arctan2(radius_q6, cos_q5) * RADIAN
+        axis_a5_right_down = offset_a5 + quotient_in_axis_a5
         axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         if radius_q6 > 1e-11:
             r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
@@ -537,21 +543,23 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             wrist_y_from_q1_along = d5 * r32
-            part_of_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
+            product_in_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
             wrist_y_from_q1_across = d5 * r31
-            part_of_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
+            product_in_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
             radius_q6_right_times_r33_times_d5 = d5 * radius_q6_right_times_r33
             cos_q5_right_times_d5 = d5 * cos_q5
             wrist_x_from_q1_along = -r31 * cos_q5_right_times_d5
             wrist_x_from_q1_across = r32 * cos_q5_right_times_d5
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
                 wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - radius_q6_right_times_r33_times_d5
-                along_q6_of_q3 = 2.0 * part_of_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                across_q6_of_q3 = 2.0 * part_of_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                along_q6_of_q3 = 2.0 * product_in_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
+                across_q6_of_q3 = (
+                    2.0 * product_in_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
+                )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
@@ -560,17 +568,17 @@ def unrolled(k: Constants) -> Unrolled:
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3_up
                         - along_q6_of_q3 * cos_q6_before_q6_of_q3_up
                     )
-                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
+                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if part_of_highest_q6_of_q3 > 1.0
-                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
+                        if quotient_in_highest_q6_of_q3 > 1.0
+                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
                     )
-                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
+                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if -part_of_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
+                        if -quotient_in_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -589,13 +597,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
-                part_of_cost_q6_of_q3_right_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
+                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                sum_in_cost_q6_of_q3_right_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
-                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
-                        + part_of_cost_q6_of_q3_right_up_2 * part_of_cost_q6_of_q3_right_up_2
+                        sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3
+                        + sum_in_cost_q6_of_q3_right_up_2 * sum_in_cost_q6_of_q3_right_up_2
                     )
                     * radius_q6
                 )
@@ -633,11 +641,11 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_right_up_up = reference_a2
             angle_q2_right_down_up = reference_a2
         angle_q3_up = arctan2(sin_q3, cos_q3)
-        part_of_axis_a3_right_up_up = angle_q3_up * RADIAN
+        quotient_in_axis_a3_right_up_up = angle_q3_up * RADIAN
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_right_up_up - angle_q3_up) * RADIAN
-        axis_a5_right_up = offset_a5 - part_of_axis_a5
+        axis_a5_right_up = offset_a5 - quotient_in_axis_a5
         axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_right_down_down) * RADIAN
@@ -647,7 +655,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_left,
                 offset_a2 + angle_q2_left_up_down * RADIAN,
-                offset_a3 + part_of_axis_a3_left_up_down,
+                offset_a3 + quotient_in_axis_a3_left_up_down,
                 axis_a4_left_up_down,
                 axis_a5_left_down,
                 axis_a6_left_down,
@@ -657,7 +665,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_right,
                 offset_a2 + angle_q2_right_up_down * RADIAN,
-                offset_a3 + part_of_axis_a3_right_up_down,
+                offset_a3 + quotient_in_axis_a3_right_up_down,
                 axis_a4_right_up_down,
                 axis_a5_right_down,
                 axis_a6_right_down,
@@ -667,7 +675,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_left,
                 offset_a2 + angle_q2_left_down_down * RADIAN,
-                offset_a3 - part_of_axis_a3_left_up_down,
+                offset_a3 - quotient_in_axis_a3_left_up_down,
                 axis_a4_left_down_down,
                 axis_a5_left_down,
                 axis_a6_left_down,
@@ -677,7 +685,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_right,
                 offset_a2 + angle_q2_right_down_down * RADIAN,
-                offset_a3 - part_of_axis_a3_right_up_down,
+                offset_a3 - quotient_in_axis_a3_right_up_down,
                 axis_a4_right_down_down,
                 axis_a5_right_down,
                 axis_a6_right_down,
@@ -687,7 +695,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_left,
                 offset_a2 + angle_q2_left_up_up * RADIAN,
-                offset_a3 + part_of_axis_a3_left_up_up,
+                offset_a3 + quotient_in_axis_a3_left_up_up,
                 axis_a4_left_up_up,
                 axis_a5_left_up,
                 axis_a6_left_up,
@@ -697,7 +705,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_right,
                 offset_a2 + angle_q2_right_up_up * RADIAN,
-                offset_a3 + part_of_axis_a3_right_up_up,
+                offset_a3 + quotient_in_axis_a3_right_up_up,
                 axis_a4_right_up_up,
                 axis_a5_right_up,
                 axis_a6_right_up,
@@ -707,7 +715,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_left,
                 offset_a2 + angle_q2_left_down_up * RADIAN,
-                offset_a3 - part_of_axis_a3_left_up_up,
+                offset_a3 - quotient_in_axis_a3_left_up_up,
                 axis_a4_left_down_up,
                 axis_a5_left_up,
                 axis_a6_left_up,
@@ -717,7 +725,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_right,
                 offset_a2 + angle_q2_right_down_up * RADIAN,
-                offset_a3 - part_of_axis_a3_right_up_up,
+                offset_a3 - quotient_in_axis_a3_right_up_up,
                 axis_a4_right_down_up,
                 axis_a5_right_up,
                 axis_a6_right_up,
@@ -797,7 +805,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > part_of_cos_q6:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
@@ -817,17 +825,17 @@ def unrolled(k: Constants) -> Unrolled:
                         - across_q6_of_q3 * sin_q6_before_q6_of_q3
                         - along_q6_of_q3 * cos_q6_before_q6_of_q3
                     )
-                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
+                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if part_of_highest_q6_of_q3 > 1.0
-                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
+                        if quotient_in_highest_q6_of_q3 > 1.0
+                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
                     )
-                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
+                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if -part_of_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
+                        if -quotient_in_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -846,14 +854,11 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
-                part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
+                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
+                sum_in_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
-                    sqrt(
-                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
-                        + part_of_cost_q6_of_q3_2 * part_of_cost_q6_of_q3_2
-                    )
+                    sqrt(sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3 + sum_in_cost_q6_of_q3_2 * sum_in_cost_q6_of_q3_2)
                     * radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)

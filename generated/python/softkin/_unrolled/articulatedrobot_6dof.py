@@ -73,13 +73,13 @@ def unrolled(k: Constants) -> Unrolled:
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             d3_times_wrist_y = d3 * wrist_y
-            part_of_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
-            cos_q1_before_q1_for_q3_front = (part_of_cos_q1_before_q1_for_q3 - d3_times_wrist_y) / divisor_q1
+            product_in_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
+            cos_q1_before_q1_for_q3_front = (product_in_cos_q1_before_q1_for_q3 - d3_times_wrist_y) / divisor_q1
             d3_times_wrist_x = d3 * wrist_x
-            part_of_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
-            sin_q1_before_q1_for_q3_front = (d3_times_wrist_x + part_of_sin_q1_before_q1_for_q3) / divisor_q1
-            cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - part_of_cos_q1_before_q1_for_q3) / divisor_q1
-            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - part_of_sin_q1_before_q1_for_q3) / divisor_q1
+            product_in_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
+            sin_q1_before_q1_for_q3_front = (d3_times_wrist_x + product_in_sin_q1_before_q1_for_q3) / divisor_q1
+            cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - product_in_cos_q1_before_q1_for_q3) / divisor_q1
+            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - product_in_sin_q1_before_q1_for_q3) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3_front = cos(reference_a1)
@@ -149,7 +149,7 @@ def unrolled(k: Constants) -> Unrolled:
                 scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
         axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        part_of_axis_a5_front_down_down = arctan2(radius_q4, cos_q5) * RADIAN
+        quotient_in_axis_a5_front_down_down = arctan2(radius_q4, cos_q5) * RADIAN
         axis_a6_front_down_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
         if radius_q4 > 1e-11:
             axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
@@ -203,7 +203,7 @@ def unrolled(k: Constants) -> Unrolled:
                 scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
         axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        part_of_axis_a5_front_up_down = arctan2(radius_q4, cos_q5) * RADIAN
+        quotient_in_axis_a5_front_up_down = arctan2(radius_q4, cos_q5) * RADIAN
         axis_a6_front_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
         if radius_q4 > 1e-11:
             axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
@@ -287,7 +287,7 @@ def unrolled(k: Constants) -> Unrolled:
                 scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
         axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        part_of_axis_a5_back_down_down = arctan2(radius_q4, cos_q5) * RADIAN
+        quotient_in_axis_a5_back_down_down = arctan2(radius_q4, cos_q5) * RADIAN
         axis_a6_back_down_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
         if radius_q4 > 1e-11:
             axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
@@ -341,7 +341,7 @@ def unrolled(k: Constants) -> Unrolled:
                 scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
         axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        part_of_axis_a5_back_up_down = arctan2(radius_q4, cos_q5) * RADIAN
+        quotient_in_axis_a5_back_up_down = arctan2(radius_q4, cos_q5) * RADIAN
         axis_a6_back_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
         if radius_q4 > 1e-11:
             axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
@@ -355,7 +355,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_front_down,
                 axis_a3_front_down,
                 axis_a4_front_down_down,
-                offset_a5 + part_of_axis_a5_front_down_down,
+                offset_a5 + quotient_in_axis_a5_front_down_down,
                 axis_a6_front_down_down,
             )
             if refusal_front == 0
@@ -365,7 +365,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_back_down,
                 axis_a3_back_down,
                 axis_a4_back_down_down,
-                offset_a5 + part_of_axis_a5_back_down_down,
+                offset_a5 + quotient_in_axis_a5_back_down_down,
                 axis_a6_back_down_down,
             )
             if refusal_back == 0
@@ -375,7 +375,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_front_up,
                 axis_a3_front_up,
                 axis_a4_front_up_down,
-                offset_a5 + part_of_axis_a5_front_up_down,
+                offset_a5 + quotient_in_axis_a5_front_up_down,
                 axis_a6_front_up_down,
             )
             if refusal_front == 0
@@ -385,7 +385,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_back_up,
                 axis_a3_back_up,
                 axis_a4_back_up_down,
-                offset_a5 + part_of_axis_a5_back_up_down,
+                offset_a5 + quotient_in_axis_a5_back_up_down,
                 axis_a6_back_up_down,
             )
             if refusal_back == 0
@@ -395,7 +395,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_front_down,
                 axis_a3_front_down,
                 axis_a4_front_down_up,
-                offset_a5 - part_of_axis_a5_front_down_down,
+                offset_a5 - quotient_in_axis_a5_front_down_down,
                 axis_a6_front_down_up,
             )
             if refusal_front == 0
@@ -405,7 +405,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_back_down,
                 axis_a3_back_down,
                 axis_a4_back_down_up,
-                offset_a5 - part_of_axis_a5_back_down_down,
+                offset_a5 - quotient_in_axis_a5_back_down_down,
                 axis_a6_back_down_up,
             )
             if refusal_back == 0
@@ -415,7 +415,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_front_up,
                 axis_a3_front_up,
                 axis_a4_front_up_up,
-                offset_a5 - part_of_axis_a5_front_up_down,
+                offset_a5 - quotient_in_axis_a5_front_up_down,
                 axis_a6_front_up_up,
             )
             if refusal_front == 0
@@ -425,7 +425,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a2_back_up,
                 axis_a3_back_up,
                 axis_a4_back_up_up,
-                offset_a5 - part_of_axis_a5_back_up_down,
+                offset_a5 - quotient_in_axis_a5_back_up_down,
                 axis_a6_back_up_up,
             )
             if refusal_back == 0

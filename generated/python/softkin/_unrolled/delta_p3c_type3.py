@@ -35,17 +35,17 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_a2, lowest_a3, mid_a1, mid_a2, mid_a3 = k.lowest_a2, k.lowest_a3, k.mid_a1, k.mid_a2, k.mid_a3
     min_type2_margin, offset_a1, offset_a2, offset_a3 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.offset_a3
     outer_arm_1, outer_arm_2, outer_arm_3 = k.outer_arm_1, k.outer_arm_2, k.outer_arm_3
-    part_of_type2_rods_coplanar, sin_azimuth_1 = k.part_of_type2_rods_coplanar, k.sin_azimuth_1
+    quotient_in_type2_rods_coplanar, sin_azimuth_1 = k.quotient_in_type2_rods_coplanar, k.sin_azimuth_1
     sin_azimuth_1_times_tcp_radius_1, sin_azimuth_2 = k.sin_azimuth_1_times_tcp_radius_1, k.sin_azimuth_2
     sin_azimuth_2_times_tcp_radius_2, sin_azimuth_3 = k.sin_azimuth_2_times_tcp_radius_2, k.sin_azimuth_3
     sin_azimuth_3_times_tcp_radius_3, single_a1 = k.sin_azimuth_3_times_tcp_radius_3, k.single_a1
     single_a2, single_a3 = k.single_a2, k.single_a3
-    part_of_span_1_x = cos_azimuth_1_times_tcp_radius_1 - base_radius_1 * cos_azimuth_1
-    part_of_span_1_y = sin_azimuth_1_times_tcp_radius_1 - base_radius_1 * sin_azimuth_1
-    part_of_span_2_x = cos_azimuth_2_times_tcp_radius_2 - base_radius_2 * cos_azimuth_2
-    part_of_span_2_y = sin_azimuth_2_times_tcp_radius_2 - base_radius_2 * sin_azimuth_2
-    part_of_span_3_x = cos_azimuth_3_times_tcp_radius_3 - base_radius_3 * cos_azimuth_3
-    part_of_span_3_y = sin_azimuth_3_times_tcp_radius_3 - base_radius_3 * sin_azimuth_3
+    sum_in_span_1_x = cos_azimuth_1_times_tcp_radius_1 - base_radius_1 * cos_azimuth_1
+    sum_in_span_1_y = sin_azimuth_1_times_tcp_radius_1 - base_radius_1 * sin_azimuth_1
+    sum_in_span_2_x = cos_azimuth_2_times_tcp_radius_2 - base_radius_2 * cos_azimuth_2
+    sum_in_span_2_y = sin_azimuth_2_times_tcp_radius_2 - base_radius_2 * sin_azimuth_2
+    sum_in_span_3_x = cos_azimuth_3_times_tcp_radius_3 - base_radius_3 * cos_azimuth_3
+    sum_in_span_3_y = sin_azimuth_3_times_tcp_radius_3 - base_radius_3 * sin_azimuth_3
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -53,16 +53,16 @@ def unrolled(k: Constants) -> Unrolled:
     ) -> tuple[Any, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = part_of_span_1_x + x  # rod 1: known part of its vector
-        span_1_y = part_of_span_1_y + y
+        span_1_x = sum_in_span_1_x + x  # rod 1: known part of its vector
+        span_1_y = sum_in_span_1_y + y
         along_a1 = span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1
         effective_a1 = sqrt(along_a1 * along_a1 + z * z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return 8 * (refused[Status.UNREACHABLE],)
-        part_of_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
+        sum_in_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
         # square of the third side of the triangle
-        third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
+        third_square_a1 = (outer_arm_1 + sum_in_third_square_a1) * (outer_arm_1 - sum_in_third_square_a1)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
         effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
@@ -77,16 +77,16 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 8 * (refused[Status.UNREACHABLE],)
-        span_2_x = part_of_span_2_x + x  # rod 2: known part of its vector
-        span_2_y = part_of_span_2_y + y
+        span_2_x = sum_in_span_2_x + x  # rod 2: known part of its vector
+        span_2_y = sum_in_span_2_y + y
         along_a2 = span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2
         effective_a2 = sqrt(along_a2 * along_a2 + z * z)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return 8 * (refused[Status.UNREACHABLE],)
-        part_of_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
+        sum_in_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
         # square of the third side of the triangle
-        third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
+        third_square_a2 = (outer_arm_2 + sum_in_third_square_a2) * (outer_arm_2 - sum_in_third_square_a2)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
         effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
@@ -101,16 +101,16 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 8 * (refused[Status.UNREACHABLE],)
-        span_3_x = part_of_span_3_x + x  # rod 3: known part of its vector
-        span_3_y = part_of_span_3_y + y
+        span_3_x = sum_in_span_3_x + x  # rod 3: known part of its vector
+        span_3_y = sum_in_span_3_y + y
         along_a3 = span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3
         effective_a3 = sqrt(along_a3 * along_a3 + z * z)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return 8 * (refused[Status.UNREACHABLE],)
-        part_of_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
+        sum_in_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
         # square of the third side of the triangle
-        third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
+        third_square_a3 = (outer_arm_3 + sum_in_third_square_a3) * (outer_arm_3 - sum_in_third_square_a3)
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
         effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
@@ -159,17 +159,17 @@ def unrolled(k: Constants) -> Unrolled:
         along_a3_times_sin_swing_a3 = along_a3 * sin_swing_a3
         sin_a3 = (-along_a3_times_sin_swing_a3 - cos_swing_a3_times_z) / divisor_a3
         rod_3_z_outward = z - (-inner_arm_3 * sin_a3)
-        part_of_type2_rods_coplanar_outward_outward = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
+        sum_in_type2_rods_coplanar_outward_outward = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
         rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2
         rod_3_x_outward = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3
-        part_of_type2_rods_coplanar_outward_outward_outward_2 = rod_2_z * rod_3_x_outward - rod_2_x * rod_3_z_outward
-        part_of_type2_rods_coplanar_outward_outward_outward_3 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_outward_outward * rod_1_x
-            + part_of_type2_rods_coplanar_outward_outward_outward_2 * rod_1_y
-            + part_of_type2_rods_coplanar_outward_outward_outward_3 * rod_1_z
+        sum_in_type2_rods_coplanar_outward_outward_outward_2 = rod_2_z * rod_3_x_outward - rod_2_x * rod_3_z_outward
+        sum_in_type2_rods_coplanar_outward_outward_outward_3 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
+            rod_1_x * sum_in_type2_rods_coplanar_outward_outward
+            + rod_1_y * sum_in_type2_rods_coplanar_outward_outward_outward_2
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_outward_outward_3
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
@@ -179,16 +179,16 @@ def unrolled(k: Constants) -> Unrolled:
         rod_3_y_inward = span_3_y - inner_arm_3_times_sin_azimuth_3 * cos_a3
         sin_a3 = (along_a3_times_sin_swing_a3 - cos_swing_a3_times_z) / divisor_a3
         rod_3_z_inward = z - (-inner_arm_3 * sin_a3)
-        part_of_type2_rods_coplanar_outward_inward = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
+        sum_in_type2_rods_coplanar_outward_inward = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
         rod_3_x_inward = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3
-        part_of_type2_rods_coplanar_outward_outward_inward_2 = rod_2_z * rod_3_x_inward - rod_2_x * rod_3_z_inward
-        part_of_type2_rods_coplanar_outward_outward_inward_3 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_outward_inward * rod_1_x
-            + part_of_type2_rods_coplanar_outward_outward_inward_2 * rod_1_y
-            + part_of_type2_rods_coplanar_outward_outward_inward_3 * rod_1_z
+        sum_in_type2_rods_coplanar_outward_outward_inward_2 = rod_2_z * rod_3_x_inward - rod_2_x * rod_3_z_inward
+        sum_in_type2_rods_coplanar_outward_outward_inward_3 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
+            rod_1_x * sum_in_type2_rods_coplanar_outward_inward
+            + rod_1_y * sum_in_type2_rods_coplanar_outward_outward_inward_2
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_outward_inward_3
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -196,27 +196,27 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2 * cos_a2
         sin_a2 = (along_a2_times_sin_swing_a2 - cos_swing_a2_times_z) / divisor_a2
         rod_2_z = z - (-inner_arm_2 * sin_a2)
-        part_of_type2_rods_coplanar_inward_outward = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
+        sum_in_type2_rods_coplanar_inward_outward = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
         rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2
-        part_of_type2_rods_coplanar_outward_inward_outward_2 = rod_2_z * rod_3_x_outward - rod_2_x * rod_3_z_outward
-        part_of_type2_rods_coplanar_outward_inward_outward_3 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_inward_outward * rod_1_x
-            + part_of_type2_rods_coplanar_outward_inward_outward_2 * rod_1_y
-            + part_of_type2_rods_coplanar_outward_inward_outward_3 * rod_1_z
+        sum_in_type2_rods_coplanar_outward_inward_outward_2 = rod_2_z * rod_3_x_outward - rod_2_x * rod_3_z_outward
+        sum_in_type2_rods_coplanar_outward_inward_outward_3 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
+            rod_1_x * sum_in_type2_rods_coplanar_inward_outward
+            + rod_1_y * sum_in_type2_rods_coplanar_outward_inward_outward_2
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_inward_outward_3
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
-        part_of_type2_rods_coplanar_inward_inward = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
-        part_of_type2_rods_coplanar_outward_inward_inward_2 = rod_2_z * rod_3_x_inward - rod_2_x * rod_3_z_inward
-        part_of_type2_rods_coplanar_outward_inward_inward_3 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_inward_inward * rod_1_x
-            + part_of_type2_rods_coplanar_outward_inward_inward_2 * rod_1_y
-            + part_of_type2_rods_coplanar_outward_inward_inward_3 * rod_1_z
+        sum_in_type2_rods_coplanar_inward_inward = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
+        sum_in_type2_rods_coplanar_outward_inward_inward_2 = rod_2_z * rod_3_x_inward - rod_2_x * rod_3_z_inward
+        sum_in_type2_rods_coplanar_outward_inward_inward_3 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
+            rod_1_x * sum_in_type2_rods_coplanar_inward_inward
+            + rod_1_y * sum_in_type2_rods_coplanar_outward_inward_inward_2
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_inward_inward_3
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (along_a1_times_cos_swing_a1 + sin_swing_a1_inward_times_z) / divisor_a1
@@ -224,34 +224,34 @@ def unrolled(k: Constants) -> Unrolled:
         rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1 * cos_a1
         sin_a1 = (along_a1_times_sin_swing_a1 - cos_swing_a1_times_z) / divisor_a1
         rod_1_z = z - (-inner_arm_1 * sin_a1)
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_outward_outward * rod_1_x
-            + part_of_type2_rods_coplanar_outward_outward_outward_2 * rod_1_y
-            + part_of_type2_rods_coplanar_outward_outward_outward_3 * rod_1_z
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
+            rod_1_x * sum_in_type2_rods_coplanar_outward_outward
+            + rod_1_y * sum_in_type2_rods_coplanar_outward_outward_outward_2
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_outward_outward_3
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_outward_inward * rod_1_x
-            + part_of_type2_rods_coplanar_outward_outward_inward_2 * rod_1_y
-            + part_of_type2_rods_coplanar_outward_outward_inward_3 * rod_1_z
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
+            rod_1_x * sum_in_type2_rods_coplanar_outward_inward
+            + rod_1_y * sum_in_type2_rods_coplanar_outward_outward_inward_2
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_outward_inward_3
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_inward_outward * rod_1_x
-            + part_of_type2_rods_coplanar_outward_inward_outward_2 * rod_1_y
-            + part_of_type2_rods_coplanar_outward_inward_outward_3 * rod_1_z
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
+            rod_1_x * sum_in_type2_rods_coplanar_inward_outward
+            + rod_1_y * sum_in_type2_rods_coplanar_outward_inward_outward_2
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_inward_outward_3
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_inward_inward * rod_1_x
-            + part_of_type2_rods_coplanar_outward_inward_inward_2 * rod_1_y
-            + part_of_type2_rods_coplanar_outward_inward_inward_3 * rod_1_z
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
+            rod_1_x * sum_in_type2_rods_coplanar_inward_inward
+            + rod_1_y * sum_in_type2_rods_coplanar_outward_inward_inward_2
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_inward_inward_3
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
             (axis_a1_outward, axis_a2_outward, axis_a3_outward)
@@ -284,16 +284,16 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
-        span_1_x = part_of_span_1_x + x  # rod 1: known part of its vector
-        span_1_y = part_of_span_1_y + y
+        span_1_x = sum_in_span_1_x + x  # rod 1: known part of its vector
+        span_1_y = sum_in_span_1_y + y
         along_a1 = span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1
         effective_a1 = sqrt(along_a1 * along_a1 + z * z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return None
-        part_of_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
+        sum_in_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
         # square of the third side of the triangle
-        third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
+        third_square_a1 = (outer_arm_1 + sum_in_third_square_a1) * (outer_arm_1 - sum_in_third_square_a1)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
         effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
@@ -308,16 +308,16 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
-        span_2_x = part_of_span_2_x + x  # rod 2: known part of its vector
-        span_2_y = part_of_span_2_y + y
+        span_2_x = sum_in_span_2_x + x  # rod 2: known part of its vector
+        span_2_y = sum_in_span_2_y + y
         along_a2 = span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2
         effective_a2 = sqrt(along_a2 * along_a2 + z * z)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return None
-        part_of_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
+        sum_in_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
         # square of the third side of the triangle
-        third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
+        third_square_a2 = (outer_arm_2 + sum_in_third_square_a2) * (outer_arm_2 - sum_in_third_square_a2)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
         effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
@@ -332,16 +332,16 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
-        span_3_x = part_of_span_3_x + x  # rod 3: known part of its vector
-        span_3_y = part_of_span_3_y + y
+        span_3_x = sum_in_span_3_x + x  # rod 3: known part of its vector
+        span_3_y = sum_in_span_3_y + y
         along_a3 = span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3
         effective_a3 = sqrt(along_a3 * along_a3 + z * z)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return None
-        part_of_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
+        sum_in_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
         # square of the third side of the triangle
-        third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
+        third_square_a3 = (outer_arm_3 + sum_in_third_square_a3) * (outer_arm_3 - sum_in_third_square_a3)
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
         effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
@@ -383,9 +383,9 @@ def unrolled(k: Constants) -> Unrolled:
                 + (span_1_y - inner_arm_1_times_sin_azimuth_1 * cos_a1) * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
                 + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * (span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1)
             )
-            * part_of_type2_rods_coplanar
+            * quotient_in_type2_rods_coplanar
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
         if no_offsets:

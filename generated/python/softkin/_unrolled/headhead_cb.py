@@ -22,7 +22,6 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_c, lowest_x, lowest_y, lowest_z, mid_b = k.lowest_c, k.lowest_x, k.lowest_y, k.lowest_z, k.mid_b
     mid_c, offset_b, offset_c, offset_x, offset_y = k.mid_c, k.offset_b, k.offset_c, k.offset_x, k.offset_y
     offset_z, pivot_length, single_b, single_c = k.offset_z, k.pivot_length, k.single_b, k.single_c
-    twice_offset_b = 2.0 * offset_b
     no_offsets = not any((offset_b, offset_c, offset_x, offset_y, offset_z))
 
     def branches(
@@ -44,37 +43,39 @@ def unrolled(k: Constants) -> Unrolled:
             sin_c_positive = sin(reference_c)
             cos_c_negative = cos_c_positive
             sin_c_negative = sin_c_positive
-        pivot_length_times_radius_c = pivot_length * radius_c
+        radius_c_times_pivot_length = pivot_length * radius_c
         fork_offset_plus_head_offset_times_r33 = fork_offset + head_offset * r33
-        part_of_joint_x = fork_offset_plus_head_offset_times_r33 - pivot_length_times_radius_c
-        # joint_x from the x equation, which is linear in it
-        joint_x_positive = x - part_of_joint_x * cos_c_positive
-        # joint_y from the y equation, which is linear in it
-        joint_y_positive = y - part_of_joint_x * sin_c_positive
-        head_offset_times_radius_c = head_offset * radius_c
+        sum_in_joint_x = fork_offset_plus_head_offset_times_r33 - radius_c_times_pivot_length
+        joint_x_positive = x - sum_in_joint_x * cos_c_positive  # joint_x from the x equation, which is linear in it
+        joint_y_positive = y - sum_in_joint_x * sin_c_positive  # joint_y from the y equation, which is linear in it
+        radius_c_times_head_offset = head_offset * radius_c
         z_plus_pivot_length_times_r33 = z + pivot_length * r33
         # joint_z from the z equation, which is linear in it
-        joint_z_positive = head_offset_times_radius_c + z_plus_pivot_length_times_r33
-        axis_c = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
-        axis_b = offset_b + arctan2(radius_c, r33) * RADIAN
-        part_of_joint_x = fork_offset_plus_head_offset_times_r33 + pivot_length_times_radius_c
-        # joint_x from the x equation, which is linear in it
-        joint_x_negative = x - part_of_joint_x * cos_c_negative
-        # joint_y from the y equation, which is linear in it
-        joint_y_negative = y - part_of_joint_x * sin_c_negative
+        joint_z_positive = radius_c_times_head_offset + z_plus_pivot_length_times_r33
+        axis_c_positive = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
+        quotient_in_axis_b = arctan2(radius_c, r33) * RADIAN
+        sum_in_joint_x = fork_offset_plus_head_offset_times_r33 + radius_c_times_pivot_length
+        joint_x_negative = x - sum_in_joint_x * cos_c_negative  # joint_x from the x equation, which is linear in it
+        joint_y_negative = y - sum_in_joint_x * sin_c_negative  # joint_y from the y equation, which is linear in it
         # joint_z from the z equation, which is linear in it
-        joint_z_negative = z_plus_pivot_length_times_r33 - head_offset_times_radius_c
-        direction_of_axis_c = (
-            180.0 + axis_c if radius_c > 1e-11 else offset_c + arctan2(sin_c_negative, cos_c_negative) * RADIAN
+        joint_z_negative = z_plus_pivot_length_times_r33 - radius_c_times_head_offset
+        axis_c_negative = (
+            180.0 + axis_c_positive if radius_c > 1e-11 else offset_c + arctan2(sin_c_negative, cos_c_negative) * RADIAN
         )
         return (
-            (joint_x_positive + offset_x, joint_y_positive + offset_y, joint_z_positive + offset_z, axis_c, axis_b),
+            (
+                joint_x_positive + offset_x,
+                joint_y_positive + offset_y,
+                joint_z_positive + offset_z,
+                axis_c_positive,
+                offset_b + quotient_in_axis_b,
+            ),
             (
                 joint_x_negative + offset_x,
                 joint_y_negative + offset_y,
                 joint_z_negative + offset_z,
-                direction_of_axis_c,
-                twice_offset_b - axis_b,
+                axis_c_negative,
+                offset_b - quotient_in_axis_b,
             ),
         )
 
@@ -94,9 +95,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_c = cos(reference_c)
             sin_c = sin(reference_c)
         c_radius_of_b = sigma_tilt * radius_c
-        part_of_joint_x = fork_offset + head_offset * r33 - c_radius_of_b * pivot_length
-        joint_x = x - part_of_joint_x * cos_c  # joint_x from the x equation, which is linear in it
-        joint_y = y - part_of_joint_x * sin_c  # joint_y from the y equation, which is linear in it
+        sum_in_joint_x = fork_offset + head_offset * r33 - c_radius_of_b * pivot_length
+        joint_x = x - sum_in_joint_x * cos_c  # joint_x from the x equation, which is linear in it
+        joint_y = y - sum_in_joint_x * sin_c  # joint_y from the y equation, which is linear in it
         # joint_z from the z equation, which is linear in it
         joint_z = z + c_radius_of_b * head_offset + pivot_length * r33
         if no_offsets:

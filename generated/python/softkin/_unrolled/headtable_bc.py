@@ -22,7 +22,6 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_x, lowest_y, lowest_z, mid_b, mid_c = k.lowest_x, k.lowest_y, k.lowest_z, k.mid_b, k.mid_c
     offset_b, offset_c, offset_x, offset_y, offset_z = k.offset_b, k.offset_c, k.offset_x, k.offset_y, k.offset_z
     pivot_length, single_b, single_c = k.pivot_length, k.single_b, k.single_c
-    twice_offset_b = 2.0 * offset_b
     no_offsets = not any((offset_b, offset_c, offset_x, offset_y, offset_z))
 
     def branches(
@@ -44,42 +43,47 @@ def unrolled(k: Constants) -> Unrolled:
             sin_c_positive = sin(reference_c)
             cos_c_negative = cos_c_positive
             sin_c_negative = sin_c_positive
-        pivot_length_times_radius_c = pivot_length * radius_c
         head_offset_times_r33 = head_offset * r33
-        part_of_joint_x = pivot_length_times_radius_c - head_offset_times_r33
+        radius_c_times_pivot_length = pivot_length * radius_c
+        sum_in_joint_x = radius_c_times_pivot_length - head_offset_times_r33
         # joint_x and joint_y from the x and y equations, linear in both
-        joint_x_positive = (
-            cos_c_positive * (x + part_of_joint_x * cos_c_positive)
-            + (part_of_joint_x * sin_c_positive - y) * sin_c_positive
+        joint_x_positive = cos_c_positive * (x + sum_in_joint_x * cos_c_positive) + sin_c_positive * (
+            sum_in_joint_x * sin_c_positive - y
         )
         joint_y_positive = y * cos_c_positive + x * sin_c_positive
-        head_offset_times_radius_c = head_offset * radius_c
+        radius_c_times_head_offset = head_offset * radius_c
         z_plus_pivot_length_times_r33 = z + pivot_length * r33
         # joint_z from the z equation, which is linear in it
-        joint_z_positive = head_offset_times_radius_c + z_plus_pivot_length_times_r33
-        axis_b = offset_b + arctan2(radius_c, r33) * RADIAN
-        axis_c = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
-        part_of_joint_x = head_offset_times_r33 + pivot_length_times_radius_c
+        joint_z_positive = radius_c_times_head_offset + z_plus_pivot_length_times_r33
+        quotient_in_axis_b = arctan2(radius_c, r33) * RADIAN
+        axis_c_positive = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
+        sum_in_joint_x = head_offset_times_r33 + radius_c_times_pivot_length
         # joint_x and joint_y from the x and y equations, linear in both
-        joint_x_negative = (x - part_of_joint_x * cos_c_negative) * cos_c_negative + (
-            -y - part_of_joint_x * sin_c_negative
+        joint_x_negative = (x - sum_in_joint_x * cos_c_negative) * cos_c_negative + (
+            -y - sum_in_joint_x * sin_c_negative
         ) * sin_c_negative
         if radius_c > 1e-11:
             joint_y_negative = -joint_y_positive
-            direction_of_axis_c = 180.0 + axis_c
+            axis_c_negative = 180.0 + axis_c_positive
         else:
             joint_y_negative = y * cos_c_negative + x * sin_c_negative
-            direction_of_axis_c = offset_c + arctan2(sin_c_negative, cos_c_negative) * RADIAN
+            axis_c_negative = offset_c + arctan2(sin_c_negative, cos_c_negative) * RADIAN
         # joint_z from the z equation, which is linear in it
-        joint_z_negative = z_plus_pivot_length_times_r33 - head_offset_times_radius_c
+        joint_z_negative = z_plus_pivot_length_times_r33 - radius_c_times_head_offset
         return (
-            (joint_x_positive + offset_x, joint_y_positive + offset_y, joint_z_positive + offset_z, axis_b, axis_c),
+            (
+                joint_x_positive + offset_x,
+                joint_y_positive + offset_y,
+                joint_z_positive + offset_z,
+                offset_b + quotient_in_axis_b,
+                axis_c_positive,
+            ),
             (
                 joint_x_negative + offset_x,
                 joint_y_negative + offset_y,
                 joint_z_negative + offset_z,
-                twice_offset_b - axis_b,
-                direction_of_axis_c,
+                offset_b - quotient_in_axis_b,
+                axis_c_negative,
             ),
         )
 
@@ -99,9 +103,9 @@ def unrolled(k: Constants) -> Unrolled:
             cos_c = cos(reference_c)
             sin_c = sin(reference_c)
         c_radius_of_b = sigma_tilt * radius_c
-        part_of_joint_x = c_radius_of_b * pivot_length - head_offset * r33
+        sum_in_joint_x = c_radius_of_b * pivot_length - head_offset * r33
         # joint_x and joint_y from the x and y equations, linear in both
-        joint_x = cos_c * (x + part_of_joint_x * cos_c) + (part_of_joint_x * sin_c - y) * sin_c
+        joint_x = cos_c * (x + sum_in_joint_x * cos_c) + sin_c * (sum_in_joint_x * sin_c - y)
         # joint_z from the z equation, which is linear in it
         joint_z = z + c_radius_of_b * head_offset + pivot_length * r33
         if no_offsets:

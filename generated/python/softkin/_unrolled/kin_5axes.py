@@ -52,15 +52,15 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
         axis_a_positive = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive) * RADIAN
-        part_of_axis_b = arctan2(radius_a, r33) * RADIAN
+        quotient_in_axis_b = arctan2(radius_a, r33) * RADIAN
         axis_a_negative = (
             180.0 + axis_a_positive
             if radius_a > 1e-11
             else offset_a + arctan2(direction_y_a_negative, direction_x_a_negative) * RADIAN
         )
         return (
-            (axis_x, axis_y, axis_z, axis_a_positive, offset_b + part_of_axis_b),
-            (axis_x, axis_y, axis_z, axis_a_negative, offset_b - part_of_axis_b),
+            (axis_x, axis_y, axis_z, axis_a_positive, offset_b + quotient_in_axis_b),
+            (axis_x, axis_y, axis_z, axis_a_negative, offset_b - quotient_in_axis_b),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -28,11 +28,11 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_5_times_shortest_link, lowest_a1 = k.link_length_5_times_shortest_link, k.lowest_a1
     lowest_a2, machine_scale_times_plane, mid_a1 = k.lowest_a2, k.machine_scale_times_plane, k.mid_a1
     mid_a2, min_type2_margin, offset_a1, offset_a2 = k.mid_a2, k.min_type2_margin, k.offset_a1, k.offset_a2
-    part_of_pivot_rear_x, part_of_scaled_pivot_rear_y_2 = k.part_of_pivot_rear_x, k.part_of_scaled_pivot_rear_y_2
-    part_of_type2_arms_aligned, single_a1, single_a2 = k.part_of_type2_arms_aligned, k.single_a1, k.single_a2
-    swap_xy = k.swap_xy
-    part_of_along_a2_left = link_length_1 * (link_length_2 + link_length_3) / link_length_2
-    part_of_scaled_pivot_rear_y_left_left = link_length_2 * part_of_pivot_rear_x / link_length_3
+    quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
+    quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
+    single_a2, sum_in_pivot_rear_x, swap_xy = k.single_a2, k.sum_in_pivot_rear_x, k.swap_xy
+    quotient_in_along_a2_left = link_length_1 * (link_length_2 + link_length_3) / link_length_2
+    quotient_in_scaled_pivot_rear_y_left_left = link_length_2 * sum_in_pivot_rear_x / link_length_3
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -77,13 +77,13 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1_right_times_span_upper_y = span_upper_y * sin_swing_a1
         sin_a1 = (cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y) / divisor_a1
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - part_of_along_a2_left * sin_a1
+        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1
         cos_swing_a1_times_span_upper_y = span_upper_y * cos_swing_a1
         sin_swing_a1_right_times_span_upper_x = span_upper_x * sin_swing_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (cos_swing_a1_times_span_upper_y + sin_swing_a1_right_times_span_upper_x) / divisor_a1
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        across_a2 = part_of_along_a2_left * cos_a1 - span_rear_y
+        across_a2 = quotient_in_along_a2_left * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -101,34 +101,38 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
-        part_of_cos_a2 = across_a2 * sin_swing_a2
+        product_in_cos_a2 = across_a2 * sin_swing_a2
         along_a2_left_times_cos_swing_a2 = along_a2 * cos_swing_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2_left_left = (along_a2_left_times_cos_swing_a2 + part_of_cos_a2) / divisor_a2
-        part_of_sin_a2 = along_a2 * sin_swing_a2
+        cos_a2_left_left = (along_a2_left_times_cos_swing_a2 + product_in_cos_a2) / divisor_a2
+        product_in_sin_a2 = along_a2 * sin_swing_a2
         across_a2_left_times_cos_swing_a2 = across_a2 * cos_swing_a2
-        sin_a2_left_left = (across_a2_left_times_cos_swing_a2 - part_of_sin_a2) / divisor_a2
+        sin_a2_left_left = (across_a2_left_times_cos_swing_a2 - product_in_sin_a2) / divisor_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2_left_right = (along_a2_left_times_cos_swing_a2 - part_of_cos_a2) / divisor_a2
-        sin_a2_left_right = (across_a2_left_times_cos_swing_a2 + part_of_sin_a2) / divisor_a2
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        cos_a2_left_right = (along_a2_left_times_cos_swing_a2 - product_in_cos_a2) / divisor_a2
+        sin_a2_left_right = (across_a2_left_times_cos_swing_a2 + product_in_sin_a2) / divisor_a2
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if effective_a2 > link_length_5_times_shortest_link and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
-            part_of_scaled_pivot_rear_x = part_of_scaled_pivot_rear_y_left_left * sin_a1
+            product_in_scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y_left_left * sin_a1
             # rod rear: centre about which it swings
-            scaled_pivot_rear_x_left = part_of_scaled_pivot_rear_x - part_of_scaled_pivot_rear_y_2 * cos_a2_left_left
-            part_of_scaled_pivot_rear_y_left_left_2 = part_of_scaled_pivot_rear_y_left_left * cos_a1
+            scaled_pivot_rear_x_left = (
+                product_in_scaled_pivot_rear_x - quotient_in_scaled_pivot_rear_y_2 * cos_a2_left_left
+            )
+            product_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y_left_left * cos_a1
             # rod rear: centre about which it swings
-            scaled_pivot_rear_x_right = part_of_scaled_pivot_rear_x - part_of_scaled_pivot_rear_y_2 * cos_a2_left_right
+            scaled_pivot_rear_x_right = (
+                product_in_scaled_pivot_rear_x - quotient_in_scaled_pivot_rear_y_2 * cos_a2_left_right
+            )
             if swap_xy:
                 centre_1_x = -link_length_1 * cos_a1
                 centre_1_y = pivot_upper_x
                 centre_2_x_left = -(
-                    part_of_scaled_pivot_rear_y_left_left_2 + part_of_scaled_pivot_rear_y_2 * sin_a2_left_left
+                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_left_left
                 )
                 centre_2_y_left = -scaled_pivot_rear_x_left
                 centre_2_x_right = -(
-                    part_of_scaled_pivot_rear_y_left_left_2 + part_of_scaled_pivot_rear_y_2 * sin_a2_left_right
+                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_left_right
                 )
                 centre_2_y_right = -scaled_pivot_rear_x_right
             else:
@@ -136,19 +140,19 @@ def unrolled(k: Constants) -> Unrolled:
                 centre_1_y = -link_length_1 * cos_a1
                 centre_2_x_left = -scaled_pivot_rear_x_left
                 centre_2_y_left = -(
-                    part_of_scaled_pivot_rear_y_left_left_2 + part_of_scaled_pivot_rear_y_2 * sin_a2_left_left
+                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_left_left
                 )
                 centre_2_x_right = -scaled_pivot_rear_x_right
                 centre_2_y_right = -(
-                    part_of_scaled_pivot_rear_y_left_left_2 + part_of_scaled_pivot_rear_y_2 * sin_a2_left_right
+                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_left_right
                 )
             rod_1_x = x - centre_1_x
             rod_1_y = y - centre_1_y
-            type2_arms_aligned_left = part_of_type2_arms_aligned * (
+            type2_arms_aligned_left = quotient_in_type2_arms_aligned * (
                 (y - centre_2_y_left) * rod_1_x - (x - centre_2_x_left) * rod_1_y
             )
             refusal_left_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
-            type2_arms_aligned_right = part_of_type2_arms_aligned * (
+            type2_arms_aligned_right = quotient_in_type2_arms_aligned * (
                 (y - centre_2_y_right) * rod_1_x - (x - centre_2_x_right) * rod_1_y
             )
             refusal_left_right = 0 if type2_arms_aligned_right >= min_type2_margin else 3
@@ -157,10 +161,10 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_right = 3
         axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         sin_a1 = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y) / divisor_a1
-        along_a2 = span_rear_x - part_of_along_a2_left * sin_a1
+        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x) / divisor_a1
-        across_a2 = part_of_along_a2_left * cos_a1 - span_rear_y
+        across_a2 = quotient_in_along_a2_left * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -178,46 +182,58 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
-        part_of_cos_a2 = across_a2 * sin_swing_a2
+        product_in_cos_a2 = across_a2 * sin_swing_a2
         along_a2_right_times_cos_swing_a2 = along_a2 * cos_swing_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2_right_left = (along_a2_right_times_cos_swing_a2 + part_of_cos_a2) / divisor_a2
-        part_of_sin_a2 = along_a2 * sin_swing_a2
+        cos_a2_right_left = (along_a2_right_times_cos_swing_a2 + product_in_cos_a2) / divisor_a2
+        product_in_sin_a2 = along_a2 * sin_swing_a2
         across_a2_right_times_cos_swing_a2 = across_a2 * cos_swing_a2
-        sin_a2_right_left = (across_a2_right_times_cos_swing_a2 - part_of_sin_a2) / divisor_a2
+        sin_a2_right_left = (across_a2_right_times_cos_swing_a2 - product_in_sin_a2) / divisor_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2_right_right = (along_a2_right_times_cos_swing_a2 - part_of_cos_a2) / divisor_a2
-        sin_a2_right_right = (across_a2_right_times_cos_swing_a2 + part_of_sin_a2) / divisor_a2
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        cos_a2_right_right = (along_a2_right_times_cos_swing_a2 - product_in_cos_a2) / divisor_a2
+        sin_a2_right_right = (across_a2_right_times_cos_swing_a2 + product_in_sin_a2) / divisor_a2
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if effective_a2 > link_length_5_times_shortest_link and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
-            part_of_scaled_pivot_rear_x = part_of_scaled_pivot_rear_y_left_left * sin_a1
+            product_in_scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y_left_left * sin_a1
             # rod rear: centre about which it swings
-            scaled_pivot_rear_x_left = part_of_scaled_pivot_rear_x - part_of_scaled_pivot_rear_y_2 * cos_a2_right_left
-            part_of_scaled_pivot_rear_y = part_of_scaled_pivot_rear_y_left_left * cos_a1
+            scaled_pivot_rear_x_left = (
+                product_in_scaled_pivot_rear_x - quotient_in_scaled_pivot_rear_y_2 * cos_a2_right_left
+            )
+            product_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y_left_left * cos_a1
             # rod rear: centre about which it swings
-            scaled_pivot_rear_x_right = part_of_scaled_pivot_rear_x - part_of_scaled_pivot_rear_y_2 * cos_a2_right_right
+            scaled_pivot_rear_x_right = (
+                product_in_scaled_pivot_rear_x - quotient_in_scaled_pivot_rear_y_2 * cos_a2_right_right
+            )
             if swap_xy:
                 centre_1_x = -link_length_1 * cos_a1
                 centre_1_y = pivot_upper_x
-                centre_2_x_left = -(part_of_scaled_pivot_rear_y + part_of_scaled_pivot_rear_y_2 * sin_a2_right_left)
+                centre_2_x_left = -(
+                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_right_left
+                )
                 centre_2_y_left = -scaled_pivot_rear_x_left
-                centre_2_x_right = -(part_of_scaled_pivot_rear_y + part_of_scaled_pivot_rear_y_2 * sin_a2_right_right)
+                centre_2_x_right = -(
+                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_right_right
+                )
                 centre_2_y_right = -scaled_pivot_rear_x_right
             else:
                 centre_1_x = pivot_upper_x
                 centre_1_y = -link_length_1 * cos_a1
                 centre_2_x_left = -scaled_pivot_rear_x_left
-                centre_2_y_left = -(part_of_scaled_pivot_rear_y + part_of_scaled_pivot_rear_y_2 * sin_a2_right_left)
+                centre_2_y_left = -(
+                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_right_left
+                )
                 centre_2_x_right = -scaled_pivot_rear_x_right
-                centre_2_y_right = -(part_of_scaled_pivot_rear_y + part_of_scaled_pivot_rear_y_2 * sin_a2_right_right)
+                centre_2_y_right = -(
+                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_right_right
+                )
             rod_1_x = x - centre_1_x
             rod_1_y = y - centre_1_y
-            type2_arms_aligned_left = part_of_type2_arms_aligned * (
+            type2_arms_aligned_left = quotient_in_type2_arms_aligned * (
                 (y - centre_2_y_left) * rod_1_x - (x - centre_2_x_left) * rod_1_y
             )
             refusal_right_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
-            type2_arms_aligned_right = part_of_type2_arms_aligned * (
+            type2_arms_aligned_right = quotient_in_type2_arms_aligned * (
                 (y - centre_2_y_right) * rod_1_x - (x - centre_2_x_right) * rod_1_y
             )
             refusal_right_right = 0 if type2_arms_aligned_right >= min_type2_margin else 3
@@ -279,10 +295,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
         sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - part_of_along_a2_left * sin_a1
+        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
-        across_a2 = part_of_along_a2_left * cos_a1 - (-link_length_3_by_link_length_2 * span_upper_y)
+        across_a2 = quotient_in_along_a2_left * cos_a1 - (-link_length_3_by_link_length_2 * span_upper_y)
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
@@ -310,22 +326,28 @@ def unrolled(k: Constants) -> Unrolled:
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y_left_left * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
+        scaled_pivot_rear_x = (
+            quotient_in_scaled_pivot_rear_y_left_left * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
+        )
         sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
         if swap_xy:
             centre_1_x = -link_length_1 * cos_a1
             centre_1_y = pivot_upper_x
-            centre_2_x = -(part_of_scaled_pivot_rear_y_left_left * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2)
+            centre_2_x = -(
+                quotient_in_scaled_pivot_rear_y_left_left * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
+            )
             centre_2_y = -scaled_pivot_rear_x
         else:
             centre_1_x = pivot_upper_x
             centre_1_y = -link_length_1 * cos_a1
             centre_2_x = -scaled_pivot_rear_x
-            centre_2_y = -(part_of_scaled_pivot_rear_y_left_left * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2)
+            centre_2_y = -(
+                quotient_in_scaled_pivot_rear_y_left_left * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
+            )
         type2_arms_aligned = (
             (x - centre_1_x) * (y - centre_2_y) - (y - centre_1_y) * (x - centre_2_x)
-        ) * part_of_type2_arms_aligned
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        ) * quotient_in_type2_arms_aligned
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             return None
         if no_offsets:

@@ -94,7 +94,7 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (
             rod_1_x * rod_2_y_outward - rod_1_y * rod_2_x_outward
         )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
@@ -104,7 +104,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = (sin_swing_a2_inward_times_span_2_x - cos_swing_a2_times_y) / divisor_a2
         rod_2_y_inward = y - (-inner_arm * sin_a2)
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y_inward - rod_1_y * rod_2_x_inward)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -115,11 +115,11 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (
             rod_1_x * rod_2_y_outward - rod_1_y * rod_2_x_outward
         )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y_inward - rod_1_y * rod_2_x_inward)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         return (
             (axis_a1_outward, axis_a2_outward) if refusal_outward_outward == 0 else refused[refusal_outward_outward],
@@ -183,7 +183,7 @@ def unrolled(k: Constants) -> Unrolled:
             (span_1_x + inner_arm * cos_a1) * (y - (-inner_arm * sin_a2))
             - (span_2_x - inner_arm * cos_a2) * (y - (-inner_arm * sin_a1))
         ) * assembly_sign_by_outer_arm_squared
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             return None
         if no_offsets:

@@ -23,8 +23,8 @@ def unrolled(k: Constants) -> Unrolled:
     inner_arm_plus_outer_arm = k.inner_arm_plus_outer_arm
     inner_arm_times_shortest_link, lowest_a1, lowest_a2 = k.inner_arm_times_shortest_link, k.lowest_a1, k.lowest_a2
     machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
-    min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-    part_of_pivot_1_x, single_a1, single_a2 = k.part_of_pivot_1_x, k.single_a1, k.single_a2
+    min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
+    single_a2, sum_in_pivot_1_x = k.single_a2, k.sum_in_pivot_1_x
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -35,7 +35,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 4 * (refused[Status.UNREACHABLE],)
-        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + y * y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
@@ -52,7 +52,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 4 * (refused[Status.UNREACHABLE],)
-        span_2_x = part_of_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
         effective_a2 = sqrt(span_2_x * span_2_x + y * y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -94,7 +94,7 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (
             rod_1_x * rod_2_y_outward - rod_1_y * rod_2_x_outward
         )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
@@ -104,7 +104,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = (cos_swing_a2_times_y - sin_swing_a2_outward_times_span_2_x) / divisor_a2
         rod_2_y_inward = y - inner_arm * sin_a2
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y_inward - rod_1_y * rod_2_x_inward)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -115,11 +115,11 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (
             rod_1_x * rod_2_y_outward - rod_1_y * rod_2_x_outward
         )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y_inward - rod_1_y * rod_2_x_inward)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         return (
             (axis_a1_outward, axis_a2_outward) if refusal_outward_outward == 0 else refused[refusal_outward_outward],
@@ -135,7 +135,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
-        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + y * y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
@@ -152,7 +152,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
-        span_2_x = part_of_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
         effective_a2 = sqrt(span_2_x * span_2_x + y * y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -183,7 +183,7 @@ def unrolled(k: Constants) -> Unrolled:
             (span_1_x - inner_arm * cos_a1) * (y - inner_arm * sin_a2)
             - (span_2_x - inner_arm * cos_a2) * (y - inner_arm * sin_a1)
         ) * assembly_sign_by_outer_arm_squared
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             return None
         if no_offsets:

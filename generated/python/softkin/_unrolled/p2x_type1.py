@@ -22,8 +22,9 @@ def unrolled(k: Constants) -> Unrolled:
     arm_length_2, arm_length_2_squared_times_rounding = k.arm_length_2, k.arm_length_2_squared_times_rounding
     highest_a1, highest_a2, lowest_a1, lowest_a2 = k.highest_a1, k.highest_a2, k.lowest_a1, k.lowest_a2
     machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
-    offset_a1, offset_a2, part_of_type2_arms_aligned = k.offset_a1, k.offset_a2, k.part_of_type2_arms_aligned
-    rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
+    offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+    quotient_in_type2_arms_aligned, rail_y_1, rail_y_2 = k.quotient_in_type2_arms_aligned, k.rail_y_1, k.rail_y_2
+    tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -58,25 +59,33 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
         a1 = span_1_x - root_of_radicand_a1
         rod_1_x_left_times_span_2_y = (span_1_x - a1) * span_2_y
-        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x_left_times_span_2_y - span_1_y_times_rod_2_x_right)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        type2_arms_aligned = quotient_in_type2_arms_aligned * (
+            rod_1_x_left_times_span_2_y - span_1_y_times_rod_2_x_right
+        )
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_left_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_left = a1 + offset_a1
         axis_a2_right = a2 + offset_a2
         a2 = span_2_x - root_of_radicand_a2
         span_1_y_times_rod_2_x_left = (span_2_x - a2) * span_1_y
-        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x_left_times_span_2_y - span_1_y_times_rod_2_x_left)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        type2_arms_aligned = quotient_in_type2_arms_aligned * (
+            rod_1_x_left_times_span_2_y - span_1_y_times_rod_2_x_left
+        )
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_left_left = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_left = a2 + offset_a2
         a1 = root_of_radicand_a1 + span_1_x
         rod_1_x_right_times_span_2_y = (span_1_x - a1) * span_2_y
-        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x_right_times_span_2_y - span_1_y_times_rod_2_x_right)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        type2_arms_aligned = quotient_in_type2_arms_aligned * (
+            rod_1_x_right_times_span_2_y - span_1_y_times_rod_2_x_right
+        )
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_right_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_right = a1 + offset_a1
-        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x_right_times_span_2_y - span_1_y_times_rod_2_x_left)
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        type2_arms_aligned = quotient_in_type2_arms_aligned * (
+            rod_1_x_right_times_span_2_y - span_1_y_times_rod_2_x_left
+        )
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         refusal_right_left = 0 if type2_arms_aligned >= min_type2_margin else 3
         return (
             (axis_a1_left, axis_a2_right) if refusal_left_right == 0 else refused[refusal_left_right],
@@ -106,8 +115,8 @@ def unrolled(k: Constants) -> Unrolled:
         a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1
         span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
         a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
-        type2_arms_aligned = ((span_1_x - a1) * span_2_y - (span_2_x - a2) * span_1_y) * part_of_type2_arms_aligned
-        # arms_aligned: the other assembly mode, or too near to losing the plate
+        type2_arms_aligned = ((span_1_x - a1) * span_2_y - (span_2_x - a2) * span_1_y) * quotient_in_type2_arms_aligned
+        # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_arms_aligned >= min_type2_margin):
             return None
         if no_offsets:

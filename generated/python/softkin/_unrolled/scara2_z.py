@@ -54,11 +54,11 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             angle_a1_right = (ref_a1 - offset_a1) * DEGREE
             angle_a1_left = angle_a1_right
-        part_of_axis_a2 = arctan2(sin_a2, cos_a2) * RADIAN
+        quotient_in_axis_a2 = arctan2(sin_a2, cos_a2) * RADIAN
         axis_z = offset_z + z
         return (
-            (offset_a1 + angle_a1_right * RADIAN, offset_a2 + part_of_axis_a2, axis_z),
-            (offset_a1 + angle_a1_left * RADIAN, offset_a2 - part_of_axis_a2, axis_z),
+            (offset_a1 + angle_a1_right * RADIAN, offset_a2 + quotient_in_axis_a2, axis_z),
+            (offset_a1 + angle_a1_left * RADIAN, offset_a2 - quotient_in_axis_a2, axis_z),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -68,7 +68,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = (ref_a1 - offset_a1) * DEGREE
             angle_a1_left = angle_a1_right
         angle_a2 = arctan2(sin_a2, cos_a2)
-        part_of_axis_a2 = angle_a2 * RADIAN
+        quotient_in_axis_a2 = angle_a2 * RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)
         # a3 from the sum a123 of angles about parallel axes
         axis_a3_right = offset_a3 + (angle_heading - angle_a1_right - angle_a2) * RADIAN
@@ -76,8 +76,8 @@ def unrolled(k: Constants) -> Unrolled:
         # a3 from the sum a123 of angles about parallel axes
         axis_a3_left = offset_a3 + (angle_a2 + angle_heading - angle_a1_left) * RADIAN
         return (
-            (offset_a1 + angle_a1_right * RADIAN, offset_a2 + part_of_axis_a2, axis_a3_right, axis_z),
-            (offset_a1 + angle_a1_left * RADIAN, offset_a2 - part_of_axis_a2, axis_a3_left, axis_z),
+            (offset_a1 + angle_a1_right * RADIAN, offset_a2 + quotient_in_axis_a2, axis_a3_right, axis_z),
+            (offset_a1 + angle_a1_left * RADIAN, offset_a2 - quotient_in_axis_a2, axis_a3_left, axis_z),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

@@ -69,15 +69,15 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a2_right = (ref_a2 - offset_a2) * DEGREE
             angle_a2_left = angle_a2_right
         angle_a3 = arctan2(sin_a3, cos_a3)
-        part_of_axis_a3 = angle_a3 * RADIAN
+        quotient_in_axis_a3 = angle_a3 * RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)
         # a4 from the sum a234 of angles about parallel axes
         axis_a4_right = offset_a4 + (angle_heading - angle_a2_right - angle_a3) * RADIAN
         # a4 from the sum a234 of angles about parallel axes
         axis_a4_left = offset_a4 + (angle_a3 + angle_heading - angle_a2_left) * RADIAN
         return (
-            (axis_a1, offset_a2 + angle_a2_right * RADIAN, offset_a3 + part_of_axis_a3, axis_a4_right),
-            (axis_a1, offset_a2 + angle_a2_left * RADIAN, offset_a3 - part_of_axis_a3, axis_a4_left),
+            (axis_a1, offset_a2 + angle_a2_right * RADIAN, offset_a3 + quotient_in_axis_a3, axis_a4_right),
+            (axis_a1, offset_a2 + angle_a2_left * RADIAN, offset_a3 - quotient_in_axis_a3, axis_a4_left),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

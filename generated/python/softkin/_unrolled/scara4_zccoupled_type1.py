@@ -24,7 +24,7 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
-    offset_a4, part_of_z, single_a1, single_a2 = k.offset_a4, k.part_of_z, k.single_a1, k.single_a2
+    offset_a4, quotient_in_z, single_a1, single_a2 = k.offset_a4, k.quotient_in_z, k.single_a1, k.single_a2
     single_a4 = k.single_a4
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4))
 
@@ -64,7 +64,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = (ref_a1 - offset_a1) * DEGREE
             angle_a1_left = angle_a1_right
         angle_a2 = arctan2(sin_a2, cos_a2)
-        part_of_axis_a2 = angle_a2 * RADIAN
+        quotient_in_axis_a2 = angle_a2 * RADIAN
         angle_heading = arctan2(heading_across, heading_along)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
@@ -72,16 +72,16 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
         a4 = DEGREE * (axis_a4_right - offset_a4)  # A4: joint value with its whole turns
-        a3_right = z + a4 * part_of_z  # a3 from the z equation, which is linear in it
+        a3_right = z + a4 * quotient_in_z  # a3 from the z equation, which is linear in it
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left) / DEGREE
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
         a4 = DEGREE * (axis_a4_left - offset_a4)  # A4: joint value with its whole turns
-        a3_left = z + a4 * part_of_z  # a3 from the z equation, which is linear in it
+        a3_left = z + a4 * quotient_in_z  # a3 from the z equation, which is linear in it
         return (
-            (offset_a1 + angle_a1_right * RADIAN, offset_a2 + part_of_axis_a2, a3_right + offset_a3, axis_a4_right),
-            (offset_a1 + angle_a1_left * RADIAN, offset_a2 - part_of_axis_a2, a3_left + offset_a3, axis_a4_left),
+            (offset_a1 + angle_a1_right * RADIAN, offset_a2 + quotient_in_axis_a2, a3_right + offset_a3, axis_a4_right),
+            (offset_a1 + angle_a1_left * RADIAN, offset_a2 - quotient_in_axis_a2, a3_left + offset_a3, axis_a4_left),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
@@ -122,7 +122,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4 - open_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, open_a4)
         a4 = DEGREE * (axis_a4 - offset_a4)  # A4: joint value with its whole turns
-        a3 = z + a4 * part_of_z  # a3 from the z equation, which is linear in it
+        a3 = z + a4 * quotient_in_z  # a3 from the z equation, which is linear in it
         if no_offsets:
             return (angle_a1 * RADIAN, angle_a2 * RADIAN, a3, axis_a4)
         return (offset_a1 + angle_a1 * RADIAN, offset_a2 + angle_a2 * RADIAN, a3 + offset_a3, axis_a4)

@@ -22,8 +22,8 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
     link_length_3, machine_scale_times_free_angle = k.link_length_3, k.machine_scale_times_free_angle
     machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
-    offset_a1, offset_a2, offset_a3, part_of_open_a2 = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_open_a2
-    single_a1, single_a2 = k.single_a1, k.single_a2
+    offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+    quotient_in_open_a2, single_a1, single_a2 = k.quotient_in_open_a2, k.single_a1, k.single_a2
 
     def branches(
         frame: PlainFrame, reference: Reals | None = None, refused: Sequence[Any] = NOTHING
@@ -74,24 +74,24 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         motor_a1_right = DEGREE * (axis_a1_right - offset_a1)
-        part_of_axis_a2_right = offset_a2 - motor_a1_right * part_of_open_a2
+        sum_in_axis_a2_right = offset_a2 - motor_a1_right * quotient_in_open_a2
         axis_a1_left = offset_a1 + angle_a1_left / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         motor_a1_left = DEGREE * (axis_a1_left - offset_a1)
-        part_of_axis_a2_left = offset_a2 - motor_a1_left * part_of_open_a2
+        sum_in_axis_a2_left = offset_a2 - motor_a1_left * quotient_in_open_a2
         # A2: without a commanded turn, the value nearest to this
         if single_a2:
             open_a2_right = mid_a2
             open_a2_left = mid_a2
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            part_of_open_a2_right = ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
-            open_a2_right = part_of_axis_a2_right + part_of_open_a2_right
-            open_a2_left = part_of_axis_a2_left + part_of_open_a2_right
+            quotient_in_open_a2_right = ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
+            open_a2_right = quotient_in_open_a2_right + sum_in_axis_a2_right
+            open_a2_left = quotient_in_open_a2_right + sum_in_axis_a2_left
         angle_a2 = arctan2(sin_a2, cos_a2)
-        part_of_axis_a2_right_2 = angle_a2 * RADIAN
-        axis_a2_right = part_of_axis_a2_right + part_of_axis_a2_right_2  # A2: whole turns added
+        quotient_in_axis_a2 = angle_a2 * RADIAN
+        axis_a2_right = quotient_in_axis_a2 + sum_in_axis_a2_right  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right - open_a2_right < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2_right)
         angle_heading = arctan2(sin_heading, cos_heading)
@@ -107,7 +107,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * RADIAN
         )
-        axis_a2_left = part_of_axis_a2_left - part_of_axis_a2_right_2  # A2: whole turns added
+        axis_a2_left = sum_in_axis_a2_left - quotient_in_axis_a2  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left - open_a2_left < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
         # a3 from the sum a123 of angles about parallel axes
@@ -171,14 +171,14 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a1 = nearest_period(axis_a1, open_a1)
         angle_a2 = arctan2(sin_a2, cos_a2)
         motor_a1 = DEGREE * (axis_a1 - offset_a1)
-        part_of_axis_a2 = offset_a2 - motor_a1 * part_of_open_a2
+        sum_in_axis_a2 = offset_a2 - motor_a1 * quotient_in_open_a2
         # A2: without a commanded turn, the value nearest to this
         if single_a2:
             open_a2 = mid_a2
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            open_a2 = part_of_axis_a2 + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
-        axis_a2 = part_of_axis_a2 + angle_a2 / DEGREE  # A2: whole turns added
+            open_a2 = sum_in_axis_a2 + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
+        axis_a2 = sum_in_axis_a2 + angle_a2 / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - open_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, open_a2)
         # a3 from the sum a123 of angles about parallel axes

@@ -22,7 +22,6 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_z, mid_a, mid_c, offset_a, offset_c = k.lowest_z, k.mid_a, k.mid_c, k.offset_a, k.offset_c
     offset_x, offset_y, offset_z, pivot_y, pivot_z = k.offset_x, k.offset_y, k.offset_z, k.pivot_y, k.pivot_z
     single_a, single_c, tool_length = k.single_a, k.single_c, k.tool_length
-    twice_offset_a = 2.0 * offset_a
     no_offsets = not any((offset_a, offset_c, offset_x, offset_y, offset_z))
 
     def branches(
@@ -43,23 +42,23 @@ def unrolled(k: Constants) -> Unrolled:
             cos_c_negative = cos_c_positive
             sin_c_negative = sin_c_positive
         x_from_c_positive = x * cos_c_positive - y * sin_c_positive
-        y_from_c_positive = y * cos_c_positive + x * sin_c_positive
-        pivot_y_plus_y_from_c_positive = pivot_y + y_from_c_positive
         pivot_z_plus_z = pivot_z + z
         radius_c_times_pivot_z_plus_z = pivot_z_plus_z * radius_c
+        y_from_c_positive = y * cos_c_positive + x * sin_c_positive
+        pivot_y_plus_y_from_c_positive = pivot_y + y_from_c_positive
         r33_times_pivot_z_plus_z = pivot_z_plus_z * r33
         # joint_z from the z_from_c_a equation, which is linear in it
         joint_z_positive = tool_length + (r33_times_pivot_z_plus_z + pivot_y_plus_y_from_c_positive * radius_c)
-        axis_a = offset_a + arctan2(radius_c, r33) * RADIAN
-        axis_c = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
+        quotient_in_axis_a = arctan2(radius_c, r33) * RADIAN
+        axis_c_positive = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
         if radius_c > 1e-11:
             x_from_c_negative = -x_from_c_positive
             y_from_c_negative = -y_from_c_positive
-            direction_of_axis_c = 180.0 + axis_c
+            axis_c_negative = 180.0 + axis_c_positive
         else:
             x_from_c_negative = x * cos_c_negative - y * sin_c_negative
             y_from_c_negative = y * cos_c_negative + x * sin_c_negative
-            direction_of_axis_c = offset_c + arctan2(sin_c_negative, cos_c_negative) * RADIAN
+            axis_c_negative = offset_c + arctan2(sin_c_negative, cos_c_negative) * RADIAN
         pivot_y_plus_y_from_c_negative = pivot_y + y_from_c_negative
         # joint_z from the z_from_c_a equation, which is linear in it
         joint_z_negative = tool_length + (r33_times_pivot_z_plus_z - pivot_y_plus_y_from_c_negative * radius_c)
@@ -68,15 +67,15 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_x + x_from_c_positive,
                 offset_y + (pivot_y_plus_y_from_c_positive * r33 - radius_c_times_pivot_z_plus_z),
                 joint_z_positive + offset_z,
-                axis_a,
-                axis_c,
+                offset_a + quotient_in_axis_a,
+                axis_c_positive,
             ),
             (
                 offset_x + x_from_c_negative,
                 offset_y + (radius_c_times_pivot_z_plus_z + pivot_y_plus_y_from_c_negative * r33),
                 joint_z_negative + offset_z,
-                twice_offset_a - axis_a,
-                direction_of_axis_c,
+                offset_a - quotient_in_axis_a,
+                axis_c_negative,
             ),
         )
 
@@ -96,8 +95,8 @@ def unrolled(k: Constants) -> Unrolled:
             cos_c = cos(reference_c)
             sin_c = sin(reference_c)
         c_radius_of_a = sigma_tilt * radius_c
-        pivot_z_plus_z = pivot_z + z
         pivot_y_plus_y_from_c = pivot_y + (y * cos_c + x * sin_c)
+        pivot_z_plus_z = pivot_z + z
         # joint_z from the z_from_c_a equation, which is linear in it
         joint_z = tool_length + (c_radius_of_a * pivot_y_plus_y_from_c + pivot_z_plus_z * r33)
         if no_offsets:

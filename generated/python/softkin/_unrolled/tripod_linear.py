@@ -28,18 +28,19 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_a2, lowest_a3, min_type2_margin, offset_a1 = k.lowest_a2, k.lowest_a3, k.min_type2_margin, k.offset_a1
     offset_a2, offset_a3 = k.offset_a2, k.offset_a3
     one_minus_sin_rail_angle_squared, outer_radius = k.one_minus_sin_rail_angle_squared, k.outer_radius
-    part_of_pivot_2_x, part_of_radicand_a1 = k.part_of_pivot_2_x, k.part_of_radicand_a1
-    part_of_radicand_a2_3, part_of_type2_rods_coplanar = k.part_of_radicand_a2_3, k.part_of_type2_rods_coplanar
+    product_in_radicand_a1 = k.product_in_radicand_a1
+    quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
     sin_max_angle_ball_joint, sin_rail_angle = k.sin_max_angle_ball_joint, k.sin_rail_angle
     sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
+    sum_in_pivot_2_x, sum_in_radicand_a2 = k.sum_in_pivot_2_x, k.sum_in_radicand_a2
     root_of_3 = root(3.0)
-    part_of_span_2_y = 0.5 * outer_radius * root_of_3 - 0.5 * inner_radius * root_of_3
-    part_of_radicand_a2_4 = root_of_3 * cos_rail_angle * sin_rail_angle
-    part_of_radicand_a2_5 = 0.5 * root_of_3 * sin_rail_angle * sin_rail_angle
-    part_of_middle_a2 = 0.5 * root_of_3 * sin_rail_angle
+    sum_in_span_2_y = 0.5 * outer_radius * root_of_3 - 0.5 * inner_radius * root_of_3
+    product_in_radicand_a2_3 = root_of_3 * cos_rail_angle * sin_rail_angle
+    product_in_radicand_a2_4 = 0.5 * root_of_3 * sin_rail_angle * sin_rail_angle
+    product_in_middle_a2 = 0.5 * root_of_3 * sin_rail_angle
     root_of_3_times_half_by_arm_length_2 = 0.5 * root_of_3 / arm_length
     one_minus_cos_rail_angle_squared = 1.0 - cos_rail_angle_squared
-    part_of_radicand_a2_6 = 1.0 - sin_rail_angle_squared_times_1_by_4
+    sum_in_radicand_a2_2 = 1.0 - sin_rail_angle_squared_times_1_by_4
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -52,7 +53,7 @@ def unrolled(k: Constants) -> Unrolled:
         # quadratic equation for a1: rod 1
         radicand_a1 = (
             arm_length_squared
-            + (part_of_radicand_a1 * span_1_x - one_minus_cos_rail_angle_squared_times_z) * z
+            + (product_in_radicand_a1 * span_1_x - one_minus_cos_rail_angle_squared_times_z) * z
             - y * y
             - one_minus_sin_rail_angle_squared * span_1_x * span_1_x
         )
@@ -63,18 +64,16 @@ def unrolled(k: Constants) -> Unrolled:
             if not (radicand_a1 >= -arm_length_squared_times_rounding):
                 return 8 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a1 = 0.0
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = part_of_span_2_y + y
-        part_of_radicand_a2_7 = (
-            one_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
-        )
-        part_of_radicand_a2_6_times_span_2_x = part_of_radicand_a2_6 * span_2_x
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = sum_in_span_2_y + y
+        sum_in_radicand_a2_3 = one_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
+        sum_in_radicand_a2_2_times_span_2_x = span_2_x * sum_in_radicand_a2_2
         # quadratic equation for a2: rod 2
         radicand_a2 = (
             arm_length_squared
-            + (-part_of_radicand_a2_6_times_span_2_x - part_of_radicand_a2_5 * span_2_y) * span_2_x
-            + (part_of_radicand_a2_4 * span_2_y - part_of_radicand_a2_7) * z
-            - part_of_radicand_a2_3 * span_2_y * span_2_y
+            + (-sum_in_radicand_a2_2_times_span_2_x - product_in_radicand_a2_4 * span_2_y) * span_2_x
+            + (product_in_radicand_a2_3 * span_2_y - sum_in_radicand_a2_3) * z
+            - span_2_y * span_2_y * sum_in_radicand_a2
         )
         if radicand_a2 > 0.0:
             root_of_radicand_a2 = sqrt(radicand_a2)
@@ -83,13 +82,13 @@ def unrolled(k: Constants) -> Unrolled:
             if not (radicand_a2 >= -arm_length_squared_times_rounding):
                 return 8 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a2 = 0.0
-        span_3_y = y - part_of_span_2_y
+        span_3_y = y - sum_in_span_2_y
         # quadratic equation for a3: rod 3
         radicand_a3 = (
             arm_length_squared
-            + (part_of_radicand_a2_5 * span_3_y - part_of_radicand_a2_6_times_span_2_x) * span_2_x
-            + (-part_of_radicand_a2_7 - part_of_radicand_a2_4 * span_3_y) * z
-            - part_of_radicand_a2_3 * span_3_y * span_3_y
+            + (product_in_radicand_a2_4 * span_3_y - sum_in_radicand_a2_2_times_span_2_x) * span_2_x
+            + (-sum_in_radicand_a2_3 - product_in_radicand_a2_3 * span_3_y) * z
+            - span_3_y * span_3_y * sum_in_radicand_a2
         )
         if radicand_a3 > 0.0:
             root_of_radicand_a3 = sqrt(radicand_a3)
@@ -101,39 +100,39 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 1
         if not (abs(y) / arm_length <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
-        part = root_of_3_times_half_by_arm_length_2 * x
+        shared_product = root_of_3_times_half_by_arm_length_2 * x
         half_by_arm_length_times_y = half_by_arm_length * y
         # ball joint of rod 2
-        if not (abs(half_by_arm_length_times_y + part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_y + shared_product) <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
         # ball joint of rod 3
-        if not (abs(half_by_arm_length_times_y - part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_y - shared_product) <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
         cos_rail_angle_times_z = z * cos_rail_angle
         middle_a1 = cos_rail_angle_times_z + span_1_x * sin_rail_angle
         a1 = root_of_radicand_a1 - middle_a1
         rod_1_x = span_1_x + a1 * sin_rail_angle
         rod_1_z = z - (-a1 * cos_rail_angle)
-        part_of_middle_a2_2 = cos_rail_angle_times_z - half_sin_rail_angle * span_2_x
-        middle_a2 = -part_of_middle_a2_2 - part_of_middle_a2 * span_2_y
+        sum_in_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle * span_2_x
+        middle_a2 = -sum_in_middle_a2 - product_in_middle_a2 * span_2_y
         a2 = middle_a2 + root_of_radicand_a2
         rod_2_x = span_2_x - a2 * half_sin_rail_angle
         rod_2_z = z - (-a2 * cos_rail_angle)
-        middle_a3 = part_of_middle_a2 * span_3_y - part_of_middle_a2_2
+        middle_a3 = product_in_middle_a2 * span_3_y - sum_in_middle_a2
         a3 = middle_a3 + root_of_radicand_a3
         rod_3_x_below = span_2_x - a3 * half_sin_rail_angle
         rod_3_z_below = z - (-a3 * cos_rail_angle)
-        part_of_type2_rods_coplanar_below_below = (rod_2_x * rod_3_z_below - rod_2_z * rod_3_x_below) * y
-        rod_2_y = span_2_y + a2 * part_of_middle_a2
-        rod_3_y_below = span_3_y - a3 * part_of_middle_a2
-        part_of_type2_rods_coplanar_below_below_below_2 = rod_2_y * rod_3_z_below - rod_2_z * rod_3_y_below
-        part_of_type2_rods_coplanar_below_below_below_3 = rod_2_x * rod_3_y_below - rod_2_y * rod_3_x_below
+        product_in_type2_rods_coplanar_below_below = (rod_2_x * rod_3_z_below - rod_2_z * rod_3_x_below) * y
+        rod_2_y = span_2_y + a2 * product_in_middle_a2
+        rod_3_y_below = span_3_y - a3 * product_in_middle_a2
+        sum_in_type2_rods_coplanar_below_below = rod_2_y * rod_3_z_below - rod_2_z * rod_3_y_below
+        sum_in_type2_rods_coplanar_below_below_below_2 = rod_2_x * rod_3_y_below - rod_2_y * rod_3_x_below
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_below_below_below_2 * rod_1_x
-            + part_of_type2_rods_coplanar_below_below_below_3 * rod_1_z
-            - part_of_type2_rods_coplanar_below_below
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_below_below
+            + rod_1_z * sum_in_type2_rods_coplanar_below_below_below_2
+            - product_in_type2_rods_coplanar_below_below
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_below = a1 + offset_a1
         axis_a2_below = a2 + offset_a2
@@ -141,74 +140,74 @@ def unrolled(k: Constants) -> Unrolled:
         a3 = middle_a3 - root_of_radicand_a3
         rod_3_x_above = span_2_x - a3 * half_sin_rail_angle
         rod_3_z_above = z - (-a3 * cos_rail_angle)
-        part_of_type2_rods_coplanar_below_above = (rod_2_x * rod_3_z_above - rod_2_z * rod_3_x_above) * y
-        rod_3_y_above = span_3_y - a3 * part_of_middle_a2
-        part_of_type2_rods_coplanar_below_below_above_2 = rod_2_y * rod_3_z_above - rod_2_z * rod_3_y_above
-        part_of_type2_rods_coplanar_below_below_above_3 = rod_2_x * rod_3_y_above - rod_2_y * rod_3_x_above
+        product_in_type2_rods_coplanar_below_above = (rod_2_x * rod_3_z_above - rod_2_z * rod_3_x_above) * y
+        rod_3_y_above = span_3_y - a3 * product_in_middle_a2
+        sum_in_type2_rods_coplanar_below_above = rod_2_y * rod_3_z_above - rod_2_z * rod_3_y_above
+        sum_in_type2_rods_coplanar_below_below_above_2 = rod_2_x * rod_3_y_above - rod_2_y * rod_3_x_above
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_below_below_above_2 * rod_1_x
-            + part_of_type2_rods_coplanar_below_below_above_3 * rod_1_z
-            - part_of_type2_rods_coplanar_below_above
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_below_above
+            + rod_1_z * sum_in_type2_rods_coplanar_below_below_above_2
+            - product_in_type2_rods_coplanar_below_above
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_above = a3 + offset_a3
         a2 = middle_a2 - root_of_radicand_a2
         rod_2_x = span_2_x - a2 * half_sin_rail_angle
         rod_2_z = z - (-a2 * cos_rail_angle)
-        part_of_type2_rods_coplanar_above_below = (rod_2_x * rod_3_z_below - rod_2_z * rod_3_x_below) * y
-        rod_2_y = span_2_y + a2 * part_of_middle_a2
-        part_of_type2_rods_coplanar_below_above_below_2 = rod_2_y * rod_3_z_below - rod_2_z * rod_3_y_below
-        part_of_type2_rods_coplanar_below_above_below_3 = rod_2_x * rod_3_y_below - rod_2_y * rod_3_x_below
+        product_in_type2_rods_coplanar_above_below = (rod_2_x * rod_3_z_below - rod_2_z * rod_3_x_below) * y
+        rod_2_y = span_2_y + a2 * product_in_middle_a2
+        sum_in_type2_rods_coplanar_above_below = rod_2_y * rod_3_z_below - rod_2_z * rod_3_y_below
+        sum_in_type2_rods_coplanar_below_above_below_2 = rod_2_x * rod_3_y_below - rod_2_y * rod_3_x_below
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_below_above_below_2 * rod_1_x
-            + part_of_type2_rods_coplanar_below_above_below_3 * rod_1_z
-            - part_of_type2_rods_coplanar_above_below
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_above_below
+            + rod_1_z * sum_in_type2_rods_coplanar_below_above_below_2
+            - product_in_type2_rods_coplanar_above_below
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_above = a2 + offset_a2
-        part_of_type2_rods_coplanar_above_above = (rod_2_x * rod_3_z_above - rod_2_z * rod_3_x_above) * y
-        part_of_type2_rods_coplanar_below_above_above_2 = rod_2_y * rod_3_z_above - rod_2_z * rod_3_y_above
-        part_of_type2_rods_coplanar_below_above_above_3 = rod_2_x * rod_3_y_above - rod_2_y * rod_3_x_above
+        product_in_type2_rods_coplanar_above_above = (rod_2_x * rod_3_z_above - rod_2_z * rod_3_x_above) * y
+        sum_in_type2_rods_coplanar_above_above = rod_2_y * rod_3_z_above - rod_2_z * rod_3_y_above
+        sum_in_type2_rods_coplanar_below_above_above_2 = rod_2_x * rod_3_y_above - rod_2_y * rod_3_x_above
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_below_above_above_2 * rod_1_x
-            + part_of_type2_rods_coplanar_below_above_above_3 * rod_1_z
-            - part_of_type2_rods_coplanar_above_above
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_above_above
+            + rod_1_z * sum_in_type2_rods_coplanar_below_above_above_2
+            - product_in_type2_rods_coplanar_above_above
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         a1 = -middle_a1 - root_of_radicand_a1
         rod_1_x = span_1_x + a1 * sin_rail_angle
         rod_1_z = z - (-a1 * cos_rail_angle)
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_below_below_below_2 * rod_1_x
-            + part_of_type2_rods_coplanar_below_below_below_3 * rod_1_z
-            - part_of_type2_rods_coplanar_below_below
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_below_below
+            + rod_1_z * sum_in_type2_rods_coplanar_below_below_below_2
+            - product_in_type2_rods_coplanar_below_below
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_above = a1 + offset_a1
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_below_below_above_2 * rod_1_x
-            + part_of_type2_rods_coplanar_below_below_above_3 * rod_1_z
-            - part_of_type2_rods_coplanar_below_above
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_below_above
+            + rod_1_z * sum_in_type2_rods_coplanar_below_below_above_2
+            - product_in_type2_rods_coplanar_below_above
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_below_above_below_2 * rod_1_x
-            + part_of_type2_rods_coplanar_below_above_below_3 * rod_1_z
-            - part_of_type2_rods_coplanar_above_below
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_above_below
+            + rod_1_z * sum_in_type2_rods_coplanar_below_above_below_2
+            - product_in_type2_rods_coplanar_above_below
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_below_above_above_2 * rod_1_x
-            + part_of_type2_rods_coplanar_below_above_above_3 * rod_1_z
-            - part_of_type2_rods_coplanar_above_above
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_above_above
+            + rod_1_z * sum_in_type2_rods_coplanar_below_above_above_2
+            - product_in_type2_rods_coplanar_above_above
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
             (axis_a1_below, axis_a2_below, axis_a3_below)
@@ -246,34 +245,34 @@ def unrolled(k: Constants) -> Unrolled:
         # quadratic equation for a1: rod 1
         radicand_a1 = (
             arm_length_squared
-            + (part_of_radicand_a1 * span_1_x - z_minus_cos_rail_angle_squared_times_z) * z
+            + (product_in_radicand_a1 * span_1_x - z_minus_cos_rail_angle_squared_times_z) * z
             - y * y
             - one_minus_sin_rail_angle_squared * span_1_x * span_1_x
         )
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_squared_times_rounding):
             return None
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = part_of_span_2_y + y
-        part_of_radicand_a2_7 = z_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
-        part_of_radicand_a2_8 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = sum_in_span_2_y + y
+        sum_in_radicand_a2_3 = z_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
+        sum_in_radicand_a2_4 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
         # quadratic equation for a2: rod 2
         radicand_a2 = (
             arm_length_squared
-            + (-part_of_radicand_a2_8 - part_of_radicand_a2_5 * span_2_y) * span_2_x
-            + (part_of_radicand_a2_4 * span_2_y - part_of_radicand_a2_7) * z
-            - part_of_radicand_a2_3 * span_2_y * span_2_y
+            + (-sum_in_radicand_a2_4 - product_in_radicand_a2_4 * span_2_y) * span_2_x
+            + (product_in_radicand_a2_3 * span_2_y - sum_in_radicand_a2_3) * z
+            - span_2_y * span_2_y * sum_in_radicand_a2
         )
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_squared_times_rounding):
             return None
-        span_3_y = y - part_of_span_2_y
+        span_3_y = y - sum_in_span_2_y
         # quadratic equation for a3: rod 3
         radicand_a3 = (
             arm_length_squared
-            + (part_of_radicand_a2_5 * span_3_y - part_of_radicand_a2_8) * span_2_x
-            + (-part_of_radicand_a2_7 - part_of_radicand_a2_4 * span_3_y) * z
-            - part_of_radicand_a2_3 * span_3_y * span_3_y
+            + (product_in_radicand_a2_4 * span_3_y - sum_in_radicand_a2_4) * span_2_x
+            + (-sum_in_radicand_a2_3 - product_in_radicand_a2_3 * span_3_y) * z
+            - span_3_y * span_3_y * sum_in_radicand_a2
         )
         # rod 3 cannot reach
         if not (radicand_a3 >= -arm_length_squared_times_rounding):
@@ -282,41 +281,41 @@ def unrolled(k: Constants) -> Unrolled:
         a1 = (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1 - (
             cos_rail_angle_times_z + span_1_x * sin_rail_angle
         )
-        part_of_middle_a2_2 = cos_rail_angle_times_z - half_sin_rail_angle * span_2_x
+        sum_in_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle * span_2_x
         a2 = (
-            -part_of_middle_a2_2
-            - part_of_middle_a2 * span_2_y
+            -sum_in_middle_a2
+            - product_in_middle_a2 * span_2_y
             + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         )
         rod_2_x = span_2_x - a2 * half_sin_rail_angle
-        rod_2_y = span_2_y + a2 * part_of_middle_a2
+        rod_2_y = span_2_y + a2 * product_in_middle_a2
         rod_2_z = z - (-a2 * cos_rail_angle)
         a3 = (
-            part_of_middle_a2 * span_3_y
-            - part_of_middle_a2_2
+            product_in_middle_a2 * span_3_y
+            - sum_in_middle_a2
             + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0) * sigma_carriage_3
         )
         rod_3_x = span_2_x - a3 * half_sin_rail_angle
-        rod_3_y = span_3_y - a3 * part_of_middle_a2
+        rod_3_y = span_3_y - a3 * product_in_middle_a2
         rod_3_z = z - (-a3 * cos_rail_angle)
-        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+        type2_rods_coplanar = -quotient_in_type2_rods_coplanar * (
             (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * (z - (-a1 * cos_rail_angle))
             + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * (span_1_x + a1 * sin_rail_angle)
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
         # ball joint of rod 1
         if not (abs(y) / arm_length <= sin_max_angle_ball_joint):
             return None
-        part = root_of_3_times_half_by_arm_length_2 * x
+        shared_product = root_of_3_times_half_by_arm_length_2 * x
         half_by_arm_length_times_y = half_by_arm_length * y
         # ball joint of rod 2
-        if not (abs(half_by_arm_length_times_y + part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_y + shared_product) <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 3
-        if not (abs(half_by_arm_length_times_y - part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_y - shared_product) <= sin_max_angle_ball_joint):
             return None
         if no_offsets:
             return (a1, a2, a3)

@@ -22,9 +22,9 @@ def unrolled(k: Constants) -> Unrolled:
     arm_length_squared_times_rounding, highest_a1 = k.arm_length_squared_times_rounding, k.highest_a1
     highest_a2, highest_a3, lowest_a1, lowest_a2 = k.highest_a2, k.highest_a3, k.lowest_a1, k.lowest_a2
     lowest_a3, min_type2_margin, offset_a1, offset_a2 = k.lowest_a3, k.min_type2_margin, k.offset_a1, k.offset_a2
-    offset_a3, part_of_type2_rods_coplanar, pivot_1_x = k.offset_a3, k.part_of_type2_rods_coplanar, k.pivot_1_x
-    pivot_1_y, pivot_2_x, pivot_2_y, pivot_3_x = k.pivot_1_y, k.pivot_2_x, k.pivot_2_y, k.pivot_3_x
-    pivot_3_y = k.pivot_3_y
+    offset_a3, pivot_1_x, pivot_1_y, pivot_2_x = k.offset_a3, k.pivot_1_x, k.pivot_1_y, k.pivot_2_x
+    pivot_2_y, pivot_3_x, pivot_3_y = k.pivot_2_y, k.pivot_3_x, k.pivot_3_y
+    quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -70,8 +70,8 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_y = y - pivot_2_y
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        part_of_type2_rods_coplanar_above_above_above = rod_2_x * rod_3_y - rod_2_y * rod_3_x
-        part_of_type2_rods_coplanar_above_above_above_2 = (z - a1) * part_of_type2_rods_coplanar_above_above_above
+        sum_in_type2_rods_coplanar_above_above = rod_2_x * rod_3_y - rod_2_y * rod_3_x
+        product_in_type2_rods_coplanar = (z - a1) * sum_in_type2_rods_coplanar_above_above
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         a2 = root_of_radicand_a2 + z
@@ -82,13 +82,13 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_y_times_rod_3_z_above = rod_2_y * rod_3_z
         rod_2_x_times_rod_3_z_above = rod_2_x * rod_3_z
         rod_2_z_above_times_rod_3_x = rod_2_z * rod_3_x
-        part_of_type2_rods_coplanar_above_above_above_3 = (
+        sum_in_type2_rods_coplanar_above_above_above_2 = (
             rod_2_z_above_times_rod_3_y - rod_2_y_times_rod_3_z_above
         ) * rod_1_x + rod_1_y * (rod_2_x_times_rod_3_z_above - rod_2_z_above_times_rod_3_x)
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_above_above_above_2 - part_of_type2_rods_coplanar_above_above_above_3
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        type2_rods_coplanar = (
+            product_in_type2_rods_coplanar - sum_in_type2_rods_coplanar_above_above_above_2
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_above = a1 + offset_a1
         axis_a2_above = a2 + offset_a2
@@ -97,60 +97,60 @@ def unrolled(k: Constants) -> Unrolled:
         rod_3_z = z - a3
         rod_2_y_times_rod_3_z_below = rod_2_y * rod_3_z
         rod_2_x_times_rod_3_z_below = rod_2_x * rod_3_z
-        part_of_type2_rods_coplanar_above_above_below = (
+        sum_in_type2_rods_coplanar_above_below = (
             rod_2_z_above_times_rod_3_y - rod_2_y_times_rod_3_z_below
         ) * rod_1_x + rod_1_y * (rod_2_x_times_rod_3_z_below - rod_2_z_above_times_rod_3_x)
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_above_above_above_2 - part_of_type2_rods_coplanar_above_above_below
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        type2_rods_coplanar = (
+            product_in_type2_rods_coplanar - sum_in_type2_rods_coplanar_above_below
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_below = a3 + offset_a3
         a2 = z - root_of_radicand_a2
         rod_2_z = z - a2
         rod_2_z_below_times_rod_3_y = rod_2_z * rod_3_y
         rod_2_z_below_times_rod_3_x = rod_2_z * rod_3_x
-        part_of_type2_rods_coplanar_above_below_above = (
+        sum_in_type2_rods_coplanar_below_above = (
             rod_1_x * (rod_2_y_times_rod_3_z_above - rod_2_z_below_times_rod_3_y)
             + (rod_2_z_below_times_rod_3_x - rod_2_x_times_rod_3_z_above) * rod_1_y
         )
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_above_above_above_2 + part_of_type2_rods_coplanar_above_below_above
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        type2_rods_coplanar = (
+            product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_below_above
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_below = a2 + offset_a2
-        part_of_type2_rods_coplanar_above_below_below = (
+        sum_in_type2_rods_coplanar_below_below = (
             rod_1_x * (rod_2_y_times_rod_3_z_below - rod_2_z_below_times_rod_3_y)
             + (rod_2_z_below_times_rod_3_x - rod_2_x_times_rod_3_z_below) * rod_1_y
         )
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_above_above_above_2 + part_of_type2_rods_coplanar_above_below_below
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        type2_rods_coplanar = (
+            product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_below_below
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         a1 = z - root_of_radicand_a1
-        part_of_type2_rods_coplanar_below_above_above = (z - a1) * part_of_type2_rods_coplanar_above_above_above
+        product_in_type2_rods_coplanar = (z - a1) * sum_in_type2_rods_coplanar_above_above
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_below_above_above - part_of_type2_rods_coplanar_above_above_above_3
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            product_in_type2_rods_coplanar - sum_in_type2_rods_coplanar_above_above_above_2
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_below = a1 + offset_a1
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_below_above_above - part_of_type2_rods_coplanar_above_above_below
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            product_in_type2_rods_coplanar - sum_in_type2_rods_coplanar_above_below
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_above_below_above + part_of_type2_rods_coplanar_below_above_above
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        type2_rods_coplanar = (
+            product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_below_above
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        type2_rods_coplanar = part_of_type2_rods_coplanar * (
-            part_of_type2_rods_coplanar_above_below_below + part_of_type2_rods_coplanar_below_above_above
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        type2_rods_coplanar = (
+            product_in_type2_rods_coplanar + sum_in_type2_rods_coplanar_below_below
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
             (axis_a1_above, axis_a2_above, axis_a3_above)
@@ -226,8 +226,8 @@ def unrolled(k: Constants) -> Unrolled:
             (z - a1) * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * (y - pivot_1_y)
             + (x - pivot_1_x) * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
         if no_offsets:

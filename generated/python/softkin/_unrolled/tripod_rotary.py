@@ -26,13 +26,13 @@ def unrolled(k: Constants) -> Unrolled:
     highest_a3, lowest_a1, lowest_a2, lowest_a3 = k.highest_a3, k.lowest_a1, k.lowest_a2, k.lowest_a3
     mid_a1, mid_a2, mid_a3, min_type2_margin = k.mid_a1, k.mid_a2, k.mid_a3, k.min_type2_margin
     offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-    part_of_divisor_a2, part_of_pivot_2_x = k.part_of_divisor_a2, k.part_of_pivot_2_x
-    part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
+    product_in_divisor_a2 = k.product_in_divisor_a2
+    quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
     sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
-    single_a3, twice_arm_length_1 = k.single_a3, k.twice_arm_length_1
-    part_of_scaled_cosine_a1_2 = -2.0 * arm_length_1 * fixed_length_1_minus_arm_1_radius
+    single_a3, sum_in_pivot_2_x, twice_arm_length_1 = k.single_a3, k.sum_in_pivot_2_x, k.twice_arm_length_1
+    product_in_scaled_cosine_a1_2 = -2.0 * arm_length_1 * fixed_length_1_minus_arm_1_radius
     root_of_3 = root(3.0)
-    part_of_span_2_y = 0.5 * arm_1_radius * root_of_3 - 0.5 * fixed_length_1 * root_of_3
+    sum_in_span_2_y = 0.5 * arm_1_radius * root_of_3 - 0.5 * fixed_length_1 * root_of_3
     arm_length_1_times_root_of_3_times_half_2 = 0.5 * arm_length_1 * root_of_3
     root_of_3_times_half_by_arm_length_2_2 = 0.5 * root_of_3 / arm_length_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
@@ -48,9 +48,9 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return 8 * (refused[Status.UNREACHABLE],)
-        part_of_scaled_cosine_a1_3 = part_of_scaled_cosine_a1_2 + (fixed_length_2 - span_1_z) * z
+        sum_in_scaled_cosine_a1 = product_in_scaled_cosine_a1_2 + (fixed_length_2 - span_1_z) * z
         # cosine, times the scale, without cancellation
-        scaled_cosine_a1 = part_of_scaled_cosine_a1_3 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
+        scaled_cosine_a1 = sum_in_scaled_cosine_a1 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
         twice_arm_length_1_times_effective_a1 = divisor_a1 * twice_arm_length_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
@@ -63,20 +63,20 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 8 * (refused[Status.UNREACHABLE],)
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = part_of_span_2_y + y
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = sum_in_span_2_y + y
         root_of_3_2 = root(3.0)
         along_a2 = span_2_x - root_of_3_2 * span_2_y
         across_a2 = 2.0 * span_1_z
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
-        if not (effective_a2 > part_of_divisor_a2):
+        if not (effective_a2 > product_in_divisor_a2):
             return 8 * (refused[Status.UNREACHABLE],)
-        part_of_scaled_cosine_a2 = (span_2_x - part_of_pivot_2_x) * x - part_of_scaled_cosine_a1_3
+        sum_in_scaled_cosine_a2 = (span_2_x - sum_in_pivot_2_x) * x - sum_in_scaled_cosine_a1
         # cosine, times the scale, without cancellation
-        scaled_cosine_a2 = part_of_scaled_cosine_a2 + (part_of_span_2_y + span_2_y) * y
-        divisor_a2 = effective_a2 if effective_a2 > part_of_divisor_a2 else 1.0
+        scaled_cosine_a2 = sum_in_scaled_cosine_a2 + (span_2_y + sum_in_span_2_y) * y
+        divisor_a2 = effective_a2 if effective_a2 > product_in_divisor_a2 else 1.0
         arm_length_1_times_effective_a2 = arm_length_1 * divisor_a2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
@@ -88,16 +88,16 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 8 * (refused[Status.UNREACHABLE],)
-        span_3_y = y - part_of_span_2_y
+        span_3_y = y - sum_in_span_2_y
         along_a3 = span_2_x + root_of_3_2 * span_3_y
         # effective length of the arm that a3 turns
         effective_a3 = sqrt(across_a2 * across_a2 + along_a3 * along_a3)
         # a3: its effective length is too short
-        if not (effective_a3 > part_of_divisor_a2):
+        if not (effective_a3 > product_in_divisor_a2):
             return 8 * (refused[Status.UNREACHABLE],)
         # cosine, times the scale, without cancellation
-        scaled_cosine_a3 = part_of_scaled_cosine_a2 + (span_3_y - part_of_span_2_y) * y
-        divisor_a3 = effective_a3 if effective_a3 > part_of_divisor_a2 else 1.0
+        scaled_cosine_a3 = sum_in_scaled_cosine_a2 + (span_3_y - sum_in_span_2_y) * y
+        divisor_a3 = effective_a3 if effective_a3 > product_in_divisor_a2 else 1.0
         arm_length_1_times_effective_a3 = arm_length_1 * divisor_a3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
@@ -112,13 +112,13 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 1
         if not (abs(y) / arm_length_2 <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
-        part = root_of_3_times_half_by_arm_length_2_2 * x
+        shared_product = root_of_3_times_half_by_arm_length_2_2 * x
         half_by_arm_length_2_times_y = half_by_arm_length_2 * y
         # ball joint of rod 2
-        if not (abs(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y + shared_product) <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
         # ball joint of rod 3
-        if not (abs(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y - shared_product) <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
         cos_swing_a1_times_span_1_x = span_1_x * cos_swing_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
@@ -153,17 +153,17 @@ def unrolled(k: Constants) -> Unrolled:
         along_a3_times_sin_swing_a3 = along_a3 * sin_swing_a3
         sin_a3 = (-across_a2_times_cos_swing_a3 - along_a3_times_sin_swing_a3) / divisor_a3
         rod_3_z_outward = span_1_z + arm_length_1 * sin_a3
-        part_of_type2_rods_coplanar_outward_outward = (rod_2_x * rod_3_z_outward - rod_2_z * rod_3_x_outward) * y
+        product_in_type2_rods_coplanar_outward_outward = (rod_2_x * rod_3_z_outward - rod_2_z * rod_3_x_outward) * y
         rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half_2 * cos_a2
         rod_3_y_outward = span_3_y - arm_length_1_times_root_of_3_times_half_2 * cos_a3
-        part_of_type2_rods_coplanar_outward_outward_outward_2 = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
-        part_of_type2_rods_coplanar_outward_outward_outward_3 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
+        sum_in_type2_rods_coplanar_outward_outward = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
+        sum_in_type2_rods_coplanar_outward_outward_outward_2 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_outward_outward_outward_2 * rod_1_x
-            + part_of_type2_rods_coplanar_outward_outward_outward_3 * rod_1_z
-            - part_of_type2_rods_coplanar_outward_outward
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_outward_outward
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_outward_outward_2
+            - product_in_type2_rods_coplanar_outward_outward
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
@@ -173,16 +173,16 @@ def unrolled(k: Constants) -> Unrolled:
         rod_3_x_inward = span_2_x - half_arm_length_1 * cos_a3
         sin_a3 = (along_a3_times_sin_swing_a3 - across_a2_times_cos_swing_a3) / divisor_a3
         rod_3_z_inward = span_1_z + arm_length_1 * sin_a3
-        part_of_type2_rods_coplanar_outward_inward = (rod_2_x * rod_3_z_inward - rod_2_z * rod_3_x_inward) * y
+        product_in_type2_rods_coplanar_outward_inward = (rod_2_x * rod_3_z_inward - rod_2_z * rod_3_x_inward) * y
         rod_3_y_inward = span_3_y - arm_length_1_times_root_of_3_times_half_2 * cos_a3
-        part_of_type2_rods_coplanar_outward_outward_inward_2 = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
-        part_of_type2_rods_coplanar_outward_outward_inward_3 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
+        sum_in_type2_rods_coplanar_outward_inward = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
+        sum_in_type2_rods_coplanar_outward_outward_inward_2 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_outward_outward_inward_2 * rod_1_x
-            + part_of_type2_rods_coplanar_outward_outward_inward_3 * rod_1_z
-            - part_of_type2_rods_coplanar_outward_inward
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_outward_inward
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_outward_inward_2
+            - product_in_type2_rods_coplanar_outward_inward
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3) * RADIAN
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -190,27 +190,27 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_x = span_2_x - half_arm_length_1 * cos_a2
         sin_a2 = (along_a2_times_sin_swing_a2 - across_a2_times_cos_swing_a2) / divisor_a2
         rod_2_z = span_1_z + arm_length_1 * sin_a2
-        part_of_type2_rods_coplanar_inward_outward = (rod_2_x * rod_3_z_outward - rod_2_z * rod_3_x_outward) * y
+        product_in_type2_rods_coplanar_inward_outward = (rod_2_x * rod_3_z_outward - rod_2_z * rod_3_x_outward) * y
         rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half_2 * cos_a2
-        part_of_type2_rods_coplanar_outward_inward_outward_2 = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
-        part_of_type2_rods_coplanar_outward_inward_outward_3 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
+        sum_in_type2_rods_coplanar_inward_outward = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
+        sum_in_type2_rods_coplanar_outward_inward_outward_2 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_outward_inward_outward_2 * rod_1_x
-            + part_of_type2_rods_coplanar_outward_inward_outward_3 * rod_1_z
-            - part_of_type2_rods_coplanar_inward_outward
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_inward_outward
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_inward_outward_2
+            - product_in_type2_rods_coplanar_inward_outward
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
-        part_of_type2_rods_coplanar_inward_inward = (rod_2_x * rod_3_z_inward - rod_2_z * rod_3_x_inward) * y
-        part_of_type2_rods_coplanar_outward_inward_inward_2 = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
-        part_of_type2_rods_coplanar_outward_inward_inward_3 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
+        product_in_type2_rods_coplanar_inward_inward = (rod_2_x * rod_3_z_inward - rod_2_z * rod_3_x_inward) * y
+        sum_in_type2_rods_coplanar_inward_inward = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
+        sum_in_type2_rods_coplanar_outward_inward_inward_2 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_outward_inward_inward_2 * rod_1_x
-            + part_of_type2_rods_coplanar_outward_inward_inward_3 * rod_1_z
-            - part_of_type2_rods_coplanar_inward_inward
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_inward_inward
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_inward_inward_2
+            - product_in_type2_rods_coplanar_inward_inward
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (cos_swing_a1_times_span_1_x + sin_swing_a1_outward_times_span_1_z) / divisor_a1
@@ -218,33 +218,33 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = (cos_swing_a1_times_span_1_z - sin_swing_a1_outward_times_span_1_x) / divisor_a1
         rod_1_z = span_1_z + arm_length_1 * sin_a1
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_outward_outward_outward_2 * rod_1_x
-            + part_of_type2_rods_coplanar_outward_outward_outward_3 * rod_1_z
-            - part_of_type2_rods_coplanar_outward_outward
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_outward_outward
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_outward_outward_2
+            - product_in_type2_rods_coplanar_outward_outward
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_outward_outward_inward_2 * rod_1_x
-            + part_of_type2_rods_coplanar_outward_outward_inward_3 * rod_1_z
-            - part_of_type2_rods_coplanar_outward_inward
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_outward_inward
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_outward_inward_2
+            - product_in_type2_rods_coplanar_outward_inward
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_outward_inward_outward_2 * rod_1_x
-            + part_of_type2_rods_coplanar_outward_inward_outward_3 * rod_1_z
-            - part_of_type2_rods_coplanar_inward_outward
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_inward_outward
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_inward_outward_2
+            - product_in_type2_rods_coplanar_inward_outward
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            part_of_type2_rods_coplanar_outward_inward_inward_2 * rod_1_x
-            + part_of_type2_rods_coplanar_outward_inward_inward_3 * rod_1_z
-            - part_of_type2_rods_coplanar_inward_inward
-        ) * part_of_type2_rods_coplanar
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+            rod_1_x * sum_in_type2_rods_coplanar_inward_inward
+            + rod_1_z * sum_in_type2_rods_coplanar_outward_inward_inward_2
+            - product_in_type2_rods_coplanar_inward_inward
+        ) * quotient_in_type2_rods_coplanar
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
             (axis_a1_outward, axis_a2_outward, axis_a3_outward)
@@ -283,9 +283,9 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return None
-        part_of_scaled_cosine_a1_3 = part_of_scaled_cosine_a1_2 + (fixed_length_2 - span_1_z) * z
+        sum_in_scaled_cosine_a1 = product_in_scaled_cosine_a1_2 + (fixed_length_2 - span_1_z) * z
         # cosine, times the scale, without cancellation
-        scaled_cosine_a1 = part_of_scaled_cosine_a1_3 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
+        scaled_cosine_a1 = sum_in_scaled_cosine_a1 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
         twice_arm_length_1_times_effective_a1 = divisor_a1 * twice_arm_length_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
@@ -298,20 +298,20 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
-        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        span_2_y = part_of_span_2_y + y
+        span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = sum_in_span_2_y + y
         root_of_3_2 = root(3.0)
         along_a2 = span_2_x - root_of_3_2 * span_2_y
         across_a2 = 2.0 * span_1_z
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
-        if not (effective_a2 > part_of_divisor_a2):
+        if not (effective_a2 > product_in_divisor_a2):
             return None
-        part_of_scaled_cosine_a2 = (span_2_x - part_of_pivot_2_x) * x - part_of_scaled_cosine_a1_3
+        sum_in_scaled_cosine_a2 = (span_2_x - sum_in_pivot_2_x) * x - sum_in_scaled_cosine_a1
         # cosine, times the scale, without cancellation
-        scaled_cosine_a2 = part_of_scaled_cosine_a2 + (part_of_span_2_y + span_2_y) * y
-        divisor_a2 = effective_a2 if effective_a2 > part_of_divisor_a2 else 1.0
+        scaled_cosine_a2 = sum_in_scaled_cosine_a2 + (span_2_y + sum_in_span_2_y) * y
+        divisor_a2 = effective_a2 if effective_a2 > product_in_divisor_a2 else 1.0
         arm_length_1_times_effective_a2 = arm_length_1 * divisor_a2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
@@ -323,16 +323,16 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
-        span_3_y = y - part_of_span_2_y
+        span_3_y = y - sum_in_span_2_y
         along_a3 = span_2_x + root_of_3_2 * span_3_y
         # effective length of the arm that a3 turns
         effective_a3 = sqrt(across_a2 * across_a2 + along_a3 * along_a3)
         # a3: its effective length is too short
-        if not (effective_a3 > part_of_divisor_a2):
+        if not (effective_a3 > product_in_divisor_a2):
             return None
         # cosine, times the scale, without cancellation
-        scaled_cosine_a3 = part_of_scaled_cosine_a2 + (span_3_y - part_of_span_2_y) * y
-        divisor_a3 = effective_a3 if effective_a3 > part_of_divisor_a2 else 1.0
+        scaled_cosine_a3 = sum_in_scaled_cosine_a2 + (span_3_y - sum_in_span_2_y) * y
+        divisor_a3 = effective_a3 if effective_a3 > product_in_divisor_a2 else 1.0
         arm_length_1_times_effective_a3 = arm_length_1 * divisor_a3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
@@ -365,24 +365,24 @@ def unrolled(k: Constants) -> Unrolled:
         rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half_2 * cos_a3
         sin_a3 = (along_a3 * sin_swing_a3 - across_a2 * cos_swing_a3) / divisor_a3
         rod_3_z = span_1_z + arm_length_1 * sin_a3
-        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+        type2_rods_coplanar = -quotient_in_type2_rods_coplanar * (
             (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
             + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * (span_1_z + arm_length_1 * sin_a1)
             + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * (span_1_x + arm_length_1 * cos_a1)
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
         # ball joint of rod 1
         if not (abs(y) / arm_length_2 <= sin_max_angle_ball_joint):
             return None
-        part = root_of_3_times_half_by_arm_length_2_2 * x
+        shared_product = root_of_3_times_half_by_arm_length_2_2 * x
         half_by_arm_length_2_times_y = half_by_arm_length_2 * y
         # ball joint of rod 2
-        if not (abs(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y + shared_product) <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 3
-        if not (abs(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y - shared_product) <= sin_max_angle_ball_joint):
             return None
         if no_offsets:
             return (

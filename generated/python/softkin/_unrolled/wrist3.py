@@ -49,7 +49,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             * RADIAN
         )
-        part_of_axis_b = arctan2(radius_c, r33) * RADIAN
+        quotient_in_axis_b = arctan2(radius_c, r33) * RADIAN
         axis_c_down = offset_c + arctan2(direction_y_c_down, direction_x_c_down) * RADIAN
         if radius_c > 1e-11:
             axis_a_up = 180.0 + axis_a_down
@@ -64,8 +64,8 @@ def unrolled(k: Constants) -> Unrolled:
             )
             axis_c_up = offset_c + arctan2(direction_y_c_up, direction_x_c_up) * RADIAN
         return (
-            (axis_a_down, offset_b + part_of_axis_b, axis_c_down),
-            (axis_a_up, offset_b - part_of_axis_b, axis_c_up),
+            (axis_a_down, offset_b + quotient_in_axis_b, axis_c_down),
+            (axis_a_up, offset_b - quotient_in_axis_b, axis_c_up),
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:

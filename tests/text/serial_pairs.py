@@ -1,4 +1,4 @@
-"""Twins: one machine as a function block and as a Python object."""
+"""Serial pairs: a machine of a serial mechanism as a function block, and the same machine as a Python object."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tests.text.limits import limited_machines
 from tests.text.samples import Sample, grid, regular
 from tests.text.units import compiled
 
-__all__ = ["MECHANISMS", "Twins", "twins_of"]
+__all__ = ["MECHANISMS", "SerialPair", "serial_pairs_of"]
 
 
 @dataclass(frozen=True)
-class Twins:
+class SerialPair:
     """A machine, and its two implementations."""
 
     machine: Machine
@@ -56,14 +56,14 @@ class Twins:
 
 
 @cache
-def twins_of(mechanism: Mechanism, order: str = "rows") -> tuple[Twins, ...]:
-    """Every machine of a mechanism twice, with limits and without."""
+def serial_pairs_of(mechanism: Mechanism, order: str = "rows") -> tuple[SerialPair, ...]:
+    """A pair for every machine of a mechanism, with limits and without."""
     machines = (*machines_of(mechanism), *limited_machines(mechanism))
-    return tuple(twins_from(one, order) for one in machines)
+    return tuple(serial_pair(one, order) for one in machines)
 
 
-def twins_from(one: Machine, order: str = "rows") -> Twins:
-    """One machine twice."""
+def serial_pair(one: Machine, order: str = "rows") -> SerialPair:
+    """The pair for one machine."""
     controller = Controller(compiled(one.mechanism, order), one.mechanism)
     assert controller.initialise(one.robot.parameters) == OK
-    return Twins(one, controller)
+    return SerialPair(one, controller)

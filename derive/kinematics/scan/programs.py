@@ -15,7 +15,7 @@ import sympy as sp
 from derive.description.mechanism import Mechanism
 from derive.equations.named_pose import named_pose
 from derive.ir.constants import BOUNDARY, DAMPED, IMPROVEMENTS, MET, NEARLY
-from derive.ir.passes import assemble
+from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, Root, Select
 from derive.ir.program import FindRoot, Iterate, Let, Output, Program, Require, Solve, Statement, Status, rewritten
 from derive.ir.symbols import (
@@ -32,7 +32,7 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.kinematics.differential import jacobian_entries
-from derive.kinematics.trial_slopes import slope_name, with_slopes
+from derive.kinematics.scan.slopes import slope_name, with_slopes
 
 START = real("start")
 LOOKED_FOR = flag("looked_for")
@@ -56,7 +56,7 @@ class Trial:
     guard: sp.Expr
     """Negative where the other joints have no solution."""
     angles: tuple[sp.Symbol, ...]
-    """The angles of steps with a measure: they may be free, and turn fast near by."""
+    """The angles that may be free, and turn fast near the pose where they are."""
 
 
 def try_program(trial: Trial) -> Program:
@@ -74,7 +74,7 @@ def try_program(trial: Trial) -> Program:
     ]
     for number, angle in enumerate(trial.angles, 1):
         outputs += [Output(f"direction_{number}_cos", cosine(angle)), Output(f"direction_{number}_sin", sine(angle))]
-    program = assemble("try_joint", differentiated, outputs)
+    program = normalise("try_joint", differentiated, outputs)
     return replace(
         program, summary="The residual of the closure at a trial, its slope, and the angles that may turn fast"
     )
@@ -85,7 +85,7 @@ def find_program(mechanism: Mechanism, trial: Program, finish: Program, argument
     names = (FOUND, *(real(o.name) for o in finish.outputs[1:]))
     note = f"root scan along {mechanism.search.joint.name if mechanism.search else ''}"
     found = FindRoot(trial, finish, START, LOOKED_FOR, names, tuple(arguments), note)
-    program = assemble("find_root", (found,), [Output(n.name, n) for n in names])
+    program = normalise("find_root", (found,), [Output(n.name, n) for n in names])
     return replace(
         program, summary="The joints at the root that is nearest to the start; zeros where the machine needs no scan"
     )
@@ -102,7 +102,7 @@ def finish_program(mechanism: Mechanism, trial: Trial, wanted: Sequence[sp.Expr]
     last = Solve((), jacobian, (), determinant, "determinant of the Jacobian, positions in characteristic lengths")
     fits = Let(flag(FITS), sp.And(*conditions))
     outputs = [Output(FITS, fits.name), *(Output(f"found_{j.name}", j) for j in joints)]
-    program = assemble("finish_root", (*trial.statements, loop, last, fits), outputs)
+    program = normalise("finish_root", (*trial.statements, loop, last, fits), outputs)
     return replace(
         program, summary="The joints at a root, improved by Newton's method, and whether they are on the branch"
     )
@@ -198,7 +198,7 @@ def _slack(condition: sp.Basic) -> sp.Expr:
 
 
 def trial_of(statements: Sequence[Statement], value: sp.Expr, angles: Sequence[tuple[sp.Symbol, sp.Symbol]]) -> Trial:
-    """A trial from solved statements. angles: those of steps with a measure, each with its value where it is free."""
+    """A trial from solved statements. angles: those that may be free, each with its value where it is."""
     guards = [s.condition for s in statements if isinstance(s, Require)]
     guard = _slack(guards[0]) if guards else sp.Integer(1)
     found: list[Let] = []

@@ -1,0 +1,146 @@
+"""A mechanism with a root scan: closed form where a parameter is zero, a scan along one joint where it is not.
+
+Both derivations are parts of one program. Names of the closed form end in `_closed`, names of a trial in `_tried`.
+Branches are two-root steps of both derivations, as everywhere. A branch that no step of the trial decides is read off
+the root that was found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.description.mechanism import (
+    Branch,
+    DescriptionError,
+    Mechanism,
+)
+from derive.equations.axes import axis_lets, reference_value
+from derive.equations.pose_at_axes import (
+    Forward,
+)
+from derive.geometry.frames import Chain
+from derive.ir.passes import normalise, renamed
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Statement,
+    binds,
+    rewritten,
+)
+from derive.ir.symbols import (
+    SIDE,
+    TRIED,
+    branch_sign,
+    called,
+    cosine,
+    count,
+    flag,
+    real,
+    sine,
+)
+from derive.kinematics.branch_assignment import Assignment, assign, steps_and_rest, with_branch_signs
+from derive.kinematics.forward import (
+    pose_at_axes,
+)
+from derive.kinematics.inverse import Inverse, of_angle, solve_at, solve_pose
+from derive.kinematics.scan.programs import (
+    Trial,
+    trial_of,
+    with_goal,
+)
+
+SEARCHED = flag("searched")
+
+
+@dataclass(frozen=True)
+class Scanned:
+    """Both derivations of a mechanism with a root scan, and the branches of their steps."""
+
+    mechanism: Mechanism
+    forward: Forward
+    closed: Inverse
+    closed_branches: tuple[Assignment, ...]
+    trial: Inverse
+    trial_branches: tuple[Assignment, ...]
+    asked: tuple[Branch, ...]
+    """The branches that no step of a trial decides."""
+
+
+def solve_both(mechanism: Mechanism) -> Scanned:
+    """Solve the closure without the parameter that needs a scan, and with the scanned joint known."""
+    assert mechanism.search is not None
+    forward = pose_at_axes(mechanism)
+    simple = without_search(mechanism)
+    closed = solve_pose(simple)
+    trial = solve_at(mechanism, mechanism.search.joint)
+    if (left := len(trial.derivation.residuals)) != 1:
+        raise DescriptionError(f"with {mechanism.search.joint.name} known, {left} conditions are left, not one")
+    guards = [s.condition for s in trial.derivation.statements if isinstance(s, Require)]
+    if len(guards) > 1 or not all(isinstance(g, sp.Ge) or isinstance(g.args[0], sp.Abs) for g in guards):
+        raise DescriptionError(f"a trial along {mechanism.search.joint.name} may be out of reach in one step only")
+    found, asked = steps_and_rest(mechanism, trial, forward)
+    return Scanned(mechanism, forward, closed, assign(simple, closed, pose_at_axes(simple)), trial, found, asked)
+
+
+def without_search(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with its parameter zero, which has a closed form."""
+    assert mechanism.search is not None and mechanism.chain is not None
+    gone = {mechanism.search.where.symbol: sp.Integer(0)}
+    factors = (replace(f, amount=f.amount.xreplace(gone)) for f in mechanism.chain.factors)
+    branches = tuple(replace(b, indicator=b.indicator.subs(gone)) for b in mechanism.branches if not b.is_crossing)
+    chain = Chain(tuple(f for f in factors if f.amount != 0))
+    return replace(mechanism, chain=chain, branches=branches, search=None)
+
+
+def searched_flag(mechanism: Mechanism) -> Let:
+    """The flag that the parameter is not zero."""
+    assert mechanism.search is not None
+    is_given = sp.Gt(sp.Abs(mechanism.search.where.symbol), 0)
+    return Let(SEARCHED, is_given, f"whether to scan {mechanism.search.joint.name} for a root")
+
+
+def from_joints(mechanism: Mechanism) -> Program:
+    """The axis values of known joints."""
+    known = {j.symbol for j in mechanism.joints}
+    lets = [of_angle(let, j, known) for j in mechanism.joints for let in axis_lets(j)]
+    return normalise("from_joints", lets, [Output(j.axis.name, j.axis) for j in mechanism.joints])
+
+
+def trial_on_branch(both: Scanned) -> Trial:
+    """One trial on the wanted branch; SIDE = -1 takes the other solution of its two-root step."""
+    mechanism = both.mechanism
+    assert mechanism.search is not None
+    joint = mechanism.search.joint.symbol
+    own = (Let(cosine(joint), sp.cos(TRIED)), Let(sine(joint), sp.sin(TRIED)))
+    solved = with_branch_signs(both.trial.derivation.statements, both.trial_branches)
+    signs = {a.sigma: wanted(a.branch) * (SIDE if a.determinant.reach is not None else 1) for a in both.trial_branches}
+    residual = real("residual")
+    left = Let(residual, both.trial.derivation.residuals[0])
+    statements = with_goal(named_apart((*own, *both.trial.closure.lets, *solved, left), "tried"))
+    statements = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
+    angles = [m.angle for m in both.trial.derivation.conditionings]
+    joints = {j.symbol: j for j in mechanism.joints}
+    trial = trial_of(statements, real("residual_tried"), [(a, reference_value(joints[a])) for a in angles])
+    return replace(trial, angles=tuple(real(f"{a.name}_tried") for a in angles))
+
+
+def sigma(branch: Branch) -> sp.Symbol:
+    """The sign of a branch."""
+    return branch_sign(branch.name)
+
+
+def wanted(branch: Branch) -> sp.Symbol:
+    """The sign of a branch as an argument of the scan."""
+    return count(f"wanted_{branch.name}")
+
+
+def named_apart(statements: Iterable[Statement], word: str, own: Container[sp.Symbol] = ()) -> tuple[Statement, ...]:
+    """The statements with the word appended to every name that they bind, except `own` names."""
+    kept = list(statements)
+    table = {n: n if n in own else called(f"{n.name}_{word}", n) for s in kept for n in binds(s)}
+    return tuple(renamed(rewritten(s, lambda e: e.xreplace(table)), lambda n: table[n]) for s in kept)

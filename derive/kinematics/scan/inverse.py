@@ -1,0 +1,123 @@
+"""The inverse of a mechanism with a root scan: one program with the closed form and the scan.
+
+The conditions of the closed form refuse nothing where a scan is made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.equations.axes import finite, reference_value
+from derive.ir.passes import normalise
+from derive.ir.primitives import (
+    Atan2,
+    Select,
+)
+from derive.ir.program import (
+    Call,
+    Let,
+    Output,
+    Program,
+    Require,
+    Statement,
+    Status,
+)
+from derive.ir.reason import Why, about_joint, about_machine
+from derive.ir.symbols import (
+    COORDINATE_NAMES,
+    ROTATION_ENTRIES,
+    cosine,
+    real,
+    sine,
+)
+from derive.kinematics.branch_assignment import with_branch_signs
+from derive.kinematics.scan.derivations import (
+    SEARCHED,
+    Scanned,
+    named_apart,
+    searched_flag,
+    sigma,
+    trial_on_branch,
+    wanted,
+)
+from derive.kinematics.scan.margins import DETERMINANT, margins_wanted
+from derive.kinematics.scan.programs import (
+    FOUND,
+    GOAL,
+    LOOKED_FOR,
+    START,
+    find_program,
+    finish_program,
+    try_program,
+)
+
+
+def branch_statements(both: Scanned) -> tuple[Statement, ...]:
+    """The inverse of one branch, up to the axis values of every joint."""
+    mechanism = both.mechanism
+    assert mechanism.search is not None
+    crossing = next(b for b in mechanism.branches if b.is_crossing)
+    solved = with_branch_signs(both.closed.derivation.statements, both.closed_branches)
+    closed = named_apart(_only(solved, SEARCHED), "closed")
+    program = search_of(both)
+    arguments = _arguments(both, program)
+    names = (FOUND, *(real(f"found_{j.symbol.name}") for j in mechanism.joints))
+    no_root = about_joint(mechanism.search.joint.symbol, Why.NO_ROOT)
+    return (
+        searched_flag(mechanism),
+        *closed,
+        Require(
+            sp.Or(SEARCHED, sp.Gt(sigma(crossing), 0)),
+            Status.UNREACHABLE,
+            reason=about_machine(Why.FIRST_CROSSING_ONLY),
+        ),
+        Call(program, arguments, names, f"root scan along {mechanism.search.joint.name}"),
+        Require(sp.Or(sp.Not(SEARCHED), FOUND), Status.UNREACHABLE, reason=no_root),
+        *_chosen(both),
+    )
+
+
+def _arguments(both: Scanned, program: Program) -> tuple[tuple[sp.Symbol, sp.Expr], ...]:
+    """What the search of a branch is given."""
+    mechanism = both.mechanism
+    assert mechanism.search is not None
+    given: dict[sp.Symbol, sp.Expr] = {name: commanded for commanded, name in GOAL.items()}
+    given |= {START: reference_value(mechanism.search.joint), LOOKED_FOR: SEARCHED}
+    given |= {wanted(b): sigma(b) for b in mechanism.branches}
+    given |= {reference_value(j): reference_value(j) for j in mechanism.joints}
+    return tuple((name, given[name]) for name in program.inputs if name in given)
+
+
+def search_given(both: Scanned) -> Program:
+    """The arguments of the scan for all roots of a pose."""
+    arguments = _arguments(both, search_of(both))
+    read = [*(real(c) for c in COORDINATE_NAMES), *ROTATION_ENTRIES, *(j.reference for j in both.mechanism.joints)]
+    statements = (*finite(read), *both.closed.naming, searched_flag(both.mechanism))
+    return normalise("search_given", statements, [Output(name.name, value) for name, value in arguments])
+
+
+def search_of(both: Scanned) -> Program:
+    """The program that finds the root of a branch, with the programs that it calls."""
+    mechanism = both.mechanism
+    trial = trial_on_branch(both)
+    finish = finish_program(mechanism, trial, margins_wanted(both), DETERMINANT)
+    arguments = (*GOAL.values(), *map(wanted, mechanism.branches), *map(reference_value, mechanism.joints))
+    return find_program(mechanism, try_program(trial), finish, arguments)
+
+
+def _chosen(both: Scanned) -> Iterable[Let]:
+    """The angle of every joint, from the scan or in closed form."""
+    for joint in both.mechanism.joints:
+        name = joint.symbol.name
+        closed = Atan2(real(f"{sine(joint.symbol).name}_closed"), real(f"{cosine(joint.symbol).name}_closed"))
+        yield Let(joint.symbol, Select(SEARCHED, real(f"found_{name}"), closed))
+
+
+def _only(statements: Iterable[Statement], otherwise: sp.Basic) -> tuple[Statement, ...]:
+    """The statements with conditions that refuse only where `otherwise` is false."""
+    return tuple(
+        replace(s, condition=sp.Or(otherwise, s.condition)) if isinstance(s, Require) else s for s in statements
+    )

@@ -1,0 +1,191 @@
+"""The margins of a mechanism with a root scan.
+
+The last byte of the configuration says whether the residual rises or falls at the root. The sign of this slope is that
+of det J over the product of the determinants of the trial's steps. So det J is the only margin, and no formula is
+derived for it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from derive.description.mechanism import (
+    Branch,
+    DescriptionError,
+    Mechanism,
+    Role,
+)
+from derive.equations.axes import reference_value
+from derive.equations.closure import with_fixed_names
+from derive.equations.trigonometry import named_trigonometry
+from derive.ir.interpret import run
+from derive.ir.passes import normalise
+from derive.ir.primitives import (
+    Select,
+    ToReal,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Solve,
+    Statement,
+    binds,
+)
+from derive.ir.symbols import (
+    FREED,
+    FREED_ANGLE,
+    SCALE,
+    SIDE,
+    TRIED,
+    cosine,
+    real,
+    sine,
+)
+from derive.kinematics.differential import jacobian_entries
+from derive.kinematics.forward import (
+    derivation_at_axes,
+)
+from derive.kinematics.sampling import sample_axes, sample_machine
+from derive.kinematics.scan.derivations import SEARCHED, Scanned, named_apart, searched_flag, trial_on_branch, wanted
+from derive.kinematics.scan.programs import (
+    GOAL,
+)
+
+DETERMINANT = real("determinant")
+_SAMPLES = 64
+
+
+def margin_statements(both: Scanned) -> tuple[tuple[Statement, ...], tuple[Let, ...]]:
+    """The statements at given axis values, and `branch_<name>` of every branch."""
+    mechanism = both.mechanism
+    statements: list[Statement] = [searched_flag(mechanism), *both.forward.statements]
+    own = {name for s in both.forward.statements for name in binds(s)}
+    margins: dict[str, dict[str, sp.Expr]] = {}
+    for word, inverse, assignments in (
+        ("closed", both.closed, both.closed_branches),
+        ("tried", both.trial, both.trial_branches),
+    ):
+        values = [Let(real(f"margin_{a.branch.name}"), a.margin(mechanism)) for a in assignments]
+        at_axes = derivation_at_axes(mechanism, inverse, both.forward)
+        apart = named_apart((*at_axes, *values), word, own)
+        statements += [s for s in apart if not set(binds(s)) & own]
+        for a in assignments:
+            margins.setdefault(a.branch.name, {})[word] = real(f"margin_{a.branch.name}_{word}")
+    lets, indicators = _indicators(both)
+    statements += [let for let in lets if let.name not in own]
+    for b, value in zip(both.asked, indicators, strict=True):
+        margins[b.name]["tried"] = value / SCALE
+    determinant, scaled = determinant_margin(both)
+    statements += determinant
+    found = [
+        Let(real(f"branch_{name}"), Select(SEARCHED, both_values["tried"], both_values["closed"]))
+        for name, both_values in margins.items()
+    ]
+    return tuple(statements), (*found, _crossing_margin(both, scaled, margins))
+
+
+def _indicators(both: Scanned) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
+    """The statements for, and the indicators of, the branches that no step decides."""
+    lets, indicators = named_trigonometry(
+        both.mechanism, [with_fixed_names(both.mechanism, b.indicator * b.signs[0]) for b in both.asked]
+    )
+    return tuple(lets), tuple(indicators)
+
+
+def _crossing_margin(both: Scanned, determinant: sp.Expr, margins: dict[str, dict[str, sp.Expr]]) -> Let:
+    crossing = next(b for b in both.mechanism.branches if b.is_crossing)
+    slope = _orientation(both) * determinant
+    for a in both.trial_branches:
+        slope = slope * Select(sp.Ge(margins[a.branch.name]["tried"], 0), sp.Integer(1), sp.Integer(-1))
+    return Let(real(f"branch_{crossing.name}"), Select(SEARCHED, slope, sp.Integer(1)))
+
+
+def determinant_margin(both: Scanned) -> tuple[tuple[Statement, ...], sp.Expr]:
+    """The determinant of the Jacobian at a pose that forward kinematics has found, over the scales
+    of the closed steps.
+    """
+    mechanism = both.mechanism
+    lets, entries = jacobian_entries(mechanism)
+    width = len(mechanism.joints)
+    scaled = [v / (SCALE if k // width < len(mechanism.task.position) else 1) for k, v in enumerate(entries)]
+    system = Solve(
+        (), tuple(scaled), (), DETERMINANT, "determinant of the Jacobian, positions in characteristic lengths"
+    )
+    return (*lets, system), DETERMINANT * _determinant_scale(both)
+
+
+def _determinant_scale(both: Scanned) -> sp.Expr:
+    scale = sp.Mul(*[a.determinant.scale for a in both.closed_branches])
+    lengths = {s.name: s.value for s in both.closed.derivation.statements if isinstance(s, Let)}
+    scale = scale.xreplace({name: lengths[name] for name in scale.free_symbols & lengths.keys()})
+    return SCALE ** len(both.mechanism.task.position) / scale
+
+
+def margins_wanted(both: Scanned) -> list[sp.Expr]:
+    """The scaled margins of all branches at the joints, each positive on the wanted branch."""
+    mechanism = both.mechanism
+    functions = {f(j.symbol): g(j.symbol) for j in mechanism.joints for f, g in ((cosine, sp.cos), (sine, sp.sin))}
+    found = []
+    for b in (b for b in mechanism.branches if not b.is_crossing):
+        value = with_fixed_names(mechanism, b.indicator * b.signs[0])
+        found.append(ToReal(wanted(b)) * value / (SCALE if _is_length(mechanism, b) else 1))
+    lets, values = named_trigonometry(mechanism, found)
+    known = {let.name: let.value for let in lets}
+    values = [v.xreplace(known).xreplace(functions) for v in values]
+    crossing = next(b for b in mechanism.branches if b.is_crossing)
+    slope = _orientation(both) * DETERMINANT * _determinant_scale(both)
+    signs = sp.Mul(wanted(crossing), *[wanted(a.branch) for a in both.trial_branches])
+    return [*values, ToReal(signs) * slope]
+
+
+def _is_length(mechanism: Mechanism, branch: Branch) -> bool:
+    """Whether an indicator is a length: it vanishes with all lengths of the machine."""
+    gone = {p.symbol: 0 for p in mechanism.parameters if p.role is not Role.ANGLE}
+    return bool(sp.sympify(branch.indicator).subs(gone) == 0)
+
+
+def _orientation(both: Scanned) -> int:
+    """+1 where the slope of the residual has the sign of det J over the determinants of the steps, else -1. All poses
+    must agree.
+    """
+    mechanism = both.mechanism
+    assert mechanism.search is not None
+    machine = sample_machine(mechanism, 51)
+    axes = sample_axes(mechanism, machine, _SAMPLES, 52)
+    slope = _measured_slope(both, {**machine, **axes})
+    determinant, scaled = determinant_margin(both)
+    trial = {a.branch.name: a.margin(mechanism) for a in both.trial_branches}
+    lets = [Let(real(f"margin_{n}"), v) for n, v in trial.items()]
+    statements = (*derivation_at_axes(mechanism, both.trial, both.forward), *determinant, *lets)
+    outputs = [Output("slope", scaled * sp.Mul(*[let.name for let in lets]))]
+    values, _ = run(normalise("orientation_of_the_scan", statements, outputs), {**machine, **axes})
+    signs = np.unique(np.sign(values["slope"] * slope))
+    if len(signs) != 1:
+        raise DescriptionError("the slope of the residual is not det J over the determinants of the steps")
+    return int(signs[0])
+
+
+def _measured_slope(both: Scanned, samples: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+    """The slope of the residual at sampled axes, by a central difference along the searched joint."""
+    mechanism = both.mechanism
+    assert mechanism.search is not None
+    joint = mechanism.search.joint
+    names = [*(real(c) for c in "xyz"), *both.forward.rotation]
+    outputs = [Output(n.name, n) for n in names]
+    outputs += [Output(f"margin_{a.branch.name}", a.margin(mechanism)) for a in both.trial_branches]
+    values, _ = run(normalise("pose", derivation_at_axes(mechanism, both.trial, both.forward), outputs), samples)
+    trial = trial_on_branch(both)
+    program = normalise("trial", trial.statements, [Output("value", trial.value)])
+    known = {**samples, **{GOAL[real(n)].name: v for n, v in values.items() if real(n) in GOAL}}
+    for a in both.trial_branches:
+        known[wanted(a.branch).name] = np.where(values[f"margin_{a.branch.name}"] >= 0, 1.0, -1.0)
+    for j in mechanism.joints:
+        known[reference_value(j).name] = np.zeros(_SAMPLES)
+    known |= {SIDE.name: np.ones(_SAMPLES), FREED.name: -np.ones(_SAMPLES), FREED_ANGLE.name: np.zeros(_SAMPLES)}
+    ends = []
+    for shift in (1e-6, -1e-6):
+        tried = np.radians(samples[joint.axis.name] - samples[joint.offset.name]) + shift
+        ends.append(run(program, {**known, TRIED.name: tried})[0]["value"])
+    return np.asarray(ends[0] - ends[1])
