@@ -19,6 +19,7 @@ from derive.solver.eliminations import differences, eliminations, squares, squar
 from derive.solver.feasible_arc import within_reach
 from derive.solver.folds import beyond_folds
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
+from derive.solver.positive_steps import known_signs, where_roots_meet, with_known_signs
 from derive.solver.subproblems.affine import affine
 from derive.solver.subproblems.affine_system import affine_pair, affine_triple
 from derive.solver.subproblems.pair import pair
@@ -104,15 +105,16 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     if not problem.is_overdetermined:
         unfolded = beyond_folds(statements, record.determinants, record.conditionings, problem.scale)
         statements = within_reach(unfolded, record.determinants, record.conditionings)
+    signs = known_signs(problem, record.determinants)
     return Derivation(
-        statements,
-        record.determinants,
-        record.conditionings,
+        with_known_signs(statements, signs),
+        tuple(step for step in record.determinants if step not in signs),
+        (*record.conditionings, *where_roots_meet(signs)),
         tuple(rules),
         sums,
         tuple(left),
         tuple(not_zero),
-        record.statements,
+        with_known_signs(record.statements, signs),
     )
 
 

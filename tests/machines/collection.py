@@ -196,6 +196,26 @@ HELD = {
     ),
 }
 
+ONE_ROOT = {
+    "arm whose elbow bends one way": _machine(
+        "OneElbow",
+        (A1, A2, A3),
+        Tz(HEIGHT) * Rz(A1) * Ry(A2) * Tz(L2) * Ry(A3) * Tx(L3),
+        (HEIGHT, L2, L3),
+        Task("xyz"),
+        (branch("shoulder", L2 * sin(A2) + L3 * cos(A2 + A3), front=+1, back=-1),),
+        positive=(cos(A3),),
+    ),
+    "SCARA that bends to the left alone": _machine(
+        "OneScara",
+        (A1, A2, Z, A4),
+        Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(Z) * Rz(A4),
+        (L1, L2),
+        TURNED,
+        positive=(-sin(A2),),
+    ),
+}
+
 OTHERS = {
     "palletizer with both motors at the base": _machine(
         "Palletizer",
@@ -230,4 +250,11 @@ OTHERS = {
     ),
 }
 
-MACHINES: Mapping[str, Mechanism] = {**THREE_LENGTHS, **SQUARES_WITH_LENGTHS, **PARAMETERS_DECIDE, **HELD, **OTHERS}
+MACHINES: Mapping[str, Mechanism] = {
+    **THREE_LENGTHS,
+    **SQUARES_WITH_LENGTHS,
+    **PARAMETERS_DECIDE,
+    **HELD,
+    **ONE_ROOT,
+    **OTHERS,
+}

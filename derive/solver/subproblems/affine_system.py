@@ -1,7 +1,7 @@
 """Affine system:  M v = e  for two or three unknown lengths v in as many equations, with det M never zero.
 
-One root, by Cramer's rule. Determinant det M. There is no degenerate case: equations whose determinant can vanish are not
-taken. A single coefficient may vanish: a table turned by 90 degrees exchanges its axes. Where det M is made of
+One root, by Cramer's rule. Determinant det M. There is no degenerate case: equations whose determinant can vanish are
+not taken. A single coefficient may vanish: a table turned by 90 degrees exchanges its axes. Where det M is made of
 parameters alone, the machine is refused for which it vanishes: two of its slides are parallel.
 """
 

@@ -97,6 +97,9 @@ CASES = {
     "rail and arm": Case(plane((L1, A1), (L2, HEADING), x=P), (A1,), (P,), rules=("trigonometric", "affine")),
     "oblique rail and arm": Case(plane((P, sp.pi / 6), (L1, A1)), (A1,), (P,), rules=("trigonometric", "affine")),
     "telescope": Case(plane((P, A1), (L1, HEADING)), (A1,), (P,), rules=("polar",)),
+    "2R whose elbow bends one way": Case(
+        plane((L1, A1), (L2, A1 + A2)), (A1, A2), positive=(sp.sin(A2),), rules=("trigonometric", "pair"), slots=1
+    ),
     "telescope beside its axis": Case(plane((P, A1), (TOOL_Y, A1 + RIGHT)), (A1,), (P,), rules=("quadratic", "pair")),
     "telescope that cannot turn inside out": Case(
         plane((P + K, A1)), (A1,), (P,), positive=(P + K,), rules=("polar", "affine"), slots=1
@@ -141,8 +144,11 @@ def samples(case: Case) -> dict[str, np.ndarray]:
     draw |= {n: generator.uniform(0.5, 2, COUNT) for n in ("link_1", "link_2", "k", "scale")}
     draw["s"] = generator.choice([-1.0, 1.0], COUNT)
     for quantity in case.positive:
-        assert quantity == P + K
-        draw["p"] = np.abs(draw["p"]) - draw["k"]
+        assert quantity in (P + K, sp.sin(A2))
+        if quantity == P + K:
+            draw["p"] = np.abs(draw["p"]) - draw["k"]
+        else:
+            draw["a2"] = np.abs(draw["a2"])
     sides = {name: sampled(side, draw) for name, side in case.sides.items()}
     return draw | sides
 

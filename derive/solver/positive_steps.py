@@ -1,0 +1,43 @@
+"""Two-root steps of which the machine has one root: their determinant is a multiple of a positive quantity.
+
+A description says `positive=(sin(A2),)` of an elbow that cannot bend the other way. The law of cosines still has two
+roots; the sign of the one that the machine has is then known, and no branch needs a name. Where the determinant
+vanishes both roots meet, which stays a singularity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import sympy as sp
+
+from derive.equations.problem import Conditioning, Problem, StepDeterminant
+from derive.ir.constants import DEGREE
+from derive.ir.program import Statement, rewritten
+
+
+def known_signs(problem: Problem, determinants: Sequence[StepDeterminant]) -> Mapping[StepDeterminant, int]:
+    """The steps whose determinant has one sign in this machine, with the sign."""
+    found = ((step, _sign(problem, step.value)) for step in determinants)
+    return {step: sign for step, sign in found if sign}
+
+
+def _sign(problem: Problem, value: sp.Expr) -> int:
+    """The sign of a value that is a multiple of a positive quantity, the factor made of positive parameters; else 0."""
+    reduced = problem.reduce(value)
+    for quantity in problem.positive:
+        ratio = sp.cancel(reduced / quantity).xreplace({DEGREE: sp.pi / 180})
+        if ratio.is_positive or ratio.is_negative:
+            return 1 if ratio.is_positive else -1
+    return 0
+
+
+def with_known_signs(statements: Sequence[Statement], signs: Mapping[StepDeterminant, int]) -> tuple[Statement, ...]:
+    """The statements with these signs as numbers."""
+    table = {step.sigma: sp.Integer(sign) for step, sign in signs.items()}
+    return tuple(rewritten(s, lambda e: e.xreplace(table)) for s in statements)
+
+
+def where_roots_meet(signs: Mapping[StepDeterminant, int]) -> tuple[Conditioning, ...]:
+    """The singularities of these steps."""
+    return tuple(Conditioning(step.step, step.value, step.scale, "meet") for step in signs)
