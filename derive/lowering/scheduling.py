@@ -18,6 +18,7 @@ from dataclasses import replace
 
 import sympy as sp
 
+from derive.ir.kept import kept_by_identity
 from derive.ir.passes import told_in
 from derive.ir.primitives import (
     Select,
@@ -38,6 +39,7 @@ from derive.lowering.decided import decided
 from derive.lowering.stretches import follows, gathered
 
 
+@kept_by_identity(100)
 def structured(program: Program) -> tuple[Item, ...]:
     """A program for a language that returns at the first refusal, and runs one side of a choice alone."""
     program = decided(replace(program, body=_together(program.body)))

@@ -15,6 +15,7 @@ from derive.emit.st.program import Printed
 from derive.ir.constants import (
     SINGULAR,
 )
+from derive.ir.kept import kept_by_identity
 from derive.ir.program import (
     Program,
 )
@@ -178,6 +179,7 @@ def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
     return tuple(p for p in found if p is not None)
 
 
+@kept_by_identity(10)
 def constants(kinematics: Kinematics) -> tuple[str, ...]:
     """The neutral names of what Initialize stores: outputs of `setup` that a method reads."""
     read = {symbol.name for program in programs_of(kinematics) for symbol in program.reads()}
