@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
+from functools import cache
 
 import sympy as sp
 
@@ -164,6 +165,7 @@ def has_length(parameters: Iterable[Parameter]) -> bool:
     return any(p.role in _LENGTHS for p in parameters)
 
 
+@cache
 def _range_of(parameter: Parameter) -> tuple[Require, ...]:
     note = f"{parameter.name}: {parameter.meaning}"
     if parameter.role is Role.FLAG:

@@ -24,10 +24,12 @@ from derive.solver.subproblems.pair import pair
 from derive.solver.subproblems.polar import polar
 from derive.solver.subproblems.quadratic import quadratic
 from derive.solver.subproblems.spheres import spheres
-from derive.solver.subproblems.trigonometric import trigonometric
+from derive.solver.subproblems.trigonometric import lateral, trigonometric
 
 Rule = Callable[[Problem, tuple[Equation, ...]], Iterator[Binding]]
 RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quadratic, spheres)
+_BETTER: tuple[Rule, ...] = tuple(lateral if rule is trigonometric else rule for rule in RULES)
+"""The same without the steps that give a cosine alone, which rank behind all others."""
 
 
 def _stated(problem: Problem) -> tuple[Equation, ...]:
@@ -108,7 +110,7 @@ def _next(
         wanted = (
             TIERS if found is None else TIERS[:1]
         )  # a cosine alone loses half the digits: both functions of a sum are better
-        better = _best([b for b in _candidates(trial, tier(trial)) if total.symbol in b.unknowns] for tier in wanted)
+        better = _best(_candidates(trial, tier(trial), total.symbol) for tier in wanted)
         if better is not None and (found is None or (better.rank < found.rank and problem.turns)):
             return trial, better, (*sums, total)
     if found is None and not problem.is_overdetermined:
@@ -118,8 +120,16 @@ def _next(
     raise Unsolved(_message(problem))
 
 
-def _candidates(problem: Problem, equations: tuple[Equation, ...]) -> list[Binding]:
-    return [binding for rule in RULES for binding in rule(problem, equations)]
+def _candidates(problem: Problem, equations: tuple[Equation, ...], wanted: sp.Symbol | None = None) -> list[Binding]:
+    """What the rules find; with a wanted unknown, for that one. A step that gives a cosine alone is worked out only
+    where there is no other.
+    """
+    found: list[Binding] = []
+    for rules in (_BETTER, RULES):
+        found = [b for rule in rules for b in rule(problem, equations) if wanted is None or wanted in b.unknowns]
+        if not all(b.cosine_alone for b in found):
+            break
+    return found
 
 
 def _best(tiers: Iterable[list[Binding]]) -> Binding | None:

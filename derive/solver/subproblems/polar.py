@@ -25,9 +25,8 @@ from derive.solver.subproblems.naming import Naming
 def polar(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
     """Every angle and length that two equations determine together."""
     for angle in problem.angles:
-        for first, second in permutations(equations, 2):
-            in_cosine = _radius(problem, first, cosine(angle))
-            in_sine = _radius(problem, second, sine(angle))
+        seen = [(e, _radius(problem, e, cosine(angle)), _radius(problem, e, sine(angle))) for e in equations]
+        for (first, in_cosine, _), (second, _, in_sine) in permutations(seen, 2):
             if in_cosine is None or in_sine is None or in_cosine[0] != in_sine[0]:
                 continue
             if {angle, cosine(angle), sine(angle)} & in_cosine[0].free_symbols:

@@ -40,7 +40,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
-from derive.solver.subproblems.lateral import aimed_at_point
+from derive.solver.subproblems.lateral import Row, aimed_at_point
 from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.origin import from_origin
 from derive.solver.subproblems.shortfall import out_of_reach
@@ -50,6 +50,22 @@ _ADDITION = "addition theorem: plus the angle of the direction from which the co
 
 def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
     """Every angle that one equation determines up to a sign."""
+    for equation, angle, (a, b, e), is_aimed in _rows(problem, equations):
+        if is_aimed:
+            yield aimed_at_point(problem, equation, angle, (a, b, e))
+        else:
+            yield _solve(problem, equation, angle, _amplitude(problem, equation, angle, a, b, e))
+
+
+def lateral(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Those of these angles that aim an arm at a commanded point; the others give a cosine alone."""
+    for equation, angle, row, is_aimed in _rows(problem, equations):
+        if is_aimed:
+            yield aimed_at_point(problem, equation, angle, row)
+
+
+def _rows(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[tuple[Equation, sp.Symbol, Row, bool]]:
+    """Every equation with one angle, the angle, (a, b, e), and whether a or b is commanded while e is not."""
     for equation in equations:
         unknowns = problem.unknowns_of(equation.expression)
         if len(unknowns) != 1 or unknowns[0] not in problem.angles or unknowns[0] in equation.expression.free_symbols:
@@ -60,12 +76,9 @@ def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator
             continue
         (a, b), rest = linear
         flip = -1 if (a if a != 0 else b).could_extract_minus_sign() else 1
-        if any(_is_commanded(problem, equation, v) for v in (a, b)) and not _is_commanded(problem, equation, rest):
-            yield aimed_at_point(problem, equation, angle, (flip * a, flip * b, -flip * rest))
-        else:
-            yield _solve(
-                problem, equation, angle, _amplitude(problem, equation, angle, flip * a, flip * b, -flip * rest)
-            )
+        is_aimed = any(_is_commanded(problem, equation, v) for v in (a, b))
+        row = (flip * a, flip * b, -flip * rest)
+        yield equation, angle, row, is_aimed and not _is_commanded(problem, equation, rest)
 
 
 def _is_commanded(problem: Problem, equation: Equation, coefficient: sp.Expr) -> bool:
@@ -271,6 +284,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     return Binding("trigonometric", (angle,), tuple(statements), slope, cosine_alone=True, yields_to_a_sum=True)
 
 
+@cache
 def _product(value: sp.Expr) -> sp.Expr:
     """The value in factors, which read as comparisons of lengths."""
     return _positive(sp.factor(value))
