@@ -149,6 +149,18 @@ def split_known(expression: sp.Expr, unknown: Iterable[sp.Symbol]) -> tuple[sp.E
     return moving, sp.Add(*[t for t in terms if not t.free_symbols & atoms])
 
 
+@cache
+def cancelled(value: sp.Expr) -> sp.Expr:
+    """A quotient of polynomials in lowest terms. Cached: every rule meets the same equations again after each step."""
+    return sp.cancel(value)
+
+
+@cache
+def factored(value: sp.Expr) -> sp.Expr:
+    """A value in factors; cached likewise."""
+    return sp.factor(value)
+
+
 def is_compound(expression: sp.Expr) -> bool:
     """Whether an expression is worth a name of its own: anything but a symbol, a number, or their negative."""
     return not (expression.is_Atom or (-expression).is_Atom)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 
 import sympy as sp
 
-from derive.algebra.normal_form import reduce_units
+from derive.algebra.normal_form import cancelled, reduce_units
 from derive.geometry.frames import Factor
 from derive.ir.constants import (
     DEGREE,
@@ -188,7 +188,7 @@ class Problem:
         """
         if all(factor in self.positive for factor in sp.Mul.make_args(value)):
             return True
-        ratios = [sp.cancel(value / quantity).xreplace({DEGREE: sp.pi / 180}) for quantity in self.positive]
+        ratios = [cancelled(value / quantity).xreplace({DEGREE: sp.pi / 180}) for quantity in self.positive]
         return any(ratio.is_number and ratio.is_positive for ratio in ratios)
 
     def with_equations(self, equations: tuple[Equation, ...]) -> Problem:

@@ -12,7 +12,7 @@ from itertools import permutations
 
 import sympy as sp
 
-from derive.algebra.normal_form import linear_coefficients
+from derive.algebra.normal_form import cancelled, linear_coefficients
 from derive.equations.problem import Binding, Equation, Measure, Problem, Slope
 from derive.ir.program import (
     Let,
@@ -44,7 +44,7 @@ def _radius(problem: Problem, equation: Equation, function: sp.Symbol) -> tuple[
     factor, rest = linear[0][0], linear[1]
     unknown = sp.Mul(*[f for f in sp.Mul.make_args(factor) if problem.unknowns_of(f)])
     unknown = -unknown if unknown.could_extract_minus_sign() else unknown  # a sum has its minus inside
-    constant = sp.cancel(factor / unknown)
+    constant = cancelled(factor / unknown)
     if not problem.unknowns_of(unknown) or not problem.is_never_zero(constant):
         return None
     return unknown, -rest / constant

@@ -18,7 +18,7 @@ from functools import cache
 
 import sympy as sp
 
-from derive.algebra.normal_form import linear_coefficients, reduce_units
+from derive.algebra.normal_form import cancelled, factored, linear_coefficients, reduce_units
 from derive.equations.problem import Binding, Equation, Problem, Slope, sign_of
 from derive.ir.constants import (
     BOUNDARY,
@@ -113,7 +113,7 @@ def _amplitude(
     naming = Naming(problem, equation.lets)
     slope = a * sine(angle) - b * cosine(angle)
     common = sp.Mul(*[f for f in sp.Mul.make_args(sp.gcd(a, b)) if f.is_positive])  # it divides, and keeps every sign
-    along, across = sp.cancel(a / common), sp.cancel(b / common)
+    along, across = cancelled(a / common), cancelled(b / common)
     if along.is_number and across.is_number:
         size = sp.sqrt(along**2 + across**2)
         return _Amplitude(naming, common * size, (), along / size, across / size, e, slope, common * size)
@@ -215,10 +215,12 @@ def _triangle(problem: Problem, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr, 
         return None
     sense, distance, side = sp.sign(share), ratio * effective, sp.sqrt(abs(share)) * arm
     third = reduce_units(ratio**2 * square + side**2 - sense * whole, problem.units, problem.signs)
-    factored = _factored(_with_units(problem, third))
-    if not (factored.is_Mul or factored.is_Pow) and len(sp.Add.make_args(third)) >= len(sp.Add.make_args(whole)):
+    square_of_third = _factored(_with_units(problem, third))
+    if not (square_of_third.is_Mul or square_of_third.is_Pow) and len(sp.Add.make_args(third)) >= len(
+        sp.Add.make_args(whole)
+    ):
         return None
-    return _Triangle(distance, side, factored, sense)
+    return _Triangle(distance, side, square_of_third, sense)
 
 
 def _with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
@@ -284,18 +286,17 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     return Binding("trigonometric", (angle,), tuple(statements), slope, cosine_alone=True, yields_to_a_sum=True)
 
 
-@cache
 def _product(value: sp.Expr) -> sp.Expr:
     """The value in factors, which read as comparisons of lengths."""
-    return _positive(sp.factor(value))
+    return _positive(factored(value))
 
 
-def _positive(factored: sp.Expr) -> sp.Expr:
+def _positive(product: sp.Expr) -> sp.Expr:
     """A leading minus goes into the factor with the most minus signs."""
-    factors = list(sp.Mul.make_args(factored))
+    factors = list(sp.Mul.make_args(product))
     sums = [f for f in factors if f.is_Add]
     if -1 not in factors or not sums:
-        return factored
+        return product
     factors.remove(sp.Integer(-1))
     most = max(sums, key=lambda f: (sum(t.could_extract_minus_sign() for t in f.args), str(f)))
     return sp.Mul(*[-f if f is most else f for f in factors])
