@@ -28,7 +28,7 @@ def polynomial(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence
 
 @cache
 def _polynomial(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> sp.Expr:
-    if _is_expanded(expression):
+    if _is_expanded(expression) and not expression.has(sp.sin, sp.cos):
         return reduce_units(expression, angles, signs)
     terms = sp.expand_trig(sp.expand(expression))  # first: a sign leaves an argument only where nothing is added
     expanded = _without_signs(terms, signs)
@@ -92,15 +92,21 @@ def _reduced(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple[sp
 
 
 def _is_expanded(expression: sp.Expr) -> bool:
-    """Whether an expression is a sum of products of symbols and rational numbers, so that nothing can be expanded."""
+    """Whether an expression is a sum of products of symbols, numbers, and sines and cosines of such sums, so that
+    nothing can be expanded.
+    """
     return all(_is_monomial(term) for term in sp.Add.make_args(expression))
 
 
 def _is_monomial(term: sp.Expr) -> bool:
-    return all(
-        f.is_Symbol or f.is_Rational or (f.is_Pow and f.base.is_Symbol and f.exp.is_Integer and f.exp.is_positive)
-        for f in sp.Mul.make_args(term)
-    )
+    return all(f.is_Rational or _is_plain(*f.as_base_exp()) for f in sp.Mul.make_args(term))
+
+
+def _is_plain(base: sp.Expr, exponent: sp.Expr) -> bool:
+    """Whether a factor is a power of a symbol, of a sine or of a cosine, or the root of a whole number."""
+    if base.is_Symbol or (isinstance(base, sp.sin | sp.cos) and _is_expanded(base.args[0])):
+        return bool(exponent.is_Integer and exponent.is_positive)
+    return bool(base.is_Integer and base.is_positive and exponent == sp.Rational(1, 2))
 
 
 def linear_coefficients(expression: sp.Expr, atoms: Sequence[sp.Symbol]) -> tuple[list[sp.Expr], sp.Expr] | None:
@@ -131,7 +137,7 @@ def _collected(expression: sp.Expr, atoms: tuple[sp.Symbol, ...]) -> tuple[sp.Ex
     parts: list[list[sp.Expr]] = [[] for _ in (*atoms, 1)]
     for term in sp.Add.make_args(expression):
         factors = sp.Mul.make_args(term)
-        found = [f for f in factors if f.as_base_exp()[0] in places]
+        found = [f for f in factors if not f.is_number and not f.free_symbols.isdisjoint(places)]
         if len(found) > 1 or (found and not found[0].is_Symbol):
             return None
         if found:

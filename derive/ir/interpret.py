@@ -109,7 +109,7 @@ def _evaluator(expression: sp.Basic) -> _Evaluator:
     if expression == DEGREE or isinstance(expression, sp.Number | sp.NumberSymbol):
         return _constant(np.pi / 180.0 if expression == DEGREE else float(expression))
     function, first, *others = _FUNCTIONS[type(expression)], *map(_evaluator, expression.args)
-    if isinstance(expression, sp.Add | sp.Mul | sp.And | sp.Or):
+    if others and isinstance(expression, sp.Add | sp.Mul | sp.And | sp.Or):
         return _chained(function, first, others)
     if not others:
         return lambda values: function(first(values))
@@ -118,9 +118,16 @@ def _evaluator(expression: sp.Basic) -> _Evaluator:
 
 def _chained(function: Callable[..., Array], first: _Evaluator, others: Sequence[_Evaluator]) -> _Evaluator:
     """An operation from left to right."""
-    for other in others:
-        first = _of_two(function, first, other)
-    return first
+    if len(others) == 1:
+        return _of_two(function, first, others[0])
+
+    def chained(values: _Values) -> Array:
+        result = first(values)
+        for other in others:
+            result = function(result, other(values))
+        return result
+
+    return chained
 
 
 def _of_two(function: Callable[..., Array], one: _Evaluator, other: _Evaluator) -> _Evaluator:

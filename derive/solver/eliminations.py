@@ -17,7 +17,11 @@ import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients, reduce_units, split_known
 from derive.equations.problem import Equation, Problem
+from derive.solver.probe import unknowns_of_squares
 from derive.solver.subproblems.naming import Naming
+
+_MOST_UNKNOWN = 3
+"""No subproblem takes an equation with more unknowns than this: three lengths are the coordinates of a point."""
 
 
 def differences(problem: Problem) -> tuple[Equation, ...]:
@@ -70,10 +74,11 @@ def _sum_of_squares(problem: Problem, equations: tuple[Equation, ...]) -> Equati
     sides = [split_known(e.expression, problem.atoms()) for e in equations]
     if any(moving == 0 or known == 0 or _has_plain_unknown(problem, moving) for moving, known in sides):
         return None
-    moving = reduce_units(sum(m**2 for m, _ in sides), problem.units, problem.signs)
     unknowns = {unknown for e in equations for unknown in problem.unknowns_of(e.expression)}
-    if len(problem.unknowns_of(moving)) not in range(1, len(unknowns)):
+    left = unknowns_of_squares(problem, [m for m, _ in sides])
+    if len(left) not in range(1, min(len(unknowns), _MOST_UNKNOWN + 1)):
         return None
+    moving = reduce_units(sum(m**2 for m, _ in sides), problem.units, problem.signs)
     naming = Naming(problem, tuple(let for e in equations for let in e.lets))
     spanned = [
         naming.named(-known, f"wrist_{e.label}", "coordinate of the point that the remaining links must reach")
