@@ -99,7 +99,7 @@ def _is_expanded(expression: sp.Expr) -> bool:
 
 
 def _is_monomial(term: sp.Expr) -> bool:
-    return all(f.is_Rational or _is_plain(*f.as_base_exp()) for f in sp.Mul.make_args(term))
+    return all(f.is_Number or _is_plain(*f.as_base_exp()) for f in sp.Mul.make_args(term))
 
 
 def _is_plain(base: sp.Expr, exponent: sp.Expr) -> bool:
@@ -149,10 +149,15 @@ def _collected(expression: sp.Expr, atoms: tuple[sp.Symbol, ...]) -> tuple[sp.Ex
 
 def split_known(expression: sp.Expr, unknown: Iterable[sp.Symbol]) -> tuple[sp.Expr, sp.Expr]:
     """The sum of the terms with an unknown, and the sum of those without."""
-    atoms = set(unknown)
-    terms = sp.Add.make_args(sp.expand(expression))
-    moving = sp.Add(*[t for t in terms if t.free_symbols & atoms])
-    return moving, sp.Add(*[t for t in terms if not t.free_symbols & atoms])
+    return _split_known(expression, frozenset(unknown))
+
+
+@cache
+def _split_known(expression: sp.Expr, atoms: frozenset[sp.Symbol]) -> tuple[sp.Expr, sp.Expr]:
+    moving, known = list[sp.Expr](), list[sp.Expr]()
+    for term in sp.Add.make_args(expression if _is_expanded(expression) else sp.expand(expression)):
+        (known if atoms.isdisjoint(term.free_symbols) else moving).append(term)
+    return sp.Add(*moving), sp.Add(*known)
 
 
 @cache

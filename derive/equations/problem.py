@@ -16,7 +16,7 @@ from derive.ir.program import (
     Let,
     Statement,
 )
-from derive.ir.symbols import cosine, real, sine
+from derive.ir.symbols import cosine, names_in, real, sine
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ class Problem:
 
     def unknowns_of(self, expression: sp.Expr) -> tuple[sp.Symbol, ...]:
         """The unknown angles and lengths that occur, in a fixed order."""
-        present = expression.free_symbols
+        present = names_in(expression)
         angles = [a for a in (*self.angles, *self.pending) if present & {a, sine(a), cosine(a)}]
         return (*(u for u in self.lengths if u in present), *angles)
 

@@ -17,13 +17,13 @@ from derive.ir.constants import (
     ONE_TURN,
     UNLIMITED,
 )
-from derive.ir.kept import kept_by_identity
 from derive.ir.passes import plain, renamed
 from derive.ir.primitives import Select
 from derive.ir.program import Let, Output, Program, Require, Statement, Status, rewritten
 from derive.ir.reason import Reason, Why, about_input, about_parameters
 from derive.ir.symbols import called, flag, real
 from derive.ir.verify import verify
+from derive.kept import kept_by_identity
 
 Fallback = tuple[tuple[sp.Basic, sp.Expr, sp.Expr], ...]
 """(condition, lower, upper) where no limit is given; the last one counts."""

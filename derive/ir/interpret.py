@@ -17,7 +17,6 @@ from derive.ir.constants import (
     PIVOT,
     SOLVABLE,
 )
-from derive.ir.kept import kept_by_identity
 from derive.ir.primitives import (
     Atan2,
     NearestOnArc,
@@ -45,6 +44,7 @@ from derive.ir.symbols import (
     is_condition,
     is_count,
 )
+from derive.kept import kept_by_identity
 
 Array = NDArray[np.float64]
 _SHIFT = 180.0 + float(EDGE)

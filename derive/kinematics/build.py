@@ -73,7 +73,7 @@ from derive.kinematics.scanned import (
     search_given,
     solve_both,
 )
-from derive.kinematics.shared_names import refuse_shared_names
+from derive.kinematics.shared_names import refuse_names_of_joints, refuse_shared_names
 from derive.lowering.lower import lowered
 from derive.plate.legs import MARGIN
 from derive.plate.newton import (
@@ -89,6 +89,7 @@ from derive.solver.solve import Unsolved
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
     _count(mechanism)
+    refuse_names_of_joints(mechanism)
     if mechanism.is_platform:
         return _platform(mechanism)
     if mechanism.search is not None:

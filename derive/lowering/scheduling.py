@@ -18,7 +18,6 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.ir.kept import kept_by_identity
 from derive.ir.passes import told_in
 from derive.ir.primitives import (
     Select,
@@ -35,6 +34,7 @@ from derive.ir.symbols import (
     names_in,
 )
 from derive.ir.tree import If, Item
+from derive.kept import kept_by_identity
 from derive.lowering.decided import decided
 from derive.lowering.stretches import follows, gathered
 

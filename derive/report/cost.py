@@ -20,7 +20,6 @@ from derive.ir.constants import (
     FINISHED,
     TRIALS,
 )
-from derive.ir.kept import kept_by_identity
 from derive.ir.primitives import (
     Atan2,
     NearestOnArc,
@@ -38,6 +37,7 @@ from derive.ir.program import (
     Statement,
 )
 from derive.ir.tree import If, Item
+from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.scheduling import structured
 

@@ -25,6 +25,7 @@ from derive.solver.subproblems.polar import polar
 from derive.solver.subproblems.quadratic import quadratic
 from derive.solver.subproblems.spheres import spheres
 from derive.solver.subproblems.trigonometric import lateral, trigonometric
+from derive.solver.unsolved import undetermined, unsolved
 
 Rule = Callable[[Problem, tuple[Equation, ...]], Iterator[Binding]]
 RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quadratic, spheres)
@@ -46,7 +47,7 @@ Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 
 
 class Unsolved(Exception):
-    """No subproblem fits what is left; the message shows the unknowns and the equations."""
+    """No subproblem fits what is left; the message tells the unknowns, the equations, and what would help."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,8 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     are read. resolve_angle: gives the statements that bind an angle with its whole turns, for equations in which it
     stands outside sines and cosines. Raises `Unsolved` where no rule applies.
     """
+    if (reason := undetermined(problem)) is not None:
+        raise Unsolved(reason)
     record = DerivationRecord()
     sums: tuple[Sum, ...] = ()
     rules: list[str] = []
@@ -117,7 +120,7 @@ def _next(
         found = _best([_candidates(problem, squares_of_three(problem))])
     if found is not None:
         return problem, found, sums
-    raise Unsolved(_message(problem))
+    raise Unsolved(unsolved(problem))
 
 
 def _candidates(problem: Problem, equations: tuple[Equation, ...], wanted: sp.Symbol | None = None) -> list[Binding]:
@@ -151,11 +154,3 @@ def _without(problem: Problem, binding: Binding, record: DerivationRecord) -> Pr
     )
     equations = tuple(e for e in (*problem.equations, *binding.new_equations) if rest.unknowns_of(e.expression))
     return rest.with_equations(equations)
-
-
-def _message(problem: Problem) -> str:
-    unknowns = ", ".join(str(u) for u in (*problem.lengths, *problem.angles, *problem.pending))
-    if not problem.equations:
-        return f"the closure does not determine {unknowns}"
-    left = "\n".join(f"    {e.label}: {e.expression} = 0" for e in problem.equations)
-    return f"no subproblem determines {unknowns}; equations left:\n{left}"

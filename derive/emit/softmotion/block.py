@@ -15,11 +15,11 @@ from derive.emit.st.program import Printed
 from derive.ir.constants import (
     SINGULAR,
 )
-from derive.ir.kept import kept_by_identity
 from derive.ir.program import (
     Program,
 )
 from derive.ir.types import type_of
+from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 

@@ -17,8 +17,8 @@ from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal
 from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st.shared import method_name, own_names, signature_of
 from derive.equations.windows import limits_of_axis
-from derive.ir.kept import kept_by_identity
 from derive.ir.program import FindRoot, Program, shared
+from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import reasons_of, texts
 

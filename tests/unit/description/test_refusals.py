@@ -96,11 +96,13 @@ UNSOLVED = {
             chain=links(A1, A2, A3) * Rz(A4),
             task=Task("xy", FOLLOWED),
         ),
-        "no subproblem determines a1, a2, a3, a4; equations left:\n    x: ",
+        "the closure does not determine a1, a2, a3, a4: 4 unknowns in 4 equations (x, y, cos heading, sin heading) "
+        "leave 1 free to move; command one more quantity, or leave out one of these joints",
     ),
     "two slides along one line": (
         described(joints=(P1, P2, P3), chain=Tx(P1 + P2) * Ty(P3), task=Task("xy")),
-        "no subproblem determines p1, p2; equations left:\n    x: p1 + p2 - x = 0",
+        "the closure does not determine p1, p2: 3 unknowns in 2 equations (x, y) leave 1 free to move; command one "
+        "more quantity, or leave out one of these joints",
     ),
     "a turn that moves nothing": (
         described(joints=(P1, P2, A1), chain=Tx(P1) * Ty(P2) * Rz(A1), task=Task("xy")),
@@ -108,15 +110,18 @@ UNSOLVED = {
     ),
     "a coordinate that nothing moves": (
         described(joints=(P1, P2), closure=(X - P1 - P2, Y - P1 - P2), task=Task("xy")),
-        "no subproblem determines p1, p2",
+        "the closure does not determine p1, p2: 2 unknowns in 2 equations (x, y) leave 1 free to move",
     ),
     "a closure without one coordinate": (
         described(joints=(P1, P2, P3), closure=(X - P1, Y - P2), task=Task("xyz")),
-        "the closure does not determine z",
+        "the closure does not determine z: 3 unknowns in 2 equations (x, y) leave 1 free to move; state one more "
+        "equation",
     ),
     "a telescope beside its column": (
         described(parameters=(L1,), joints=(A1, P1), chain=Rz(A1) * Tx(P1) * Ty(L1), task=Task("xy")),
-        "no subproblem determines p1, a1; equations left:",
+        "no subproblem determines p1, a1: 2 unknowns in 2 equations (x, y); it would help if one equation had one of "
+        "them alone, or if two equations were the coordinates of a point that one of them turns; equations left:"
+        "\n    x: cos_a1*p1 - link_1*sin_a1 - x = 0\n    y: cos_a1*link_1 + p1*sin_a1 - y = 0",
     ),
     "a telescope with a point beside it": (
         described(parameters=(L1,), joints=(A1, P1), chain=Rz(A1) * Tx(P1), task=Task("xy"), positive=(P1,)),
