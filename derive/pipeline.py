@@ -90,6 +90,7 @@ def derive_all(work: Work, profile: str | None) -> Iterator[Built]:
         return
     # What is derived lives as long as its process: looking for garbage among it finds nothing, and takes a tenth of the
     # time.
+    _load()
     with ProcessPoolExecutor(max_workers=min(PROCESSES, len(work.missing)), initializer=gc.disable) as pool:
         derived = pool.map(partial(_attempt, profile), work.missing)
         for (path, _), kept in zip(work.entries, work.kept, strict=True):
@@ -98,6 +99,15 @@ def derive_all(work: Work, profile: str | None) -> Iterator[Built]:
                 pool.shutdown(cancel_futures=True)
                 raise GenerationError(f"{path}: {result}")
             yield result
+
+
+def _load() -> None:
+    """Load what deriving needs, once for all processes that are then started."""
+    import derive.emit.picture.page
+    import derive.emit.softmotion.pictures
+    import derive.kinematics.build
+    import derive.report.self_test
+    import derive.witness  # noqa: F401
 
 
 def derive_one(mechanism: Mechanism, profile: str | None = None) -> Built:

@@ -23,8 +23,16 @@ def polynomial(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence
     `signs` are parameters that are +1 or -1 (never zero: their squares are one, and they leave the argument of a
     cosine), and flags that are 0 or 1 (their squares are themselves).
     """
+    return _polynomial(sp.sympify(expression), tuple(angles), tuple(signs))
+
+
+@cache
+def _polynomial(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> sp.Expr:
+    if _is_expanded(expression) and not expression.has(sp.sin, sp.cos):
+        return reduce_units(expression, angles, signs)
     terms = sp.expand_trig(sp.expand(expression))  # first: a sign leaves an argument only where nothing is added
-    expanded = _without_signs(terms, signs).subs(sp.pi, 180 * DEGREE)
+    expanded = _without_signs(terms, signs)
+    expanded = expanded.subs(sp.pi, 180 * DEGREE) if expanded.has(sp.pi) else expanded
     table: dict[sp.Expr, sp.Expr] = {}
     for angle in angles:
         table[sp.sin(angle)] = sine(angle)
@@ -63,19 +71,44 @@ def reduce_units(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequen
     """The normal form: squares of sines become 1 - cos^2, squares of signs 1, of flags the flag;
     everything expanded.
     """
-    table = _reduction(tuple(angles), tuple(signs))
+    return _reduced(sp.sympify(expression), tuple(angles), tuple(signs))
+
+
+@cache
+def _reduced(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> sp.Expr:
+    table = _reduction(angles, signs)
 
     def lower(power: sp.Pow) -> sp.Expr:
         return table[power.base] ** (power.exp // 2) * power.base ** (power.exp % 2)
 
-    expanded = sp.expand(expression)
+    expanded = expression if _is_expanded(expression) else sp.expand(expression)
     while True:
+        if not any(p.base in table and p.exp.is_Integer and p.exp >= 2 for p in expanded.atoms(sp.Pow)):
+            return expanded
         lowered = expanded.replace(
             lambda n: isinstance(n, sp.Pow) and n.base in table and n.exp.is_Integer and n.exp >= 2, lower
         )
         if lowered == expanded:
             return expanded
         expanded = sp.expand(lowered)
+
+
+def _is_expanded(expression: sp.Expr) -> bool:
+    """Whether an expression is a sum of products of symbols, numbers, and sines and cosines of such sums, so that
+    nothing can be expanded.
+    """
+    return all(_is_monomial(term) for term in sp.Add.make_args(expression))
+
+
+def _is_monomial(term: sp.Expr) -> bool:
+    return all(f.is_Number or _is_plain(*f.as_base_exp()) for f in sp.Mul.make_args(term))
+
+
+def _is_plain(base: sp.Expr, exponent: sp.Expr) -> bool:
+    """Whether a factor is a power of a symbol, of a sine or of a cosine, or the root of a whole number."""
+    if base.is_Symbol or (isinstance(base, sp.sin | sp.cos) and _is_expanded(base.args[0])):
+        return bool(exponent.is_Integer and exponent.is_positive)
+    return bool(base.is_Integer and base.is_positive and exponent == sp.Rational(1, 2))
 
 
 def linear_coefficients(expression: sp.Expr, atoms: Sequence[sp.Symbol]) -> tuple[list[sp.Expr], sp.Expr] | None:
@@ -89,6 +122,8 @@ def linear_coefficients(expression: sp.Expr, atoms: Sequence[sp.Symbol]) -> tupl
 @cache
 def _linear(expression: sp.Expr, atoms: tuple[sp.Symbol, ...]) -> tuple[sp.Expr, ...] | None:
     """The coefficients, then the rest. Cached: every rule asks for the same equations."""
+    if _is_expanded(expression):
+        return _collected(expression, atoms)
     try:
         poly = sp.Poly(expression, *atoms)
     except sp.PolynomialError:
@@ -98,12 +133,45 @@ def _linear(expression: sp.Expr, atoms: tuple[sp.Symbol, ...]) -> tuple[sp.Expr,
     return tuple(sp.sympify(poly.coeff_monomial(monomial)) for monomial in (*atoms, 1))
 
 
+def _collected(expression: sp.Expr, atoms: tuple[sp.Symbol, ...]) -> tuple[sp.Expr, ...] | None:
+    """The same of an expanded polynomial: its terms, by the atom that each of them has."""
+    places = {atom: place for place, atom in enumerate(atoms)}
+    parts: list[list[sp.Expr]] = [[] for _ in (*atoms, 1)]
+    for term in sp.Add.make_args(expression):
+        factors = sp.Mul.make_args(term)
+        found = [f for f in factors if not f.is_number and not f.free_symbols.isdisjoint(places)]
+        if len(found) > 1 or (found and not found[0].is_Symbol):
+            return None
+        if found:
+            parts[places[found[0]]].append(sp.Mul(*[f for f in factors if f is not found[0]]))
+        else:
+            parts[-1].append(term)
+    return tuple(sp.Add(*terms) for terms in parts)
+
+
 def split_known(expression: sp.Expr, unknown: Iterable[sp.Symbol]) -> tuple[sp.Expr, sp.Expr]:
     """The sum of the terms with an unknown, and the sum of those without."""
-    atoms = set(unknown)
-    terms = sp.Add.make_args(sp.expand(expression))
-    moving = sp.Add(*[t for t in terms if t.free_symbols & atoms])
-    return moving, sp.Add(*[t for t in terms if not t.free_symbols & atoms])
+    return _split_known(expression, frozenset(unknown))
+
+
+@cache
+def _split_known(expression: sp.Expr, atoms: frozenset[sp.Symbol]) -> tuple[sp.Expr, sp.Expr]:
+    moving, known = list[sp.Expr](), list[sp.Expr]()
+    for term in sp.Add.make_args(expression if _is_expanded(expression) else sp.expand(expression)):
+        (known if atoms.isdisjoint(term.free_symbols) else moving).append(term)
+    return sp.Add(*moving), sp.Add(*known)
+
+
+@cache
+def cancelled(value: sp.Expr) -> sp.Expr:
+    """A quotient of polynomials in lowest terms. Cached: every rule meets the same equations again after each step."""
+    return sp.cancel(value)
+
+
+@cache
+def factored(value: sp.Expr) -> sp.Expr:
+    """A value in factors; cached likewise."""
+    return sp.factor(value)
 
 
 def is_compound(expression: sp.Expr) -> bool:

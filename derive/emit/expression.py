@@ -192,7 +192,9 @@ def _is_whole(node: sp.Basic) -> bool:
 @cache
 def _terms(node: sp.Add) -> tuple[sp.Expr, ...]:
     """The terms of a sum in the order in which they are written; those that rank alike stay in the order of SymPy."""
-    return tuple(sorted(node.as_ordered_terms(), key=_term_order))
+    orders = {_term_order(term) for term in node.args}
+    terms = node.args if len(orders) == len(node.args) else node.as_ordered_terms()  # which takes long
+    return tuple(sorted(terms, key=_term_order))
 
 
 @cache
@@ -208,7 +210,7 @@ def _term_order(term: sp.Expr) -> tuple[bool, int]:
 @cache
 def _factor_order(factor: sp.Expr) -> tuple[bool, str]:
     """The sort key of a factor: sines and cosines come last, as in a textbook."""
-    name = str(factor)
+    name = factor.name if isinstance(factor, sp.Symbol) else str(factor)
     return name.startswith(("sin_", "cos_", "Sin", "Cos")), name
 
 

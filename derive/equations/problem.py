@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 
 import sympy as sp
 
-from derive.algebra.normal_form import reduce_units
+from derive.algebra.normal_form import cancelled, reduce_units
 from derive.geometry.frames import Factor
 from derive.ir.constants import (
     DEGREE,
@@ -16,7 +16,7 @@ from derive.ir.program import (
     Let,
     Statement,
 )
-from derive.ir.symbols import cosine, real, sine
+from derive.ir.symbols import cosine, names_in, real, sine
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ class Problem:
 
     def unknowns_of(self, expression: sp.Expr) -> tuple[sp.Symbol, ...]:
         """The unknown angles and lengths that occur, in a fixed order."""
-        present = expression.free_symbols
+        present = names_in(expression)
         angles = [a for a in (*self.angles, *self.pending) if present & {a, sine(a), cosine(a)}]
         return (*(u for u in self.lengths if u in present), *angles)
 
@@ -215,7 +215,7 @@ class Problem:
         """
         if all(factor in self.positive for factor in sp.Mul.make_args(value)):
             return True
-        ratios = [sp.cancel(value / quantity).xreplace({DEGREE: sp.pi / 180}) for quantity in self.positive]
+        ratios = [cancelled(value / quantity).xreplace({DEGREE: sp.pi / 180}) for quantity in self.positive]
         return any(ratio.is_number and ratio.is_positive for ratio in ratios)
 
     def with_equations(self, equations: tuple[Equation, ...]) -> Problem:

@@ -19,6 +19,7 @@ from derive.geometry.pose import pose_of
 from derive.ir.program import (
     Let,
 )
+from derive.ir.symbols import names_in
 
 _MOST_UNKNOWN = 2
 """No subproblem takes an equation with more unknown angles than this."""
@@ -59,9 +60,9 @@ def _entry_equations(
     found = []
     for i in range(3):
         for j in problem.columns:
-            if len({a for a in problem.angles if a in middle[i, j].free_symbols}) > _MOST_UNKNOWN:
+            if len({a for a in problem.angles if a in names_in(middle[i, j])}) > _MOST_UNKNOWN:
                 continue
-            if any(a in middle[i, j].free_symbols for a in problem.pending):
+            if any(a in names_in(middle[i, j]) for a in problem.pending):
                 continue
             form = polynomial(middle[i, j], problem.units, problem.signs)
             expression = reduce_units(form - entries[i, j], problem.units, problem.signs)

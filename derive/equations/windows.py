@@ -6,6 +6,7 @@ Where a controller hands over the limits of its drives, `limits_of_axis` narrows
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import sympy as sp
 
@@ -22,6 +23,7 @@ from derive.ir.program import Let, Output, Program, Require, Statement, Status, 
 from derive.ir.reason import Reason, Why, about_input, about_parameters
 from derive.ir.symbols import called, flag, real
 from derive.ir.verify import verify
+from derive.kept import kept_by_identity
 
 Fallback = tuple[tuple[sp.Basic, sp.Expr, sp.Expr], ...]
 """(condition, lower, upper) where no limit is given; the last one counts."""
@@ -46,14 +48,14 @@ class Window:
         """Why parameters are refused that are no limits."""
         return about_parameters(f"lower_{self.key} below upper_{self.key}, or both 0")
 
-    @property
+    @cached_property
     def ordered(self) -> Require:
         """The condition on them."""
         lower, upper = map(real, self.given)
         condition = sp.Or(sp.Lt(lower, upper), sp.Le(sp.Abs(lower) + sp.Abs(upper), 0))
         return Require(condition, Status.NOT_INITIALIZED, reason=self.refusal)
 
-    @property
+    @cached_property
     def limits(self) -> tuple[Let, ...]:
         """The limits that hold, given or not."""
         lower, upper = map(real, self.given)
@@ -79,7 +81,7 @@ class Window:
         names = (*self.given, f"unlimited_{self.key}")
         return [Output(name, value) for name, value in zip(names, (low, high, unlimited), strict=True)]
 
-    @property
+    @cached_property
     def ends(self) -> tuple[Let, ...]:
         """The ends that are tested, which are the limits and their tolerance; and of an axis with turns what chooses
         one.
@@ -116,6 +118,7 @@ class Window:
         return real(f"effective_lower_{self.key}"), real(f"effective_upper_{self.key}"), flag(f"unlimited_{self.key}")
 
 
+@kept_by_identity(10)
 def windows(mechanism: Mechanism) -> tuple[Window, ...]:
     """Of all axes, then of all limited quantities."""
     axes = (Window(j.key, _fallback(j), has_turns=j.multi_turn, is_axis=True) for j in mechanism.joints)

@@ -30,5 +30,12 @@ def cross(first: Vector, second: Vector) -> sp.Expr:
 
 
 def triple(rows: Sequence[Vector]) -> sp.Expr:
-    """The determinant of three vectors in space, or of two in the plane."""
-    return sp.Matrix([list(row) for row in rows]).det()
+    """The determinant of three vectors in space, or of two in the plane; its products are not written out."""
+    if len(rows) == 2:
+        return cross(*rows)
+    first, second, third = rows
+    return sp.Add(*[first[i] * cross(_without(second, i), _without(third, i)) * (-1) ** i for i in range(3)])
+
+
+def _without(entries: Vector, place: int) -> Vector:
+    return (*entries[:place], *entries[place + 1 :])

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from functools import cache, reduce
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, partial
 from operator import itemgetter
 
 import numpy as np
@@ -44,6 +44,7 @@ from derive.ir.symbols import (
     is_condition,
     is_count,
 )
+from derive.kept import kept_by_identity
 
 Array = NDArray[np.float64]
 _SHIFT = 180.0 + float(EDGE)
@@ -82,13 +83,15 @@ _FUNCTIONS: dict[type[sp.Basic], Callable[..., Array]] = {
     sp.Gt: np.greater,
     sp.Eq: np.equal,
     sp.Ne: np.not_equal,
-    sp.And: lambda *c: reduce(np.logical_and, c),
-    sp.Or: lambda *c: reduce(np.logical_or, c),
+    sp.And: np.logical_and,
+    sp.Or: np.logical_or,
     sp.Not: np.logical_not,
-    sp.Add: lambda *t: reduce(np.add, t),
-    sp.Mul: lambda *t: reduce(np.multiply, t),
-    sp.Pow: lambda b, e: np.power(b, e),
+    sp.Add: np.add,
+    sp.Mul: np.multiply,
+    sp.Pow: np.power,
 }
+_Values = Mapping[str, Array]
+_Evaluator = Callable[[_Values], Array]
 
 
 def evaluate(expression: sp.Basic, values: Mapping[str, Array]) -> Array:
@@ -97,7 +100,7 @@ def evaluate(expression: sp.Basic, values: Mapping[str, Array]) -> Array:
 
 
 @cache
-def _evaluator(expression: sp.Basic) -> Callable[[Mapping[str, Array]], Array]:
+def _evaluator(expression: sp.Basic) -> _Evaluator:
     """The expression as a function of the values of its symbols; cached, because expressions are evaluated often."""
     if isinstance(expression, sp.Symbol) and expression != DEGREE:
         return itemgetter(expression.name)
@@ -105,8 +108,34 @@ def _evaluator(expression: sp.Basic) -> Callable[[Mapping[str, Array]], Array]:
         return _constant(expression == sp.true)
     if expression == DEGREE or isinstance(expression, sp.Number | sp.NumberSymbol):
         return _constant(np.pi / 180.0 if expression == DEGREE else float(expression))
-    function, arguments = _FUNCTIONS[type(expression)], [_evaluator(a) for a in expression.args]
-    return lambda values: function(*[argument(values) for argument in arguments])
+    function, first, *others = _FUNCTIONS[type(expression)], *map(_evaluator, expression.args)
+    if others and isinstance(expression, sp.Add | sp.Mul | sp.And | sp.Or):
+        return _chained(function, first, others)
+    if not others:
+        return lambda values: function(first(values))
+    return _of_two(function, first, others[0]) if len(others) == 1 else _of_more(function, first, others)
+
+
+def _chained(function: Callable[..., Array], first: _Evaluator, others: Sequence[_Evaluator]) -> _Evaluator:
+    """An operation from left to right."""
+    if len(others) == 1:
+        return _of_two(function, first, others[0])
+
+    def chained(values: _Values) -> Array:
+        result = first(values)
+        for other in others:
+            result = function(result, other(values))
+        return result
+
+    return chained
+
+
+def _of_two(function: Callable[..., Array], one: _Evaluator, other: _Evaluator) -> _Evaluator:
+    return lambda values: function(one(values), other(values))
+
+
+def _of_more(function: Callable[..., Array], first: _Evaluator, others: Sequence[_Evaluator]) -> _Evaluator:
+    return lambda values: function(first(values), *[other(values) for other in others])
 
 
 def _constant(value: float | bool) -> Callable[[Mapping[str, Array]], Array]:
@@ -119,40 +148,77 @@ def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array]
     """Outputs and statuses of a program for arrays of inputs; outputs are meaningful where the status is OK."""
     types = {s.name: s for s in program.inputs}
     known: dict[str, Array] = {k: _as_declared(v, types.get(k)) for k, v in values.items()}
-    shape = np.broadcast_shapes(*(v.shape for v in known.values())) if known else ()
+    shape = _common_shape(known.values())
     status = np.full(shape, Status.OK, dtype=object)
     with np.errstate(all="ignore"):
         _execute(program.body, known, status)
-        outputs = {o.name: np.broadcast_to(evaluate(o.value, known), shape) for o in program.outputs}
+        outputs = {o.name: _broadcast(evaluate(o.value, known), shape) for o in program.outputs}
     return outputs, status
+
+
+def _common_shape(values: Iterable[Array]) -> tuple[int, ...]:
+    """The shape of what is computed with all of these: at once where they have one shape, apart from plain numbers."""
+    shapes = {value.shape for value in values} - {()}
+    return np.broadcast_shapes(*shapes) if len(shapes) > 1 else next(iter(shapes), ())
+
+
+def _broadcast(value: Array, shape: tuple[int, ...]) -> Array:
+    """A value for every entry of a shape."""
+    return np.asarray(value) if np.shape(value) == shape else np.broadcast_to(value, shape)
 
 
 def _as_declared(value: Array, name: sp.Symbol | None) -> Array:
     """The value of an input in the type of its name: a flag may be given as 0 or 1, an integer as a real number."""
-    if isinstance(name, Flag):
-        return np.asarray(value).astype(bool)
-    return np.asarray(value, dtype=np.int64 if is_count(name) else float)
+    return np.asarray(value, dtype=_declared(name))
 
 
-def _execute(statements: Iterable[Statement], known: dict[str, Array], status: NDArray[np.object_]) -> None:
-    for statement in statements:
-        if isinstance(statement, Let):
-            known[statement.name.name] = _as_declared(evaluate(statement.value, known), statement.name)
-        elif isinstance(statement, Require):
-            _require(evaluate(statement.condition, known), statement.otherwise, status)
-        elif isinstance(statement, Solve):
-            _solve(statement, known, status.shape)
-        elif isinstance(statement, Call):
-            _call(statement, known, status)
-        elif isinstance(statement, FindRoot):
-            _find(statement, known, status)
-        else:
-            _iterate(statement, known, status)
+@cache
+def _declared(name: sp.Symbol | None) -> type:
+    return bool if isinstance(name, Flag) else np.int64 if is_count(name) else float
+
+
+_State = dict[str, Array]
+_Statuses = NDArray[np.object_]
+_Step = Callable[[_State, _Statuses], None]
+
+
+def _execute(statements: Sequence[Statement], known: _State, status: _Statuses) -> None:
+    for step in _steps(statements):
+        step(known, status)
+
+
+@kept_by_identity(2000)
+def _steps(statements: Sequence[Statement]) -> list[_Step]:
+    """Statements as functions that change what is known; kept, because programs run often."""
+    return [_step(s) for s in statements]
+
+
+def _step(statement: Statement) -> _Step:
+    if isinstance(statement, Let):
+        return _let(statement)
+    if isinstance(statement, Require):
+        condition, otherwise = _evaluator(statement.condition), statement.otherwise
+        return lambda known, status: _require(condition(known), otherwise, status)
+    if isinstance(statement, Solve):
+        return lambda known, status: _solve(statement, known, status.shape)
+    if isinstance(statement, Call):
+        return partial(_call, statement)
+    return partial(_find, statement) if isinstance(statement, FindRoot) else partial(_iterate, statement)
+
+
+def _let(let: Let) -> _Step:
+    name, value, declared, convert = let.name.name, _evaluator(let.value), _declared(let.name), np.asarray
+
+    def bind(known: _State, _: _Statuses) -> None:
+        known[name] = convert(value(known), declared)
+
+    return bind
 
 
 def _require(condition: Array, otherwise: Status, status: NDArray[np.object_]) -> None:
-    fails = np.logical_not(np.broadcast_to(condition, status.shape))
-    status[fails & (status == Status.OK)] = otherwise
+    if not np.all(condition):
+        fails = np.logical_not(np.broadcast_to(condition, status.shape))
+        status[fails & (status == Status.OK)] = otherwise
 
 
 def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> None:

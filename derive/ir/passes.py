@@ -65,8 +65,11 @@ def plain(value: sp.Basic) -> sp.Expr:
     """The expression with symbols that have a type and no other assumptions, pi as 180 degrees, and square roots as
     `Root`.
     """
-    named = value.xreplace({s: called(s.name, s) for s in value.free_symbols if s != DEGREE})
-    rooted = named.replace(_is_square_root, lambda power: Root(power.base) ** sp.sign(power.exp))
+    names = {s: called(s.name, s) for s in value.free_symbols if s != DEGREE}
+    named = value.xreplace(names) if any(s != name for s, name in names.items()) else value
+    rooted = named
+    if any(map(_is_square_root, named.atoms(sp.Pow))):
+        rooted = named.replace(_is_square_root, lambda power: Root(power.base) ** sp.sign(power.exp))
     return rooted.subs(sp.pi, 180 * DEGREE) if rooted.has(sp.pi) else rooted
 
 

@@ -17,6 +17,7 @@ class Flag(sp.Symbol):
     """A name that is true or false: a condition by itself."""
 
 
+@cache
 def real(name: str) -> sp.Symbol:
     """The name of a real number; of an angle, too: see `types`."""
     return sp.Symbol(name, real=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import sympy as sp
 
-from derive.algebra.normal_form import reduce_units
+from derive.algebra.normal_form import cancelled, reduce_units
 from derive.description.mechanism import Branch, DescriptionError, Mechanism
 from derive.equations.closure import all_angles, with_fixed_names
 from derive.equations.pose_at_axes import (
@@ -63,7 +63,7 @@ class Assignment:
 
     def margin(self, mechanism: Mechanism) -> sp.Expr:
         """The determinant over its scale, with the sign of the branch: positive is byte 1."""
-        value = sp.cancel(self.orientation * self.determinant.value / self.determinant.scale)
+        value = cancelled(self.orientation * self.determinant.value / self.determinant.scale)
         return reduce_units(value, all_angles(mechanism)) if value.is_polynomial() else value
 
 

@@ -68,7 +68,7 @@ from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.scan.derivations import from_joints, solve_both
 from derive.kinematics.scan.inverse import branch_statements, search_given
 from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements
-from derive.kinematics.shared_names import refuse_shared_names
+from derive.kinematics.shared_names import refuse_names_of_joints, refuse_shared_names
 from derive.lowering.lower import lowered
 from derive.plate.legs import MARGIN
 from derive.plate.newton import (
@@ -84,6 +84,7 @@ from derive.solver.solve import Unsolved
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
     _count(mechanism)
+    refuse_names_of_joints(mechanism)
     if mechanism.is_platform:
         return _platform(mechanism)
     if mechanism.search is not None:

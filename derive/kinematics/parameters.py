@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
+from functools import cache
 
 import sympy as sp
 
@@ -177,6 +178,7 @@ def _numbers(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
     return tuple(sp.Abs(t) for t in terms if t.is_number and t != 0)
 
 
+@cache
 def _range_of(parameter: Parameter) -> tuple[Require, ...]:
     note = f"{parameter.name}: {parameter.meaning}"
     if parameter.role is Role.FLAG:

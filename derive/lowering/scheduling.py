@@ -33,10 +33,12 @@ from derive.ir.symbols import (
     names_in,
 )
 from derive.ir.tree import If, Item, read_in
+from derive.kept import kept_by_identity
 from derive.lowering.decided import decided
 from derive.lowering.stretches import follows, gathered
 
 
+@kept_by_identity(100)
 def structured(program: Program) -> tuple[Item, ...]:
     """A program for a language that returns at the first refusal, and runs one side of a choice alone."""
     program = decided(replace(program, body=_together(program.body)))

@@ -11,6 +11,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import cache
 
 import sympy as sp
 
@@ -36,6 +37,7 @@ from derive.ir.program import (
     Statement,
 )
 from derive.ir.tree import If, Item
+from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.scheduling import structured
 
@@ -55,6 +57,8 @@ class Cost:
     """Sines, cosines and arc tangents."""
 
     def __add__(self, other: Cost) -> Cost:
+        if other is _NOTHING or self is _NOTHING:
+            return self if other is _NOTHING else other
         return Cost(*map(operator.add, self.counts, other.counts))
 
     def __mul__(self, times: int) -> Cost:
@@ -66,6 +70,7 @@ class Cost:
         return self.additions, self.multiplications, self.divisions, self.roots, self.trigonometric
 
 
+_NOTHING = Cost()
 _OfSides = Callable[[Cost, Cost], Cost]
 
 
@@ -116,6 +121,7 @@ _PERIOD_BYTE = Cost(additions=3, divisions=1)
 """The number of the turn in which an axis value lies."""
 
 
+@kept_by_identity(10)
 def costs_of(kinematics: Kinematics) -> Costs:
     """The cost of forward and inverse kinematics of a mechanism in the worst case."""
     periods, axes = len(kinematics.period_joints), len(kinematics.distance_joints)
@@ -155,11 +161,12 @@ def cost_of(program: Program, of_sides: _OfSides = _most) -> Cost:
     return _total(items) + _total(map(expression_cost, (o.value for o in program.outputs)))
 
 
+@cache
 def expression_cost(node: sp.Basic) -> Cost:
     """The cost of an expression as every language writes it."""
     if isinstance(node, sp.Mul | sp.Pow):
         return _product(node)
-    own = _PRIMITIVES.get(type(node), Cost())
+    own = _PRIMITIVES.get(type(node), _NOTHING)
     if isinstance(node, sp.Add):
         own = Cost(additions=len(node.args) - 1)
     return own + _total(map(expression_cost, node.args))
@@ -227,4 +234,4 @@ def _bounds(program: Program) -> Iterator[Bound]:
 
 
 def _total(costs: Iterable[Cost]) -> Cost:
-    return sum(costs, start=Cost())
+    return sum(costs, start=_NOTHING)

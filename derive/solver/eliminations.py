@@ -10,6 +10,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 
@@ -17,7 +18,11 @@ import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients, reduce_units, split_known
 from derive.equations.problem import Equation, Problem
+from derive.solver.probe import unknowns_of_squares
 from derive.solver.subproblems.naming import Naming
+
+_MOST_UNKNOWN = 3
+"""No subproblem takes an equation with more unknowns than this: three lengths are the coordinates of a point."""
 
 
 def differences(problem: Problem) -> tuple[Equation, ...]:
@@ -57,14 +62,20 @@ def eliminations(problem: Problem) -> tuple[Equation, ...]:
 
 def squares(problem: Problem, count: int = 2) -> tuple[Equation, ...]:
     """Sums of squares of `count` equations; the known side is named as the length `reach`."""
-    equations = [e for e in problem.equations if not e.expression.free_symbols & {*problem.lengths}]
-    found = [_sum_of_squares(problem, some) for some in combinations(equations, count)]
-    return tuple(equation for equation in found if equation is not None)
+    return _sums_of_squares(problem, [e for e in problem.equations if not _has_length(problem, e)], count)
 
 
 def squares_with_lengths(problem: Problem) -> tuple[Equation, ...]:
     """Sums of squares of two equations that hold an unknown length: of a boom beside the axis that turns it."""
-    found = [_sum_of_squares(problem, some) for some in combinations(problem.equations, 2)]
+    return _sums_of_squares(problem, [e for e in problem.equations if _has_length(problem, e)], 2)
+
+
+def _has_length(problem: Problem, equation: Equation) -> bool:
+    return bool(equation.expression.free_symbols & {*problem.lengths})
+
+
+def _sums_of_squares(problem: Problem, equations: Sequence[Equation], count: int) -> tuple[Equation, ...]:
+    found = [_sum_of_squares(problem, some) for some in combinations(equations, count)]
     return tuple(equation for equation in found if equation is not None)
 
 
@@ -77,10 +88,11 @@ def _sum_of_squares(problem: Problem, equations: tuple[Equation, ...]) -> Equati
     sides = [split_known(e.expression, problem.atoms()) for e in equations]
     if any(moving == 0 or known == 0 or _has_plain_unknown(problem, moving) for moving, known in sides):
         return None
-    moving = reduce_units(sum(m**2 for m, _ in sides), problem.units, problem.signs)
     unknowns = {unknown for e in equations for unknown in problem.unknowns_of(e.expression)}
-    if len(problem.unknowns_of(moving)) not in range(1, len(unknowns)):
+    left = unknowns_of_squares(problem, [m for m, _ in sides])
+    if len(left) not in range(1, min(len(unknowns), _MOST_UNKNOWN + 1)):
         return None
+    moving = reduce_units(sum(m**2 for m, _ in sides), problem.units, problem.signs)
     naming = Naming(problem, tuple(let for e in equations for let in e.lets))
     spanned = [
         naming.named(-known, f"wrist_{e.label}", "coordinate of the point that the remaining links must reach")

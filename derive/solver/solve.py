@@ -26,10 +26,13 @@ from derive.solver.subproblems.pair import pair
 from derive.solver.subproblems.polar import polar
 from derive.solver.subproblems.quadratic import quadratic
 from derive.solver.subproblems.spheres import spheres
-from derive.solver.subproblems.trigonometric import trigonometric
+from derive.solver.subproblems.trigonometric import lateral, trigonometric
+from derive.solver.unsolved import undetermined, unsolved
 
 Rule = Callable[[Problem, tuple[Equation, ...]], Iterator[Binding]]
 RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quadratic, spheres)
+_BETTER: tuple[Rule, ...] = tuple(lateral if rule is trigonometric else rule for rule in RULES)
+"""The same without the steps that give a cosine alone, which rank behind all others."""
 
 
 def _stated(problem: Problem) -> tuple[Equation, ...]:
@@ -53,7 +56,7 @@ Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 
 
 class Unsolved(Exception):
-    """No subproblem fits what is left; the message shows the unknowns and the equations."""
+    """No subproblem fits what is left; the message tells the unknowns, the equations, and what would help."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +85,8 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     are read. resolve_angle: gives the statements that bind an angle with its whole turns, for equations in which it
     stands outside sines and cosines. Raises `Unsolved` where no rule applies.
     """
+    if (reason := undetermined(problem)) is not None:
+        raise Unsolved(reason)
     record = DerivationRecord()
     sums: tuple[Sum, ...] = ()
     rules: list[str] = []
@@ -133,14 +138,14 @@ def _next(
         wanted = (
             TIERS if found is None else TIERS[:1]
         )  # a cosine alone loses half the digits: both functions of a sum are better
-        better = _best([b for b in _candidates(trial, tier(trial)) if total.symbol in b.unknowns] for tier in wanted)
+        better = _best(_candidates(trial, tier(trial), total.symbol) for tier in wanted)
         if better is not None and (found is None or (better.rank < found.rank and problem.turns)):
             return trial, better, (*sums, total)
     if found is None and not problem.is_overdetermined:
         found = _best(last_resort(problem) for last_resort in _LAST)
     if found is not None:
         return problem, found, sums
-    raise Unsolved(_message(problem))
+    raise Unsolved(unsolved(problem))
 
 
 def _three_lengths(problem: Problem) -> list[Binding]:
@@ -164,8 +169,16 @@ def _three_squares(problem: Problem) -> list[Binding]:
 _LAST = (_three_lengths, _by_condition, _three_squares)
 
 
-def _candidates(problem: Problem, equations: tuple[Equation, ...]) -> list[Binding]:
-    return [binding for rule in RULES for binding in rule(problem, equations)]
+def _candidates(problem: Problem, equations: tuple[Equation, ...], wanted: sp.Symbol | None = None) -> list[Binding]:
+    """What the rules find; with a wanted unknown, for that one. A step that gives a cosine alone is worked out only
+    where there is no other.
+    """
+    found: list[Binding] = []
+    for rules in (_BETTER, RULES):
+        found = [b for rule in rules for b in rule(problem, equations) if wanted is None or wanted in b.unknowns]
+        if not all(b.cosine_alone for b in found):
+            break
+    return found
 
 
 def _best(tiers: Iterable[list[Binding]]) -> Binding | None:
@@ -187,11 +200,3 @@ def _without(problem: Problem, binding: Binding, record: DerivationRecord) -> Pr
     )
     equations = tuple(e for e in (*problem.equations, *binding.new_equations) if rest.unknowns_of(e.expression))
     return rest.with_equations(equations)
-
-
-def _message(problem: Problem) -> str:
-    unknowns = ", ".join(str(u) for u in (*problem.lengths, *problem.angles, *problem.pending))
-    if not problem.equations:
-        return f"the closure does not determine {unknowns}"
-    left = "\n".join(f"    {e.label}: {e.expression} = 0" for e in problem.equations)
-    return f"no subproblem determines {unknowns}; equations left:\n{left}"

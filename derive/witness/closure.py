@@ -6,6 +6,7 @@ read as they stand, and every derivative is automatic differentiation. Functions
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -38,6 +39,8 @@ LEAST_MARGIN = 1e-6
 """A solution of a closed loop nearer to a type 2 singularity than this is not counted."""
 POSE = ("x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123"))
 """The columns of a pose: position, then rotation by rows."""
+_TOGETHER = 64
+"""Rows that a CasADi function takes at a time."""
 
 
 class Rows:
@@ -46,24 +49,36 @@ class Rows:
     def __init__(self, name: str, arguments: tuple[Term, ...], result: Term) -> None:
         self._shape = result.shape
         self._function = ca.Function(name, arguments, [ca.densify(result)])
-        self._mapped: dict[int, Any] = {}
+        self._buffer: Any = None
 
     def __call__(self, *columns: Array) -> Array:
-        count = len(columns[0])
-        if count not in self._mapped:
-            self._mapped[count] = self._function.map(count).buffer()
         rows, width = self._shape
-        result = np.empty((count * width, rows))
-        # CasADi stores by columns, a sample each: the memory of an array with a sample in every row.
-        buffer, run = self._mapped[count]
-        given = [np.ascontiguousarray(c, dtype=float) for c in columns]
+        result = np.empty((len(columns[0]), width, rows))  # CasADi stores by columns
+        if result.size:
+            given = [np.ascontiguousarray(c, dtype=float) for c in columns]
+            whole = len(result) - len(result) % _TOGETHER
+            for first in range(0, whole, _TOGETHER):
+                self._run([c[first : first + _TOGETHER] for c in given], result[first : first + _TOGETHER])
+            if whole < len(result):
+                last = np.empty((_TOGETHER, width, rows))
+                self._run([_filled(c[whole:]) for c in given], last)
+                result[whole:] = last[: len(result) - whole]
+        return np.swapaxes(result, 1, 2)
+
+    def _run(self, given: Sequence[Array], result: Array) -> None:
+        if self._buffer is None:
+            self._buffer = self._function.map(_TOGETHER).buffer()
+        buffer, run = self._buffer
         for place, rows_of_samples in enumerate(given):
             if rows_of_samples.size:
                 buffer.set_arg(place, rows_of_samples.data)
-        if result.size:
-            buffer.set_res(0, result.data)
-            run()
-        return np.moveaxis(np.ascontiguousarray(result.T).reshape(rows, count, width), 1, 0)
+        buffer.set_res(0, result.data)
+        run()
+
+
+def _filled(rows: Array) -> Array:
+    """So many rows as CasADi takes at a time: the first once more where there are fewer."""
+    return np.concatenate([rows, np.repeat(rows[:1], _TOGETHER - len(rows), axis=0)])
 
 
 @dataclass(frozen=True)

@@ -126,12 +126,14 @@ def _ranks(kin: Kinematics, samples: Samples) -> Slots:
     search = kin.mechanism.search
     if search is None:
         return run_slots(kin, kin.branch, samples, commands)
-    found: list[Slots] = []
-    for turn in np.linspace(0.0, 360.0, _AROUND, endpoint=False):
-        found.append(
-            run_slots(kin, kin.branch, samples, commands | {search.joint.reference.name: np.full(len(samples), turn)})
-        )
-    return np.concatenate([axes for axes, _ in found]), np.concatenate([ok for _, ok in found])
+    # The poses once for every reference, in one run: a root scan takes as many passes for one row as for all.
+    around, count = np.linspace(0.0, 360.0, _AROUND, endpoint=False), len(samples)
+    many = samples.take(np.tile(np.arange(count), _AROUND))
+    commands = {name: np.tile(column, _AROUND) for name, column in commands.items()}
+    axes, ok = run_slots(kin, kin.branch, many, commands | {search.joint.reference.name: np.repeat(around, count)})
+    slots = len(axes) * _AROUND
+    by_reference = axes.reshape(len(axes), _AROUND, count, -1).swapaxes(0, 1)
+    return by_reference.reshape(slots, count, -1), ok.reshape(-1, _AROUND, count).swapaxes(0, 1).reshape(slots, count)
 
 
 def _signs(kin: Kinematics) -> list[tuple[float, ...]]:
@@ -177,7 +179,7 @@ def _round_trip(
 def _compare(kin: Kinematics, problem: Problem, solutions: tuple[Array, Array], place: str) -> int:
     """The number of solutions that a root scan misses. Raises `Disagreement` for any other difference."""
     found, offered = solutions
-    missing = [f for f in found if not any(same(f, o, problem.angles) for o in offered)]
+    missing = [f for f in found if not same(f, offered, problem.angles).any()]
     is_search = kin.mechanism.search is not None
     expected = len(found) - (len(missing) if is_search else 0)
     if (

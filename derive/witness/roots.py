@@ -18,6 +18,8 @@ _ITERATIONS = 40
 _POLISH = 4
 _CONVERGED = 1e-9
 _SAME = 1e-6
+_ROUNDING = 1e-13
+"""An equation of order one is met but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -102,33 +104,43 @@ def within_one_turn(problem: Problem, unknowns: Array) -> Array:
 
 
 def distinct(unknowns: Array, angles: NDArray[np.bool_]) -> Array:
-    """Each solution once."""
+    """Each solution once: the first of those that are the same."""
     kept: list[Array] = []
-    for candidate in unknowns:
-        if not any(same(candidate, other, angles) for other in kept):
-            kept.append(candidate)
+    while len(unknowns):
+        kept.append(unknowns[0])
+        unknowns = unknowns[~same(unknowns[0], unknowns, angles)]
     return np.array(kept).reshape(len(kept), len(angles))
 
 
-def same(one: Array, other: Array, angles: NDArray[np.bool_]) -> bool:
-    """Whether two solutions are one."""
-    apart = np.where(angles, np.abs(np.exp(1j * one) - np.exp(1j * other)), np.abs(one - other))
-    return bool(np.all(apart < _SAME))
+def same(one: Array, others: Array, angles: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether a solution and others are one, for each of the others."""
+    apart = np.where(angles, np.abs(np.exp(1j * one) - np.exp(1j * others)), np.abs(one - others))
+    return np.asarray(np.all(apart < _SAME, axis=-1), dtype=bool)
 
 
 def _newton(problem: Problem, start: Array, iterations: int) -> Array:
-    """Levenberg-Marquardt, every row with its own damping."""
-    unknowns, damping = start, np.full(len(start), 1e-2)
-    residual = problem.residual(unknowns)
-    identity = np.eye(start.shape[1])
+    """Levenberg-Marquardt, every row with its own damping.
+
+    A row is at its end where it meets the equations but for rounding, and a step no longer brings it nearer.
+    """
+    unknowns, residual, identity = start.copy(), problem.residual(start), np.eye(start.shape[1])
+    rows, damping = np.arange(len(start)), np.full(len(start), 1e-2)
+    part, here, before = problem, unknowns, np.linalg.norm(residual, axis=1)
     for _ in range(iterations):
-        slopes = problem.slopes(unknowns)
+        slopes = part.slopes(here)
         normal = np.swapaxes(slopes, 1, 2) @ slopes + damping[:, None, None] * identity
         step = np.linalg.solve(normal, np.swapaxes(slopes, 1, 2) @ residual[:, :, None])[:, :, 0]
-        trial = unknowns - step
-        after = problem.residual(trial)
-        better = np.linalg.norm(after, axis=1) < np.linalg.norm(residual, axis=1)
-        unknowns = np.where(better[:, None], trial, unknowns)
-        residual = np.where(better[:, None], after, residual)
-        damping = np.clip(np.where(better, damping * 0.1, damping * 10.0), 1e-15, 1e6)
+        trial = here - step
+        missed = part.residual(trial)
+        after = np.linalg.norm(missed, axis=1)
+        better = after < before
+        unknowns[rows[better]] = trial[better]
+        going = np.flatnonzero(better | (before > _ROUNDING))
+        if not len(going):
+            break
+        residual = np.where(better[:, None], missed, residual)[going]
+        before = np.where(better, after, before)[going]
+        damping = np.clip(np.where(better, damping * 0.1, damping * 10.0), 1e-15, 1e6)[going]
+        rows, part = rows[going], part if len(going) == len(rows) else part.take(going)
+        here = unknowns[rows]
     return unknowns

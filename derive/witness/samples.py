@@ -31,6 +31,8 @@ REGULAR = 0.05
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths (a gantry)."""
 _CANDIDATES = 100
+_FIRST = 2 * POSES
+"""Candidates of each machine of which nearly always enough are regular."""
 _LOOP_CANDIDATES = 2500
 """Random axis values to try: few of them close a loop."""
 _SPREAD = {Role.PITCH: 20.0, Role.GEAR: 0.1, Role.COUPLING: 0.5, Role.ANGLE: 200.0}
@@ -90,16 +92,28 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
         raise Disagreement(f"forward kinematics refuses a possible pose: {describe(kin, samples, refused[0])}")
     samples = replace(samples, jacobian=np.empty((len(axes), 0)))
     samples = samples.take(inside & np.asarray(status == Status.OK, dtype=bool))
-    samples = replace(samples, jacobian=jacobian_of(closure, samples))
-    machine = samples.machine
-    regular = _least_singular_value(closure, samples) > REGULAR
-    chosen = np.flatnonzero(regular & (_rank_within(machine, regular) <= POSES))
+    chosen = _first_regular(closure, samples)
     possible = len(
-        np.unique(machine[chosen])
+        np.unique(chosen.machine)
     )  # random dimensions may form a loop that never closes, the nominal ones not
-    if possible < (min(2, count) if kin.mechanism.rods else count) or machine[chosen][0] != 0:
+    if possible < (min(2, count) if kin.mechanism.rods else count) or chosen.machine[0] != 0:
         raise Disagreement("a machine has no regular pose: is the mechanism always singular?")
-    return samples.take(chosen)
+    return chosen
+
+
+def _first_regular(closure: Closure, samples: Samples) -> Samples:
+    """The first regular poses of every machine, with their Jacobians: looked for among the first candidates, and among
+    all where these are too few.
+    """
+    order = _rank_within(samples.machine, np.ones(len(samples), dtype=bool))
+    for part in (samples.take(order <= _FIRST), samples):
+        found = replace(part, jacobian=jacobian_of(closure, part))
+        regular = _least_singular_value(closure, found) > REGULAR
+        chosen = regular & (_rank_within(found.machine, regular) <= POSES)
+        wanted = np.minimum(np.bincount(samples.machine), POSES)
+        if np.all(np.bincount(found.machine[chosen], minlength=len(wanted)) >= wanted):
+            break
+    return found.take(chosen)
 
 
 def jacobian_of(closure: Closure, samples: Samples) -> Array:

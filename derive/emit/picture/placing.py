@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 
@@ -32,16 +33,18 @@ class Sheet:
     box: Box
     marks: list[Mark] = field(default_factory=list)
     _texts: list[tuple[float, float, float, float]] = field(default_factory=list)
-    _ink: list[Vector] = field(default_factory=list)
+    _ink: Vector = field(default_factory=lambda: np.zeros((0, 2)))
 
     def draw(self, marks: Iterable[Mark]) -> None:
         """Add marks, which later labels avoid."""
+        ink = [self._ink]
         for mark in marks:
             self.marks.append(mark)
             if isinstance(mark, Text):
                 self._texts.append(_extent(mark))
             else:
-                self._ink.append(_sampled(mark))
+                ink.append(_sampled(mark))
+        self._ink = np.vstack(ink)
 
     def label(self, text: str, size: float, colour: str, places: Sequence[Place], *, is_bold: bool = False) -> None:
         """Draw a label at the best of its places."""
@@ -55,19 +58,16 @@ class Sheet:
         self.draw((*best.marks, at(best)))
 
     def _cost(self, text: Text, marks: Sequence[Mark]) -> float:
-        left, bottom, right, top = _extent(text)
+        left, bottom, right, top = text_extent = _extent(text)
         box = self.box
         cost = _OUTSIDE * (left < box.left or right > box.right or bottom < box.bottom or top > box.top)
         for other in self._texts:
             wide = min(right, other[2]) - max(left, other[0])
             high = min(top, other[3]) - max(bottom, other[1])
             cost += _OVER_TEXT * wide * high if wide > 0 and high > 0 else 0.0
-        ink = np.vstack(self._ink) if self._ink else np.zeros((0, 2))
-        inside = (ink[:, 0] > left) & (ink[:, 0] < right) & (ink[:, 1] > bottom) & (ink[:, 1] < top)
-        cost += _OVER_INK * float(np.count_nonzero(inside))
-        for mark in marks:
-            for x, y in _sampled(mark):
-                cost += sum(12.0 for a, b, c, d in self._texts if a < x < c and b < y < d)
+        cost += _OVER_INK * _inside(self._ink, text_extent)
+        for ink in map(_sampled, marks):
+            cost += 12.0 * sum(_inside(ink, other) for other in self._texts)
         return cost
 
 
@@ -89,6 +89,14 @@ def _extent(text: Text) -> tuple[float, float, float, float]:
     return left, y - high / 2, left + wide, y + high / 2
 
 
+def _inside(points: Vector, extent: tuple[float, float, float, float]) -> int:
+    """How many points are inside a rectangle."""
+    left, bottom, right, top = extent
+    x, y = points[:, 0], points[:, 1]
+    return int(np.count_nonzero((x > left) & (x < right) & (y > bottom) & (y < top)))
+
+
+@cache
 def _sampled(mark: Mark) -> Vector:
     """Points along a line, or along the edge of an area."""
     if isinstance(mark, Text):
@@ -101,4 +109,6 @@ def _sampled(mark: Mark) -> Vector:
     for a, b in zip(points, points[1:], strict=False):
         count = max(1, int(np.linalg.norm(b - a) / _STEP))
         found += [a + (b - a) * k / count for k in range(1, count + 1)]
-    return np.array(found * weight)
+    samples = np.array(found * weight)
+    samples.setflags(write=False)
+    return samples

@@ -19,6 +19,7 @@ from derive.ir.program import (
     Program,
 )
 from derive.ir.types import type_of
+from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 
@@ -178,6 +179,7 @@ def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
     return tuple(p for p in found if p is not None)
 
 
+@kept_by_identity(10)
 def constants(kinematics: Kinematics) -> tuple[str, ...]:
     """The neutral names of the constants that Initialize stores: the outputs of `setup` that a method reads."""
     read = {symbol.name for program in programs_of(kinematics) for symbol in program.reads()}

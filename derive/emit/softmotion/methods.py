@@ -18,6 +18,7 @@ from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st.shared import method_name, own_names, signature_of
 from derive.equations.windows import limits_of_axis
 from derive.ir.program import FindRoot, Program, shared
+from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import reasons_of, texts
 
@@ -76,6 +77,7 @@ def methods_of(kinematics: Kinematics, block: Block, contract: Contract, templat
     )
 
 
+@kept_by_identity(10)
 def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
     """The spelling in a method of every input of the programs other than `setup`."""
     spelled = {name: stored_name(name) for name in constants(kinematics)}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from functools import cache
 
 from derive.description.mechanism import Parameter, Role
 from derive.emit.st.reserved import reserved
@@ -45,6 +46,7 @@ def type_name(kind: Type) -> str:
     return {Type.BOOL: "BOOL", Type.INT: "INT"}.get(kind, "LREAL")
 
 
+@cache
 def stored_name(name: str) -> str:
     """The instance variable for a constant: `link_length_1` → `linkLength1`."""
     return spellings((name,), ())[name]

@@ -12,7 +12,7 @@ from itertools import permutations
 
 import sympy as sp
 
-from derive.algebra.normal_form import linear_coefficients
+from derive.algebra.normal_form import cancelled, linear_coefficients
 from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
 from derive.ir.program import (
     Let,
@@ -24,10 +24,12 @@ from derive.solver.subproblems.naming import Naming
 
 def polar(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
     """Every angle and length that two equations determine together."""
+    terms = [(e, _unknown_terms(problem, e)) for e in equations]
     for angle in problem.angles:
-        for first, second in permutations(equations, 2):
-            in_cosine = _radius(problem, first, cosine(angle))
-            in_sine = _radius(problem, second, sine(angle))
+        in_cosines = [_radius(problem, e, cosine(angle)) if _is_in_all(cosine(angle), t) else None for e, t in terms]
+        in_sines = [_radius(problem, e, sine(angle)) if _is_in_all(sine(angle), t) else None for e, t in terms]
+        seen = zip(equations, in_cosines, in_sines, strict=True)
+        for (first, in_cosine, _), (second, _, in_sine) in permutations(seen, 2):
             if in_cosine is None or in_sine is None or in_cosine[0] != in_sine[0]:
                 continue
             if {angle, cosine(angle), sine(angle)} & in_cosine[0].free_symbols:
@@ -35,17 +37,27 @@ def polar(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding
             yield _solve(problem, angle, in_cosine[0], (first, in_cosine[1]), (second, in_sine[1]))
 
 
+def _unknown_terms(problem: Problem, equation: Equation) -> list[set[sp.Symbol]]:
+    """The unknowns of each term that has some."""
+    unknowns = set(problem.atoms())
+    found = (t.free_symbols & unknowns for t in sp.Add.make_args(equation.expression))
+    return [symbols for symbols in found if symbols]
+
+
+def _is_in_all(function: sp.Symbol, terms: list[set[sp.Symbol]]) -> bool:
+    """Whether all unknown terms have a function as a factor, so that the rest is known."""
+    return bool(terms) and all(function in symbols for symbols in terms)
+
+
 def _radius(problem: Problem, equation: Equation, function: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | None:
     """(f, a) where the equation is f * function = a with known a and a product f of unknowns; else None."""
-    if function not in equation.expression.free_symbols:
-        return None
     linear = linear_coefficients(equation.expression, (function,))
     if linear is None or problem.unknowns_of(linear[1]):
         return None
     factor, rest = linear[0][0], linear[1]
     unknown = sp.Mul(*[f for f in sp.Mul.make_args(factor) if problem.unknowns_of(f)])
     unknown = -unknown if unknown.could_extract_minus_sign() else unknown  # a sum has its minus inside
-    constant = sp.cancel(factor / unknown)
+    constant = cancelled(factor / unknown)
     if not problem.unknowns_of(unknown) or not problem.is_never_zero(constant):
         return None
     return unknown, -rest / constant

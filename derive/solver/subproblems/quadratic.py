@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from derive.algebra.normal_form import linear_coefficients
+from derive.algebra.normal_form import cancelled, factored, linear_coefficients
 from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant, sign_of
 from derive.ir.constants import (
     BOUNDARY,
@@ -46,15 +46,15 @@ def quadratic(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Bin
 def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Poly) -> Binding:
     a, b, c = (sp.sympify(poly.coeff_monomial(unknown**k)) for k in (2, 1, 0))
     naming = Naming(problem, equation.lets)
-    middle = naming.named(sp.cancel(-b / (2 * a)), f"middle_{unknown.name}")
+    middle = naming.named(cancelled(-b / (2 * a)), f"middle_{unknown.name}")
     square = real(f"radicand_{unknown.name}")
     scale = equation.scales.get(unknown, 2 * problem.scale)
-    determinant = sp.cancel(sp.diff(equation.expression, unknown) / a)
+    determinant = cancelled(sp.diff(equation.expression, unknown) / a)
     written_out = determinant.xreplace({let.name: let.value for let in equation.lets})
     known_sign = _known_sign(problem, written_out, unknown)
     sigma = sign_of(unknown) if known_sign is None else sp.Integer(known_sign)
-    half = sp.cancel(scale / (2 * a))
-    radicand = sp.factor(sp.cancel(b**2 / (4 * a**2) - c / a))
+    half = cancelled(scale / (2 * a))
+    radicand = factored(cancelled(b**2 / (4 * a**2) - c / a))
     reason = cannot_reach(equation.label, radicand, naming.lets)
     reaches = Require(sp.Ge(square, -BOUNDARY * half**2), Status.UNREACHABLE, reason=reason)
     statements: tuple[Statement, ...] = (
@@ -63,7 +63,7 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
         *(() if radicand.is_nonnegative else (reaches,)),
         Let(unknown, middle + sigma * Root(square)),
     )
-    over = sp.cancel(scale / a)
+    over = cancelled(scale / a)
     if known_sign is not None:
         return Binding(
             "quadratic", (unknown,), statements, conditioning=Conditioning(unknown, determinant, over, "meet")
@@ -77,7 +77,7 @@ def _known_sign(problem: Problem, determinant: sp.Expr, unknown: sp.Symbol) -> i
     """
     for quantity in problem.positive:
         value = _through(problem, quantity, unknown)
-        ratio = sp.cancel(determinant / value) if value != 0 else sp.Integer(0)
+        ratio = cancelled(determinant / value) if value != 0 else sp.Integer(0)
         if ratio.is_number and ratio != 0:
             return 1 if ratio > 0 else -1
     return None

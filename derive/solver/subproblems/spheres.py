@@ -15,7 +15,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.algebra.normal_form import is_compound
+from derive.algebra.normal_form import cancelled, factored, is_compound
 from derive.equations.problem import Binding, Equation, Problem, StepDeterminant, sign_of
 from derive.ir.constants import (
     BOUNDARY,
@@ -69,11 +69,11 @@ def _sphere(problem: Problem, equation: Equation) -> Sphere | None:
     quadratic = {m for m in poly.monoms() if sum(m) == 2}
     if scale == 0 or not problem.is_never_zero(scale) or len(quadratic) != len(squares):
         return None
-    if any(sp.cancel(poly.coeff_monomial(u**2) - scale) != 0 for u in unknowns) or poly.total_degree() != 2:
+    if any(cancelled(poly.coeff_monomial(u**2) - scale) != 0 for u in unknowns) or poly.total_degree() != 2:
         return None
-    centre = sp.Matrix([sp.cancel(-poly.coeff_monomial(u) / (2 * scale)) for u in unknowns])
+    centre = sp.Matrix([cancelled(-poly.coeff_monomial(u) / (2 * scale)) for u in unknowns])
     constant = poly.coeff_monomial(1) / scale
-    return Sphere(centre, sp.factor(problem.tidy(centre.dot(centre) - constant)))
+    return Sphere(centre, factored(problem.tidy(centre.dot(centre) - constant)))
 
 
 def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ...]) -> Binding:
@@ -189,4 +189,4 @@ def _named_length(statements: list[Statement], value: sp.Expr, name: str) -> sp.
 
 
 def _length(square: sp.Expr) -> sp.Expr:
-    return sp.sqrt(sp.factor(square))
+    return sp.sqrt(factored(square))

@@ -18,7 +18,7 @@ from functools import cache
 
 import sympy as sp
 
-from derive.algebra.normal_form import linear_coefficients, reduce_units
+from derive.algebra.normal_form import cancelled, factored, linear_coefficients, reduce_units
 from derive.equations.problem import Binding, Equation, Problem, StepDeterminant, sign_of
 from derive.ir.constants import (
     BOUNDARY,
@@ -40,7 +40,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
-from derive.solver.subproblems.lateral import aimed_at_point
+from derive.solver.subproblems.lateral import Row, aimed_at_point
 from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.origin import from_origin
 from derive.solver.subproblems.shortfall import out_of_reach
@@ -50,6 +50,22 @@ _ADDITION = "addition theorem: plus the angle of the direction from which the co
 
 def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
     """Every angle that one equation determines up to a sign."""
+    for equation, angle, (a, b, e), is_aimed in _rows(problem, equations):
+        if is_aimed:
+            yield aimed_at_point(problem, equation, angle, (a, b, e))
+        else:
+            yield _solve(problem, equation, angle, _amplitude(problem, equation, angle, a, b, e))
+
+
+def lateral(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Those of these angles that aim an arm at a commanded point; the others give a cosine alone."""
+    for equation, angle, row, is_aimed in _rows(problem, equations):
+        if is_aimed:
+            yield aimed_at_point(problem, equation, angle, row)
+
+
+def _rows(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[tuple[Equation, sp.Symbol, Row, bool]]:
+    """Every equation with one angle, the angle, (a, b, e), and whether a or b is commanded while e is not."""
     for equation in equations:
         unknowns = problem.unknowns_of(equation.expression)
         if len(unknowns) != 1 or unknowns[0] not in problem.angles or unknowns[0] in equation.expression.free_symbols:
@@ -60,12 +76,9 @@ def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator
             continue
         (a, b), rest = linear
         flip = -1 if (a if a != 0 else b).could_extract_minus_sign() else 1
-        if any(_is_commanded(problem, equation, v) for v in (a, b)) and not _is_commanded(problem, equation, rest):
-            yield aimed_at_point(problem, equation, angle, (flip * a, flip * b, -flip * rest))
-        else:
-            yield _solve(
-                problem, equation, angle, _amplitude(problem, equation, angle, flip * a, flip * b, -flip * rest)
-            )
+        is_aimed = any(_is_commanded(problem, equation, v) for v in (a, b))
+        row = (flip * a, flip * b, -flip * rest)
+        yield equation, angle, row, is_aimed and not _is_commanded(problem, equation, rest)
 
 
 def _is_commanded(problem: Problem, equation: Equation, coefficient: sp.Expr) -> bool:
@@ -100,7 +113,7 @@ def _amplitude(
     naming = Naming(problem, equation.lets)
     determinant = a * sine(angle) - b * cosine(angle)
     common = sp.Mul(*[f for f in sp.Mul.make_args(sp.gcd(a, b)) if f.is_positive])  # it divides, and keeps every sign
-    along, across = sp.cancel(a / common), sp.cancel(b / common)
+    along, across = cancelled(a / common), cancelled(b / common)
     if along.is_number and across.is_number:
         size = sp.sqrt(along**2 + across**2)
         return _Amplitude(naming, common * size, (), along / size, across / size, e, determinant, common * size)
@@ -202,10 +215,12 @@ def _triangle(problem: Problem, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr, 
         return None
     sense, distance, side = sp.sign(share), ratio * effective, sp.sqrt(abs(share)) * arm
     third = reduce_units(ratio**2 * square + side**2 - sense * whole, problem.units, problem.signs)
-    factored = _factored(_with_units(problem, third))
-    if not (factored.is_Mul or factored.is_Pow) and len(sp.Add.make_args(third)) >= len(sp.Add.make_args(whole)):
+    square_of_third = _factored(_with_units(problem, third))
+    if not (square_of_third.is_Mul or square_of_third.is_Pow) and len(sp.Add.make_args(third)) >= len(
+        sp.Add.make_args(whole)
+    ):
         return None
-    return _Triangle(distance, side, factored, sense)
+    return _Triangle(distance, side, square_of_third, sense)
 
 
 def _with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
@@ -273,15 +288,15 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
 
 def _product(value: sp.Expr) -> sp.Expr:
     """The value in factors, which read as comparisons of lengths."""
-    return _positive(sp.factor(value))
+    return _positive(factored(value))
 
 
-def _positive(factored: sp.Expr) -> sp.Expr:
+def _positive(product: sp.Expr) -> sp.Expr:
     """A leading minus goes into the factor with the most minus signs."""
-    factors = list(sp.Mul.make_args(factored))
+    factors = list(sp.Mul.make_args(product))
     sums = [f for f in factors if f.is_Add]
     if -1 not in factors or not sums:
-        return factored
+        return product
     factors.remove(sp.Integer(-1))
     most = max(sums, key=lambda f: (sum(t.could_extract_minus_sign() for t in f.args), str(f)))
     return sp.Mul(*[-f if f is most else f for f in factors])

@@ -123,15 +123,16 @@ def test_refused(kind: str) -> None:
 UNSOLVED = {
     "two slides along one line": (
         described(joints=(P1, P2), chain=Tx(P1 + P2) * Ty(P1 + P2), task=Task("xy")),
-        "no subproblem determines p1, p2; equations left:\n    x: p1 + p2 - x = 0",
+        "the closure does not determine p1, p2: 2 unknowns in 2 equations (x, y) leave 1 free to move",
     ),
     "a coordinate that nothing moves": (
         described(joints=(P1, P2), closure=(X - P1 - P2, Y - P1 - P2), task=Task("xy")),
-        "no subproblem determines p1, p2",
+        "the closure does not determine p1, p2: 2 unknowns in 2 equations (x, y) leave 1 free to move",
     ),
     "a closure without one coordinate": (
         described(joints=(P1, P2, P3), closure=(X - P1, Y - P2), task=Task("xyz")),
-        "the closure does not determine z",
+        "the closure does not determine z: 3 unknowns in 2 equations (x, y) leave 1 free to move; state one more "
+        "equation",
     ),
 }
 

@@ -224,14 +224,14 @@ UNSOLVED = {
     "nothing determines one length": (Case({"x": P}, (), (P, Q)), "the closure does not determine q"),
     "two lengths in one direction": (
         Case({"x": P + Q, "y": 2 * P + 2 * Q}, (), (P, Q)),
-        "no subproblem determines p, q; equations left:\n    first: p + q - x = 0\n    second: 2*p + 2*q - y = 0",
+        "the closure does not determine p, q: 2 unknowns in 2 equations (first, second) leave 1 free to move",
     ),
     "no more equations than one": (Case(plane((L1, A1)), (A1, A2)), "the closure does not determine a2"),
     "a factor that can vanish": (Case({"x": TOOL_X * P}, (), (P,)), "no subproblem determines p"),
     "rails that can be parallel": (Case(plane((P, HEADING), x=Q), (), (P, Q)), "no subproblem determines p, q"),
     "three links, no turn": (
         Case(plane((L1, A1), (L2, A1 + A2), (K, A1 + A2 + A3)), (A1, A2, A3)),
-        "determines a1, a2, a3",
+        "the closure does not determine a1, a2, a3: 3 unknowns in 2 equations (first, second) leave 1 free to move",
     ),
     "an angle of which only the turns count": (Case({"x": K * A1}, (A1,)), "no subproblem determines a1"),
 }

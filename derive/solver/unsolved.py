@@ -1,0 +1,150 @@
+"""Why a problem has no solution by subproblems: what is left, in which equations, and what would help.
+
+Whether equations determine their unknowns is asked first, by numbers: at a random pose of a random machine the
+derivatives of all equations tell which unknowns can move although nothing commanded moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import sympy as sp
+
+from derive.equations.problem import Equation, Problem
+from derive.ir.interpret import Array, evaluate
+from derive.ir.symbols import POSITION, cosine, sine
+from derive.solver.probe import DRAWS, drawn
+
+_SEED = 33
+_STEP = 1e-5
+_NOTHING = 1e-6
+"""A derivative, or a part of a motion, below this is rounding: columns and rows are scaled to one."""
+_WRITTEN = 120
+"""Letters of an equation that is written out; of a longer one the number of terms is told."""
+
+
+def undetermined(problem: Problem) -> str | None:
+    """What to say where unknowns can move while all that is commanded stays; None where the equations hold them all."""
+    unknowns = (*problem.lengths, *problem.angles)
+    free, moving = _free(problem, unknowns) if unknowns else (0, [])
+    if not free:
+        return None
+    if not problem.equations and not problem.turns:
+        return f"the closure does not determine {_list(unknowns)}"
+    several = _list([u for u, moves in zip(unknowns, moving, strict=True) if moves])
+    too_many = f"{_count(unknowns)} in {_conditions(problem)} leave {free} free to move"
+    return f"the closure does not determine {several}: {too_many}; {_more(unknowns, free)}"
+
+
+def unsolved(problem: Problem) -> str:
+    """What to say where no subproblem fits what is left."""
+    unknowns = (*problem.lengths, *problem.angles, *problem.pending)
+    if not problem.equations and not problem.turns:
+        return f"the closure does not determine {_list(unknowns)}"
+    left = "".join(f"\n    {_written(problem, e)}" for e in problem.equations)
+    return (
+        f"no subproblem determines {_list(unknowns)}: {_count(unknowns)} in {_conditions(problem)}; {_help(problem)}"
+        + (f"; equations left:{left}" if left else "")
+    )
+
+
+def _more(unknowns: Sequence[sp.Symbol], free: int) -> str:
+    """What would determine all of them."""
+    if any(u in POSITION for u in unknowns):
+        return f"state {'one more equation' if free == 1 else f'{free} more equations'}"
+    more = "one more quantity" if free == 1 else f"{free} more quantities"
+    return f"command {more}, or leave out {'one' if free == 1 else free} of these joints"
+
+
+def _help(problem: Problem) -> str:
+    """What would make it solvable."""
+    if problem.turns:
+        return (
+            "it would help if the axes of three neighbouring joints met in one point or were parallel, or if one of "
+            "these joints were known"
+        )
+    return (
+        "it would help if one equation had one of them alone, or if two equations were the coordinates of a point that "
+        "one of them turns"
+    )
+
+
+def _count(unknowns: Sequence[sp.Symbol]) -> str:
+    return "1 unknown" if len(unknowns) == 1 else f"{len(unknowns)} unknowns"
+
+
+def _conditions(problem: Problem) -> str:
+    """The equations, by number and name, and the commanded rotation."""
+    count = len(problem.equations)
+    names = f"{count} equation{'' if count == 1 else 's'} ({', '.join(e.label for e in problem.equations)})"
+    rotation = "the commanded rotation" if len(problem.columns) == 3 else "the commanded direction"
+    return " and ".join([names] * bool(count) + [rotation] * bool(problem.turns))
+
+
+def _written(problem: Problem, equation: Equation) -> str:
+    text = f"{equation.label}: {equation.expression} = 0"
+    if len(text) <= _WRITTEN:
+        return text
+    terms = len(sp.Add.make_args(equation.expression))
+    return f"{equation.label}: {terms} terms in {_list(problem.unknowns_of(equation.expression))}"
+
+
+def _list(unknowns: Sequence[sp.Symbol]) -> str:
+    return ", ".join(u.name for u in unknowns)
+
+
+def _free(problem: Problem, unknowns: tuple[sp.Symbol, ...]) -> tuple[int, list[bool]]:
+    """How many unknowns can be chosen, and which of them then move."""
+    values = drawn(problem, [e.expression for e in problem.equations], np.random.default_rng(_SEED))
+    columns = [_derivative(problem, values, unknown) for unknown in unknowns]
+    matrices = np.stack(columns, axis=-1)  # draws, conditions, unknowns
+    free, moving = len(unknowns), np.ones(len(unknowns), dtype=bool)
+    for matrix in matrices:
+        still = _motions(matrix)
+        if len(still) < free:
+            free, moving = len(still), np.any(np.abs(still) > _NOTHING, axis=0)
+    return free, moving.tolist()
+
+
+def _motions(matrix: Array) -> Array:
+    """The motions of the unknowns that change nothing, by rows."""
+    for axis in (1, 0):
+        size = np.max(np.abs(matrix), axis=axis, keepdims=True, initial=0.0)
+        matrix = np.where(size > _NOTHING, matrix / np.where(size > _NOTHING, size, 1.0), 0.0)
+    padded = np.vstack([matrix, np.zeros((matrix.shape[1], matrix.shape[1]))])
+    _, sizes, rows = np.linalg.svd(padded, full_matrices=False)
+    return np.asarray(rows[sizes <= _NOTHING])
+
+
+def _derivative(problem: Problem, values: Mapping[str, Array], unknown: sp.Symbol) -> Array:
+    """How all conditions change with one unknown: draws, conditions."""
+    above, below = (_at(problem, _moved(values, unknown, step)) for step in (_STEP, -_STEP))
+    return np.asarray((above - below) / (2 * _STEP))
+
+
+def _moved(values: Mapping[str, Array], unknown: sp.Symbol, step: float) -> dict[str, Array]:
+    value = values[unknown.name] + step
+    functions = {cosine(unknown).name: np.cos(value), sine(unknown).name: np.sin(value)}
+    return {**values, unknown.name: value, **functions}
+
+
+def _at(problem: Problem, values: Mapping[str, Array]) -> Array:
+    """The left sides of all equations, and the entries of the rotation that the task commands: draws, conditions."""
+    found = [np.broadcast_to(evaluate(e.expression, values), (DRAWS,)) for e in problem.equations]
+    rotation = np.broadcast_to(np.eye(3), (DRAWS, 3, 3))
+    for turn in problem.turns:
+        amount = np.broadcast_to(evaluate(turn.amount, values), (DRAWS,))
+        rotation = rotation @ _turned(turn.axis, amount)
+    entries = [rotation[:, i, j] for i in range(3) for j in problem.columns] if problem.turns else []
+    return np.stack([*found, *entries, np.zeros(DRAWS)], axis=1)
+
+
+def _turned(axis: int, angle: Array) -> Array:
+    """Rotations about a coordinate axis."""
+    matrix = np.zeros((len(angle), 3, 3))
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    matrix[:, axis, axis] = 1.0
+    matrix[:, first, first] = matrix[:, second, second] = np.cos(angle)
+    matrix[:, first, second], matrix[:, second, first] = -np.sin(angle), np.sin(angle)
+    return matrix

@@ -1,0 +1,122 @@
+"""Arms that no rule solves: refused with the reason, before large expressions are written out."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import pytest
+import sympy as sp
+from sympy import pi
+
+from derive.description.mechanism import (
+    DescriptionError,
+    Joint,
+    Mechanism,
+    Parameter,
+    Task,
+    Turning,
+    length,
+    linear,
+    rotary,
+)
+from derive.frames import denavit_hartenberg
+from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Txyz, Ty, Tz
+from derive.kinematics.build import build
+from derive.solver import eliminations, solve
+from derive.solver.solve import Unsolved
+from tests.unit.kinematics.inventions import invention
+
+LENGTHS = tuple(length(f"l{k}", f"length {k}", nominal=100.0 + 17.0 * k) for k in range(14))
+JOINTS = tuple(rotary(f"A{k}", f"axis {k}", value=f"q{k}") for k in range(1, 8))
+A1, A2, A3, A4, A5, A6, A7 = JOINTS
+TRACK = linear("E1", "track")
+L = LENGTHS
+TWISTS = (pi / 3, pi / 4, pi / 6, pi / 3, pi / 4, pi / 6)
+
+_SHOULDER_AND_ARM = Rz(A1) * Tz(L[0]) * Ry(A2) * Tz(L[1]) * Ry(A3) * Txyz(L[3], 0, L[2])
+_HELP = (
+    "it would help if the axes of three neighbouring joints met in one point or were parallel, or if one of these "
+    "joints were known"
+)
+_TOO_MANY = (
+    "one joint too many: the task commands 6 quantities (x, y, z, turn x, turn y, turn z), and 7 joints are to be "
+    "solved for; name the one that is held at the reference: held="
+)
+
+
+def arm(chain: Chain, joints: Sequence[Joint], turning: Turning = Turning.FULL) -> Mechanism:
+    """An arm for the whole pose, or for its direction."""
+    used = chain_symbols(chain)
+    parameters: tuple[Parameter, ...] = tuple(p for p in LENGTHS if p.symbol in used)
+    return invention(
+        lambda p, q: (p["l0"], p["l0"], p["l0"]),
+        parameters=parameters,
+        joints=tuple(joints),
+        chain=chain,
+        task=Task("xyz", turning),
+        offset_interface=False,
+    ).mechanism
+
+
+def chain_symbols(chain: Chain) -> set[sp.Symbol]:
+    """What a chain reads."""
+    return {s for factor in chain.factors for s in factor.amount.free_symbols}
+
+
+REFUSED = {
+    "wrist axes that miss each other sideways": (
+        arm(_SHOULDER_AND_ARM * Rx(A4) * Ty(L[4]) * Ry(A5) * Tx(L[5]) * Rx(A6), JOINTS[:6]),
+        "no subproblem determines q1, q2, q3, q4, q5, q6: 6 unknowns in 3 equations (x, y, z) and the commanded "
+        f"rotation; {_HELP}; equations left:\n    x: 9 terms in q1, q2, q3, q4\n",
+    ),
+    "a shoulder off its axis, and a wrist that misses": (
+        arm(Tx(L[6]) * _SHOULDER_AND_ARM * Rx(A4) * Tz(L[4]) * Ry(A5) * Tx(L[5]) * Rx(A6), JOINTS[:6]),
+        f"6 unknowns in 3 equations (x, y, z) and the commanded rotation; {_HELP}",
+    ),
+    "six axes at any angles": (
+        arm(denavit_hartenberg(*zip(JOINTS[:6], L[:6], L[6:12], TWISTS, strict=True)), JOINTS[:6]),
+        f"6 unknowns in 3 equations (x, y, z) and the commanded rotation; {_HELP}; equations left:\n    x: 89 terms in",
+    ),
+    "five axes with offsets everywhere": (
+        arm(_SHOULDER_AND_ARM * Rx(A4) * Ty(L[4]) * Ry(A5) * Tx(L[5]), JOINTS[:5], Turning.DIRECTION),
+        f"5 unknowns in 3 equations (x, y, z) and the commanded direction; {_HELP}",
+    ),
+    "seven axes": (
+        arm(Rz(A1) * Ry(A2) * Rz(A3) * Tz(L[0]) * Ry(A4) * Rz(A5) * Tz(L[1]) * Ry(A6) * Rz(A7) * Tz(L[2]), JOINTS),
+        f"{_TOO_MANY}(A1,)",
+    ),
+    "an arm on a track": (
+        arm(Tx(TRACK) * _SHOULDER_AND_ARM * Rx(A4) * Ry(A5) * Rx(A6) * Tx(L[5]), (TRACK, *JOINTS[:6])),
+        f"{_TOO_MANY}(E1,)",
+    ),
+}
+_MOST_PRODUCTS = 3000
+"""Products of terms that are written out; one sum of squares of the general arm has 15,000."""
+_MOST_ROUNDS = 200
+"""Sets of equations in which every rule looks for a step."""
+
+
+@pytest.mark.parametrize("kind", REFUSED)
+def test_refused_with_the_reason_and_within_bounds(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    mechanism, message = REFUSED[kind]
+    products, rounds = 0, 0
+    reduce_units, candidates = eliminations.reduce_units, solve._candidates
+
+    def reduced(expression: sp.Expr, *rest: object) -> sp.Expr:
+        nonlocal products
+        squared = [p for p in expression.atoms(sp.Pow) if p.base.is_Add]
+        products += sum(len(p.base.args) ** 2 for p in squared)
+        return reduce_units(expression, *rest)  # type: ignore[arg-type]
+
+    def asked(*arguments: object) -> object:
+        nonlocal rounds
+        rounds += 1
+        return candidates(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(eliminations, "reduce_units", reduced)
+    monkeypatch.setattr(solve, "_candidates", asked)
+    with pytest.raises((Unsolved, DescriptionError), match=re.escape(message)) as refusal:
+        build(mechanism)
+    assert products <= _MOST_PRODUCTS and rounds <= _MOST_ROUNDS
+    assert len(str(refusal.value)) <= 600
