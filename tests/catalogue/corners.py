@@ -115,7 +115,10 @@ def factors(machine: Machine) -> Factors:
         with np.errstate(all="ignore"):
             for name, read, value in _compiled(mechanism):
                 known[name] = value(*(known[r] for r in read))
-        return np.stack([np.broadcast_to(known[name], (len(axes),)) for name in names], axis=1)
+        found = np.empty((len(axes), len(names)))
+        for place, name in enumerate(names):
+            found[:, place] = known[name]
+        return found
 
     return at
 
@@ -142,7 +145,9 @@ def _units(machine: Machine) -> Array:
 def _slopes(machine: Machine, functions: Factors, axes: Array) -> Array:
     """(n, factors, joints), per radian or reach."""
     steps = STEP * np.diag(_units(machine))
-    return np.stack([(functions(axes + s) - functions(axes - s)) / (2 * STEP) for s in steps], axis=2)
+    beside = axes + np.concatenate([steps, -steps])[:, None]
+    values = functions(beside.reshape(-1, axes.shape[1])).reshape(2, len(steps), len(axes), -1)
+    return np.moveaxis((values[0] - values[1]) / (2 * STEP), 0, 2)
 
 
 def _places(machine: Machine, functions: Factors, count: int, rng: Generator) -> Array:

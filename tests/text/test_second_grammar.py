@@ -13,7 +13,7 @@ import pytest
 
 from tests.harness.blark_grammar import parse_text_with_blark, parse_with_blark
 from tests.harness.pieces import Piece, split
-from tests.text.shapes import abridged, names, shape
+from tests.text.shapes import Seen, abridged, names, shape
 from tests.text.units import FOLDER
 
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("*/*.st"))}
@@ -32,7 +32,7 @@ class Written:
 @cache
 def pieces() -> dict[str, tuple[Written, ...]]:
     """The first object or member of every kind and shape, by the unit in which it stands."""
-    seen: set[str] = set()
+    seen = Seen()
     found: dict[tuple[str, str], tuple[str, Written]] = {}
     for unit, text in TEXTS.items():
         for piece in split(text, unit):
@@ -90,7 +90,7 @@ def test_what_is_the_same_to_a_grammar() -> None:
     text = "IF a > 1.0 THEN\n  RETURN;\nEND_IF\nIF b2 > 20.5E-3 THEN\n  RETURN;\nEND_IF\n"
     text += "x := y;  // so\n\nz := y;  // or so\nx := -y;"
     assert names(text) == {"a", "b2", "x", "y", "z"}
-    seen: set[str] = set()
+    seen = Seen()
     assert abridged(text, seen) == "IF a > 1.0 THEN\nRETURN;\nEND_IF\nIF n THEN\n;\nEND_IF\nx := y;\n;\nx := -y;"
     assert abridged(text + "\nx := y\n  + x;", seen) == "IF n THEN\n;\nEND_IF\n;\nx := y + x;"
     case = "CASE n OF\n  1: x := 'a';\n  2: x := 'b';\nEND_CASE"
