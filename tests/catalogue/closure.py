@@ -194,9 +194,7 @@ class Formulas:
     def coupled(self) -> dict[int, Formula]:
         """What every joint that is coupled gets from the motors of others."""
         motors = tuple(j.motor for j in self._mechanism.joints)
-        return {
-            i: self._of((j.coupling,), motors) for i, j in enumerate(self._mechanism.joints) if j.coupling != 0
-        }
+        return {i: self._of((j.coupling,), motors) for i, j in enumerate(self._mechanism.joints) if j.coupling != 0}
 
     @cached_property
     def couplings(self) -> Formula | None:

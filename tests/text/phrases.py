@@ -117,6 +117,8 @@ class _Reader:
             for place, (left, operator, right) in enumerate(zip(parts, operators, parts[1:], strict=False))
             if not (self.learn((left.kind, operator, right.kind)) and left.is_known and right.is_known)
         ]
+        if not self.learn((operators[0], str(min(len(operators), 3)))):
+            kept = [(place, place + 1) for place in range(len(operators))]
         places = sorted({place for pair in kept for place in pair})
         text = " ".join(f"{operators[place - 1]} {parts[place].written}" for place in places).split(" ", 1)[-1]
         return Phrase(text, f"n {operators[0]} n", operators[0], not kept)
@@ -133,7 +135,8 @@ class _Reader:
             inner = self.chain(0)
             return None if inner is None or not self.next_is(")") else self._around("(", inner, self.take())
         if token[0] == "'" or token[0].isdigit():
-            return Phrase(token, token, re.sub(r"\d+", "0", token) if token[0] != "'" else "'", True)
+            kind = "'" if token[0] == "'" else re.sub(r"\d+", "0", token)
+            return Phrase(token, token, kind, self.learn((kind,)))
         return self._named(token) if re.match(r"[A-Za-z_]", token) else None
 
     def _around(self, left: str, inner: Phrase, right: str) -> Phrase:
@@ -141,30 +144,34 @@ class _Reader:
         return Phrase(f"{left}{inner.written}{right}", f"{left}n{right}", f"{left}{right}", known)
 
     def _named(self, name: str) -> Phrase | None:
-        """A name with fields, indices and arguments."""
+        """A name with fields, indices and arguments; a word in capitals may be one of the grammar, and is itself."""
         text = short = name
-        kind, known = name if name in ("TRUE", "FALSE", "RETURN", "EXIT") else "n", True
+        word = name if name.isupper() and len(name) > 1 else "n"
+        kind, known = "n", self.learn((word,))
         while self.next_is(".", "[", "("):
             opening = self.take()
             if opening == ".":
-                field = self.take()
-                text, short, link = f"{text}.{field}", f"{short}.{field}", "."
-            else:
-                parts = self._list(")" if opening == "(" else "]")
-                if parts is None:
+                if self.place == len(self.tokens):
                     return None
-                closing = self.take()
-                is_old = all(part.is_known for part in parts)
-                new = [part.text for part in parts if not part.is_known] if opening == "(" else []
-                text += opening + ", ".join(new or [part.written for part in parts[:3]]) + closing
-                short += opening + ", ".join(["n"] * min(len(parts), 3)) + closing
-                link, known = f"{opening}{min(len(parts), 3)}", known and is_old
-            known = self.learn((kind, link)) and known
-            kind += link
+                field = self.take()
+                text, short, kind = f"{text}.{field}", f"{short}.{field}", f"{kind}."
+                known = self.learn((word, kind)) and known
+                continue
+            parts = self._list(")" if opening == "(" else "]")
+            if parts is None:
+                return None
+            closing = self.take()
+            count = min(len(parts), 3)
+            kind += opening + str(count)
+            is_known = self.learn((word, kind, *sorted({part.kind for part in parts})))
+            new = [part for part in parts if not part.is_known] if is_known and opening == "(" else parts
+            text += opening + ", ".join(part.written for part in new or parts[:count]) + closing
+            short += opening + ", ".join(part.short for part in parts[:count]) + closing
+            known = known and is_known and all(part.is_known for part in parts)
         return Phrase(text, short, kind, known)
 
     def _list(self, closing: str) -> list[Phrase] | None:
-        """Arguments or indices up to the closing bracket."""
+        """Arguments or indices up to the closing bracket; of what kind the whole of one is."""
         parts: list[Phrase] = []
         while not self.next_is(closing):
             name = ""
@@ -174,7 +181,7 @@ class _Reader:
             if phrase is None or not self.next_is(closing, ","):
                 return None
             known = self.learn((name[-3:], phrase.kind, closing)) and phrase.is_known
-            parts.append(Phrase(name + phrase.written, name + phrase.short, "", known))
-            if self.next_is(","):
-                self.take()
+            parts.append(Phrase(name + phrase.written, f"{name}n", name[-3:], known))
+            if self.next_is(",") and self.take() and self.next_is(closing):
+                return None
         return parts

@@ -72,9 +72,11 @@ def _fold(lines: list[str], seen: Seen) -> None:
     if not lines or lines[-1] not in _CLOSED:
         return
     depth, place = 1, len(lines) - 1
-    while depth:
+    while depth and place:
         place -= 1
         depth += (lines[place] in _CLOSED) - lines[place].startswith(_OPENED)
+    if depth:
+        return
     whole = _condensed(lines[place:])
     lines[place:] = [";"] if shape(whole) in seen.shapes else whole.split("\n")
     seen.shapes.add(shape(whole))
@@ -118,9 +120,13 @@ def _condensed(given: list[str]) -> str:
 
 
 def _is_balanced(group: list[str]) -> bool:
-    """Whether as many blocks begin as end in some lines."""
-    begins = sum(line.startswith(("IF ", "FOR ", "CASE ", "VAR")) for line in group)
-    return begins == sum(line.startswith("END_") for line in group)
+    """Whether as many blocks begin as end in some lines, and no ELSE is of a block outside."""
+    depth = 0
+    for line in group:
+        depth += line.startswith((*_OPENED, "VAR")) - line.startswith("END_")
+        if depth < 0 or (line == "ELSE" and depth == 0):
+            return False
+    return depth == 0
 
 
 def _same(word: str) -> str:
