@@ -126,6 +126,7 @@ def run_the_tests(mechanism: Mechanism, twins: tuple[Twins, ...]) -> None:
     test_garbage.test_a_pose_that_cannot_be_assembled(twins)
     test_garbage.test_what_is_no_rotation(twins)
     test_singular_poses.test_a_point_on_the_axis_of_a_link_cannot_be_aimed(twins[:3])
+    test_singular_poses.test_a_point_far_off_the_flange_is_out_of_reach(twins[:3])
     provoke(twins[1], twins[1].regular[0])
     if mechanism.constraints:
         test_initialise.test_the_coupling_is_given_once()
