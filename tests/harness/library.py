@@ -53,7 +53,7 @@ def compile_st(
     return Library(universe, own, source, stubs.MatrixAccess(order), matrix_size, instrument)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)
 def _declarations(text: str, file: str) -> tuple[ast.Declaration, ...]:
     """A text that stands in many libraries is parsed once: nobody writes into a syntax tree."""
     return tuple(parse(text, file))
@@ -137,9 +137,13 @@ class Library:
             raise KeyError(f"{name} is no function")
         return Function(self._entry(self._names[python_names.function(found)], found), self.origin)
 
-    def watched(self, note: Callable[[int], object]) -> AbstractContextManager[None]:
-        """While this is open, every statement that runs calls `note` with its line in the translation."""
-        return marked(self._names, self._marked_code, note)
+    def watched(self, ran: list[bool]) -> AbstractContextManager[None]:
+        """While this is open, every statement that runs sets the flag of its line in the translation, from 1."""
+        return marked(self._names, self._marked_code, ran)
+
+    def flags(self) -> list[bool]:
+        """A flag for every line of the translation, from 1: none ran."""
+        return [False] * (len(self.origin.places) + 1)
 
     @cached_property
     def _marked_code(self) -> dict[str, CodeType]:
