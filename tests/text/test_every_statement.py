@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator
 from itertools import product
 
 import numpy as np
@@ -23,17 +24,18 @@ from tests.text import (
     test_shared_functions,
     test_singular_poses,
 )
-from tests.text.comparisons import COMPARISONS
+from tests.text.comparisons import COMPARISONS, POSELESS
 from tests.text.reasons import provoke
-from tests.text.samples import MANY, Sample, coinciding
+from tests.text.samples import Sample, coinciding
 from tests.text.statements import Statements
 from tests.text.twins import Twins, twins_from, twins_of
 from tests.text.units import compiled, compiled_shared, file_of, shared_texts, text_of
 
 MACHINES = ("plain", "equal", "limited", "limited to a turn")
-FEW, FEW_OF_THE_GRID = 3, 25
+FEW, A_FEW = 3, 25
 """The numbers of samples: a watched call takes its time."""
-STEPS = range(0, MANY, FEW_OF_THE_GRID)
+POSED = COMPARISONS.keys() - POSELESS
+"""The methods that a pose goes into."""
 
 
 def test_every_statement_runs(mechanism: Mechanism) -> None:
@@ -42,21 +44,22 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
     with statements.watched():
         run_the_tests(mechanism, twins)
         for one in (one for one in twins if one.machine.label in MACHINES):
-            for sample in (
-                *few(one.regular, FEW),
-                *(few(one.grid, FEW_OF_THE_GRID) if one.machine.label == "equal" else ()),
-            ):
+            for sample in few(one.regular, FEW):
                 compare_all(one, sample)
-        if twins[0].machine.is_spatial and mechanism.branches:
-            for one in (*twins[:3], twins_from(bare_machine(mechanism))):
-                for sample in few(coinciding(one.machine), FEW_OF_THE_GRID):
-                    compare_all(one, sample)
-        for one, samples in ((one, one.grid[k : k + FEW_OF_THE_GRID]) for one in twins for k in STEPS):
+        for one, sample in singular(mechanism, twins):  # a side of a choice that only a few singular poses reach
             if not left_out(mechanism, statements):
                 break
-            for sample in samples:  # a side of a choice that only a few singular poses reach
-                compare_all(one, sample)
+            compare_all(one, sample, POSED)
     assert left_out(mechanism, statements) == []
+
+
+def singular(mechanism: Mechanism, twins: tuple[Twins, ...]) -> Iterator[tuple[Twins, Sample]]:
+    """Singular poses: a few of the machine with equal links, where several singularities coincide, and then all."""
+    yield from ((one, sample) for one in twins if one.machine.label == "equal" for sample in few(one.grid, A_FEW))
+    if twins[0].machine.is_spatial and mechanism.branches:
+        for one in (*twins[:3], twins_from(bare_machine(mechanism))):
+            yield from ((one, sample) for sample in few(coinciding(one.machine), A_FEW))
+    yield from ((one, sample) for one in twins for sample in one.grid)
 
 
 def test_every_statement_of_the_shared_objects_runs() -> None:
@@ -104,9 +107,9 @@ def libraries(mechanism: Mechanism) -> list[Library]:
     return found
 
 
-def compare_all(one: Twins, sample: Sample) -> None:
+def compare_all(one: Twins, sample: Sample, methods: Collection[str] = COMPARISONS.keys()) -> None:
     for method, compare in COMPARISONS.items():
-        if method.lower() in one.controller.block.routines:
+        if method in methods and method.lower() in one.controller.block.routines:
             compare(one, sample)
 
 
