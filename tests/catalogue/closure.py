@@ -7,7 +7,7 @@ they stand. Derivatives are complex steps, exact to rounding. Arrays have one ro
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 import sympy as sp
@@ -40,21 +40,19 @@ class Closure:
         self.follows_turn = mechanism.task.turning is Turning.ABOUT_Z
         self.follows_rotation = mechanism.task.turning is not Turning.NONE
         self.columns = COLUMNS[mechanism.task.turning]
-        self._equations: list[sp.Expr] = list(mechanism.closure)
+        self._formulas = formulas_of(mechanism)
 
     def joints(self, axes: Array) -> Array:
         """Joint values in radians and lengths: motor = axis - offset, joint = motor + coupling."""
         motors = (axes - self.offsets) * self.units
-        symbols = [j.motor for j in self.mechanism.joints]
-        couplings = [j.coupling for j in self.mechanism.joints]
-        return motors + self._evaluate(couplings, symbols, motors)
+        coupled = self._formulas.couplings
+        return motors + self._evaluate(coupled, motors) if coupled is not None else motors
 
     def axes(self, joints: Array) -> Array:
         """Axis values of joint values: couplings come from motors of earlier axes, so motor by motor."""
-        motors = np.zeros_like(joints)
-        symbols = [j.motor for j in self.mechanism.joints]
-        for i, joint in enumerate(self.mechanism.joints):
-            motors[:, i] = joints[:, i] - self._evaluate([joint.coupling], symbols, motors)[:, 0]
+        motors = np.array(joints)
+        for i, coupling in self._formulas.coupled.items():
+            motors[:, i] = joints[:, i] - self._evaluate(coupling, motors)[:, 0]
         return motors / self.units + self.offsets
 
     def poses(self, axes: Array) -> tuple[Array, Array]:
@@ -72,12 +70,16 @@ class Closure:
     def frames(self, joints: Array) -> tuple[Array, Array]:
         """Position and rotation at the end of a chain."""
         assert self.mechanism.chain is not None
-        factors = self.mechanism.chain.factors
-        amounts = self.at_joints([f.amount for f in factors], joints)
-        product = np.tile(np.eye(4, dtype=amounts.dtype), (len(joints), 1, 1))
-        for k, factor in enumerate(factors):
-            product = product @ _elementary(factor.motion, factor.axis, amounts[:, k])
-        return product[:, :3, 3], product[:, :3, :3]
+        amounts = self._evaluate(self._formulas.amounts, joints)
+        rotation = np.zeros((3, 3, len(joints)), dtype=amounts.dtype)  # its columns: one is a place of all rows
+        rotation[0, 0] = rotation[1, 1] = rotation[2, 2] = 1.0
+        position = np.zeros((3, len(joints)), dtype=amounts.dtype)
+        for factor, amount in zip(self.mechanism.chain.factors, amounts.T, strict=True):
+            if factor.motion is Motion.SHIFT:
+                position += rotation[factor.axis] * amount
+            else:
+                _turn(rotation, factor.axis, np.pi * amount if factor.motion is Motion.FLIP else amount)
+        return np.ascontiguousarray(position.T), np.ascontiguousarray(rotation.transpose(2, 1, 0))
 
     def residual(self, joints: Array, positions: Array, rotations: Array) -> Array:
         """The residual of the closure at a pose: lengths, then entries of the rotation."""
@@ -119,11 +121,11 @@ class Closure:
 
     def indicators(self, joints: Array) -> Array:
         """The indicator of every branch, positive where its byte is 1."""
-        return self.at_joints([b.signs[0] * b.indicator for b in self.mechanism.branches], joints)
+        return self._evaluate(self._formulas.indicators, joints)
 
     def positive(self, joints: Array) -> Array:
         """The quantities that are positive in this machine."""
-        return self.at_joints(list(self.mechanism.positive), joints)
+        return self._evaluate(self._formulas.positive, joints)
 
     def limited(self, joints: Array) -> Array:
         """The quantities with limits of their own, in degrees and lengths."""
@@ -131,18 +133,86 @@ class Closure:
         return values / np.array([ONE_DEGREE if q.is_angle else 1.0 for q in self.mechanism.limited])
 
     def _stated(self, joints: Array, positions: Array) -> Array:
-        symbols = [*(j.symbol for j in self.mechanism.joints), *POSITION]
-        return self._evaluate(self._equations, symbols, np.hstack([joints, positions]))
+        return self._evaluate(self._formulas.equations, np.hstack([joints, positions]))
 
     def at_joints(self, expressions: Sequence[sp.Expr], joints: Array) -> Array:
         """Expressions in joint values, one a column."""
-        return self._evaluate(expressions, [j.symbol for j in self.mechanism.joints], joints)
+        return self._evaluate(self._formulas.at_joints(tuple(expressions)), joints)
 
-    def _evaluate(self, expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol], values: Array) -> Array:
-        names = (*symbols, *(p.symbol for p in self.mechanism.parameters), DEGREE)
-        columns = _compiled(tuple(expressions), names)(*values.T, *self.constants, ONE_DEGREE)
-        found = [np.broadcast_to(c, (len(values),)) for c in columns]
-        return np.stack(found, axis=1) if found else np.zeros((len(values), 0))
+    def _evaluate(self, formula: Formula, values: Array) -> Array:
+        columns = formula(*values.T, *self.constants, ONE_DEGREE)
+        found = np.empty((len(values), len(columns)), dtype=values.dtype)
+        for place, column in enumerate(columns):
+            found[:, place] = column
+        return found
+
+
+Formula = Callable[..., Sequence[Array]]
+"""Of values, parameters and one degree in radians."""
+
+
+class Formulas:
+    """The expressions of a description, each made a function of NumPy where it is first asked for."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self._mechanism = mechanism
+        self._joints = tuple(j.symbol for j in mechanism.joints)
+        self._pose = (*self._joints, *POSITION)
+        self._constants = (*(p.symbol for p in mechanism.parameters), DEGREE)
+        self._made: dict[tuple[tuple[sp.Symbol, ...], tuple[sp.Expr, ...]], Formula] = {}
+
+    def at_joints(self, expressions: tuple[sp.Expr, ...]) -> Formula:
+        """Expressions in joint values."""
+        return self._of(expressions, self._joints)
+
+    def at_pose(self, expressions: tuple[sp.Expr, ...]) -> Formula:
+        """Expressions in joint values and the position."""
+        return self._of(expressions, self._pose)
+
+    @cached_property
+    def amounts(self) -> Formula:
+        """What every factor of the chain moves by."""
+        assert self._mechanism.chain is not None
+        return self.at_joints(tuple(f.amount for f in self._mechanism.chain.factors))
+
+    @cached_property
+    def indicators(self) -> Formula:
+        """Every branch's, positive where its byte is 1."""
+        return self.at_joints(tuple(b.signs[0] * b.indicator for b in self._mechanism.branches))
+
+    @cached_property
+    def positive(self) -> Formula:
+        """What is positive."""
+        return self.at_joints(tuple(self._mechanism.positive))
+
+    @cached_property
+    def equations(self) -> Formula:
+        """The closure as it is stated, in joint values and the position."""
+        return self.at_pose(tuple(self._mechanism.closure))
+
+    @cached_property
+    def coupled(self) -> dict[int, Formula]:
+        """What every joint that is coupled gets from the motors of others."""
+        motors = tuple(j.motor for j in self._mechanism.joints)
+        return {i: self._of((j.coupling,), motors) for i, j in enumerate(self._mechanism.joints) if j.coupling != 0}
+
+    @cached_property
+    def couplings(self) -> Formula | None:
+        """The same of all joints, where any is coupled."""
+        motors = tuple(j.motor for j in self._mechanism.joints)
+        return self._of(tuple(j.coupling for j in self._mechanism.joints), motors) if self.coupled else None
+
+    def _of(self, expressions: tuple[sp.Expr, ...], names: tuple[sp.Symbol, ...]) -> Formula:
+        if (names, expressions) not in self._made:
+            formula = sp.lambdify((*names, *self._constants), list(expressions), modules="numpy")
+            self._made[names, expressions] = formula
+        return self._made[names, expressions]
+
+
+@cache
+def formulas_of(mechanism: Mechanism) -> Formulas:
+    """Those of one mechanism."""
+    return Formulas(mechanism)
 
 
 def derivative(function: Callable[[Array], Array], at: Array) -> Array:
@@ -155,20 +225,10 @@ def derivative(function: Callable[[Array], Array], at: Array) -> Array:
     return np.stack(columns, axis=2)
 
 
-@cache
-def _compiled(expressions: tuple[sp.Expr, ...], names: tuple[sp.Symbol, ...]) -> Callable[..., list[Array]]:
-    return sp.lambdify(names, list(expressions), modules="numpy")
-
-
-def _elementary(motion: Motion, axis: int, amount: Array) -> Array:
-    """A shift along, a turn about, or (where the amount is 1) half a turn about a coordinate axis."""
-    frame = np.tile(np.eye(4, dtype=amount.dtype), (len(amount), 1, 1))
-    if motion is Motion.SHIFT:
-        frame[:, axis, 3] = amount
-        return frame
-    angle = np.pi * amount if motion is Motion.FLIP else amount
+def _turn(rotation: Array, axis: int, angle: Array) -> None:
+    """Turn a frame, given by its columns, about one of its axes."""
     first, second = [(1, 2), (2, 0), (0, 1)][axis]
-    frame[:, first, first] = frame[:, second, second] = np.cos(angle)
-    frame[:, second, first] = np.sin(angle)
-    frame[:, first, second] = -np.sin(angle)
-    return frame
+    cosine, sine = np.cos(angle), np.sin(angle)
+    along, across = rotation[first].copy(), rotation[second].copy()
+    rotation[first] = along * cosine + across * sine
+    rotation[second] = across * cosine - along * sine

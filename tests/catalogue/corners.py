@@ -16,6 +16,7 @@ from itertools import combinations
 import numpy as np
 import sympy as sp
 from numpy.random import Generator
+from numpy.typing import NDArray
 
 from derive.description.mechanism import Mechanism
 from derive.ir.constants import (
@@ -41,6 +42,7 @@ from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
 
 Factors = Callable[[Array], Array]
+Places = NDArray[np.intp]
 DISTANCES = (0.0, *(sign * 10.0**-k for k in range(2, 17) for sign in (1, -1)))
 """Distances of a factor from zero."""
 STARTS, PASSES = 24, 32
@@ -117,7 +119,10 @@ def factors(machine: Machine) -> Factors:
         with np.errstate(all="ignore"):
             for name, read, value in _compiled(mechanism):
                 known[name] = value(*(known[r] for r in read))
-        return np.stack([np.broadcast_to(known[name], (len(axes),)) for name in names], axis=1)
+        found = np.empty((len(axes), len(names)))
+        for place, name in enumerate(names):
+            found[:, place] = known[name]
+        return found
 
     return at
 
@@ -125,15 +130,16 @@ def factors(machine: Machine) -> Factors:
 def corners(machine: Machine, count: int, rng: Generator, *, of: int = 2) -> Iterator[Corner]:
     """Every combination of factors that vanish together somewhere, at some places each."""
     every, names = factors(machine), [o.name for o in factor_program(machine.mechanism).outputs]
-    for chosen in combinations(range(len(names)), of):
-        picked = partial(_picked, every, chosen)
-        found = _places(machine, picked, count, rng)
+    combined = list(combinations(range(len(names)), of))
+    for chosen, found in zip(combined, _places(machine, every, combined, count, rng), strict=True):
         if len(found):
-            yield Corner(tuple(names[k] for k in chosen), found, _ways(machine, picked, found))
+            ways = _ways(machine, partial(_picked, every, np.array([chosen])), found)
+            yield Corner(tuple(names[k] for k in chosen), found, ways)
 
 
-def _picked(every: Factors, chosen: tuple[int, ...], axes: Array) -> Array:
-    return every(axes)[:, chosen]
+def _picked(every: Factors, chosen: Places, axes: Array) -> Array:
+    """The factors at places (n, of) or (1, of) of every row."""
+    return np.take_along_axis(every(axes), np.broadcast_to(chosen, (len(axes), chosen.shape[1])), axis=1)
 
 
 def _units(machine: Machine) -> Array:
@@ -144,22 +150,37 @@ def _units(machine: Machine) -> Array:
 def _slopes(machine: Machine, functions: Factors, axes: Array) -> Array:
     """(n, factors, joints), per radian or reach."""
     steps = STEP * np.diag(_units(machine))
-    return np.stack([(functions(axes + s) - functions(axes - s)) / (2 * STEP) for s in steps], axis=2)
+    beside = axes + np.concatenate([steps, -steps])[:, None]
+    values = functions(beside.reshape(-1, axes.shape[1])).reshape(2, len(steps), len(axes), -1)
+    return np.moveaxis((values[0] - values[1]) / (2 * STEP), 0, 2)
 
 
-def _places(machine: Machine, functions: Factors, count: int, rng: Generator) -> Array:
-    """The end of Newton's method from any start, if all factors vanish there and the machine can be there."""
-    axes = _starts(machine, rng)
+def _places(
+    machine: Machine, every: Factors, combined: list[tuple[int, ...]], count: int, rng: Generator
+) -> Iterator[Array]:
+    """Of every combination: the end of Newton's method from any start, if all its factors vanish there and the machine
+    can be there.
+    """
+    if not combined:
+        return
+    axes = np.concatenate([_starts(machine, rng) for _ in combined])
+    chosen = np.repeat(np.array(combined), STARTS, axis=0)
+    moving = np.arange(len(axes))
     for _ in range(PASSES):
-        moving = np.flatnonzero((functions(axes) != 0.0).any(axis=1))
+        values = _picked(every, chosen[moving], axes[moving])
+        is_away = (values != 0.0).any(axis=1)
+        moving, values = moving[is_away], values[is_away]
         if not len(moving):
             break
-        step = _least(_slopes(machine, functions, axes[moving]), functions(axes[moving]))
+        shifted = partial(_picked, every, np.tile(chosen[moving], (2 * axes.shape[1], 1)))
+        step = _least(_slopes(machine, shifted, axes[moving]), values)
         length = np.minimum(1.0, LONGEST / np.maximum(np.abs(step).max(axis=1), 1e-30))
         axes[moving] -= _units(machine) * step * length[:, None]
-    good = (np.abs(functions(axes)) < AT).all(axis=1)
+    good = (np.abs(_picked(every, chosen, axes)) < AT).all(axis=1)
     good[good] &= can_be_at(machine, axes[good])
-    return axes[good][:count]
+    for start in range(0, len(axes), STARTS):
+        group = slice(start, start + STARTS)
+        yield axes[group][good[group]][:count]
 
 
 def _ways(machine: Machine, functions: Factors, axes: Array) -> Array:

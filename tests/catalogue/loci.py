@@ -43,17 +43,24 @@ class Locus:
         """The direction of a shift from the locus that the machine can make: both, for a branch."""
         return -1.0 if self.branch is None and self.second else 1.0
 
-    def moved(self, axes: Array, shift: float | Array) -> Array:
+    def moved(self, axes: Array, shift: float | Array, together: int | None = None) -> Array:
         """The axis values at a shift (radians, or per reach) from the locus, one for all or a row.
 
-        A row without such a place is replaced by one that has it.
+        A row without such a place is replaced by one that has it, of as many as stand together; where none of these
+        has it, they stay where they are.
         """
-        exists = np.flatnonzero(self.exists(axes))
-        rows = np.arange(len(axes))
-        rows[~np.isin(rows, exists)] = np.resize(exists, len(axes) - len(exists))
+        rows, exists = np.arange(len(axes)), self.exists(axes)
+        stays = np.zeros(len(axes), dtype=bool)
+        for start in range(0, len(axes), together or len(axes)):
+            group = slice(start, start + (together or len(axes)))
+            others = start + np.flatnonzero(exists[group])
+            if len(others):
+                rows[group][~exists[group]] = np.resize(others, int((~exists[group]).sum()))
+            else:
+                stays[group] = True
         joints = self.machine.closure.joints(axes[rows])
         joints[:, self.joint] = self._root(joints) + shift * (self.machine.reach if self.is_length else 1.0)
-        return self.machine.closure.axes(joints)
+        return np.where(stays[:, None], axes, self.machine.closure.axes(joints))
 
     def within(self, axes: Array, share: float | Array, turns: int = 0) -> Array:
         """The axis values with the joint inside the arc on which the quantity is positive: -1 and 1 are its ends."""
@@ -93,11 +100,9 @@ class Locus:
 
     def _harmonic(self, joints: Array) -> tuple[Array, Array, Array]:
         """The quantity as level + along cos u + across sin u of the joint."""
-        values = []
-        for angle in (0.0, np.pi, np.pi / 2, 0.7):
-            there = joints.copy()
-            there[:, self.joint] = angle
-            values.append(self._value(there))
+        there = np.repeat(joints[None], 4, axis=0)
+        there[:, :, self.joint] = np.array((0.0, np.pi, np.pi / 2, 0.7))[:, None]
+        values = self._value(there.reshape(-1, joints.shape[1])).reshape(4, -1)
         level, along = (values[0] + values[1]) / 2, (values[0] - values[1]) / 2
         across = values[2] - level
         expected = level + along * np.cos(0.7) + across * np.sin(0.7)
@@ -131,12 +136,12 @@ def coinciding(one: Machine) -> Iterator[Array]:
     for count in range(1, len(groups) + 1):
         for chosen in combinations(groups.values(), count):
             for places in product(*chosen):
-                for shifts in product(SHIFTS, repeat=count) if count < 3 else [(s,) * count for s in SHIFTS]:
-                    there = axes
-                    for locus, shift in sorted(zip(places, shifts, strict=True), key=lambda pair: pair[0].joints):
-                        if locus.exists(there).any():
-                            there = locus.moved(there, shift)
-                    yield there
+                shifts = list(product(SHIFTS, repeat=count)) if count < 3 else [(s,) * count for s in SHIFTS]
+                there = np.tile(axes, (len(shifts), 1))
+                columns = np.repeat(np.array(shifts), POSES, axis=0).T
+                for locus, column in sorted(zip(places, columns, strict=True), key=lambda pair: pair[0].joints):
+                    there = locus.moved(there, column, together=POSES)
+                yield there
 
 
 def _first(machine: Machine, branch: int | None, quantity: sp.Expr, taken: set[int]) -> Locus:

@@ -13,7 +13,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from derive.description.mechanism import Mechanism, Role, Turning
-from tests.catalogue.closure import POSITION, Array, Closure, derivative
+from tests.catalogue.closure import Array, Closure, derivative
 from tests.catalogue.machines import TURNS, Machine
 from tests.mechanisms import catalogue
 
@@ -39,9 +39,9 @@ class LoopClosure(Closure):
         self.reach = reach
         self._mode = mechanism.assembly.signs[bool(parameters[mechanism.assembly.parameter])]
         self._side = mechanism.assembly.indicator * sp.sign(mechanism.assembly.handedness)
-        self._room = [b.largest - sp.Abs(b.value) for b in mechanism.bounds]
-        self._indicators = [b.signs[0] * b.indicator for b in mechanism.branches]
-        self._equations = [*mechanism.closure, *(r.equation / r.length for r in mechanism.rods)]
+        self._room = tuple(b.largest - sp.Abs(b.value) for b in mechanism.bounds)
+        self._indicators = tuple(b.signs[0] * b.indicator for b in mechanism.branches)
+        self._equations = (*mechanism.closure, *(r.equation / r.length for r in mechanism.rods))
 
     def poses(self, axes: Array) -> tuple[Array, Array]:
         """Position and rotation at axis values; not a number where nothing, or nothing on this
@@ -101,11 +101,13 @@ class LoopClosure(Closure):
 
     def at(self, joints: Array, positions: Array, expressions: Sequence[sp.Expr]) -> Array:
         """Expressions of the description in joints and position: a column each."""
-        symbols = [*(j.symbol for j in self.mechanism.joints), *POSITION]
-        return self._evaluate(expressions, symbols, np.hstack([joints, positions]))
+        return self._evaluate(self._formulas.at_pose(tuple(expressions)), np.hstack([joints, positions]))
+
+    def _stated(self, joints: Array, positions: Array) -> Array:
+        return self.at(joints, positions, self._equations)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LoopMachine(Machine):
     """A machine that is a closed loop; its poses are regular, on its side and inside its bounds."""
 

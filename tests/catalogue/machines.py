@@ -34,7 +34,7 @@ LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH)
 """What must be given; a distance need not be."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Machine:
     """A mechanism with parameters: the generated class, and the closure with which it is compared."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tests.catalogue.closure import STEP, Array
 from tests.catalogue.machines import Machine
@@ -14,6 +15,8 @@ STEPS = 25
 SAME = 1e-6
 """Solutions nearer than this (radians, or per reach) are one."""
 SOLVED = 1e-11
+STANDING = 1e-14
+"""A step of Newton's method, in radians and lengths, that is next to nothing."""
 
 
 def solutions(machine: Machine, position: Array, rotation: Array) -> list[Array]:
@@ -33,8 +36,14 @@ def solutions(machine: Machine, position: Array, rotation: Array) -> list[Array]
 
 def solved_from(machine: Machine, joints: Array, position: Array, rotation: Array) -> Array:
     """The solutions that Newton's method finds from these starts."""
+    joints, is_solution = ends_from(machine, joints, position, rotation)
+    return joints[is_solution]
+
+
+def ends_from(machine: Machine, joints: Array, position: Array, rotation: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Where Newton's method ends from these starts, for one pose or for that of each row, and which are solutions."""
     joints = _newton(machine, joints, position, rotation, STEPS)
-    return joints[_solved(machine, joints, position, rotation)]
+    return joints, _solved(machine, joints, position, rotation)
 
 
 def principal(machine: Machine, joints: Array, position: Array, rotation: Array) -> Array:
@@ -53,29 +62,37 @@ def distance(machine: Machine, first: Array, second: Array) -> Array:
 
 
 def _newton(machine: Machine, joints: Array, position: Array, rotation: Array, steps: int) -> Array:
-    count, width = joints.shape
+    """The end of each row; where a step was next to nothing, the next one changes no digit."""
+    joints, width = joints.copy(), joints.shape[1]
+    shifts = np.vstack([np.zeros(width), STEP * np.eye(width)])
+    positions = np.broadcast_to(position, (len(joints), 3))
+    rotations = np.broadcast_to(rotation, (len(joints), 3, 3))
+    moving = np.arange(len(joints))
     for _ in range(steps):
-        shifts = np.vstack([np.zeros(width), STEP * np.eye(width)])
-        shifted = (joints[:, None] + 1j * shifts).reshape(-1, width)
-        equations = _equations(machine, shifted, position, rotation)
-        values = equations.reshape(count, width + 1, equations.shape[1])
+        shifted = (joints[moving, None] + 1j * shifts).reshape(-1, width)
+        there = np.repeat(positions[moving], width + 1, axis=0), np.repeat(rotations[moving], width + 1, axis=0)
+        equations = _equations(machine, shifted, *there)
+        values = equations.reshape(len(moving), width + 1, equations.shape[1])
         slopes = np.moveaxis(values[:, 1:].imag / STEP, 1, 2)
         normal = slopes.transpose(0, 2, 1) @ slopes
         damped = normal + 1e-12 * np.eye(width) * (1.0 + np.trace(normal, axis1=1, axis2=2))[:, None, None]
-        step = np.linalg.solve(damped, slopes.transpose(0, 2, 1) @ values[:, 0].real[:, :, None])
-        joints = joints - step[:, :, 0]
+        step = np.linalg.solve(damped, slopes.transpose(0, 2, 1) @ values[:, 0].real[:, :, None])[:, :, 0]
+        joints[moving] -= step
+        moving = moving[~(np.abs(step).max(axis=1) < STANDING)]
+        if not len(moving):
+            break
     return joints
 
 
 def _equations(machine: Machine, joints: Array, position: Array, rotation: Array) -> Array:
-    """The commanded part of the closure at one pose, lengths per reach."""
-    count = len(joints)
-    found = machine.closure.equations(joints, np.tile(position, (count, 1)), np.tile(rotation, (count, 1, 1)))
+    """The commanded part of the closure, at one pose or one of every row, lengths per reach."""
+    positions = np.broadcast_to(position, (len(joints), 3))
+    found = machine.closure.equations(joints, positions, np.broadcast_to(rotation, (len(joints), 3, 3)))
     lengths = found.shape[1] - 3 * len(machine.closure.columns)
     return np.hstack([found[:, :lengths] / machine.reach, found[:, lengths:]])
 
 
-def _solved(machine: Machine, joints: Array, position: Array, rotation: Array) -> Array:
+def _solved(machine: Machine, joints: Array, position: Array, rotation: Array) -> NDArray[np.bool_]:
     with np.errstate(invalid="ignore"):
         small = np.abs(_equations(machine, joints, position, rotation)).max(axis=1) < SOLVED
         return small & np.all(machine.closure.positive(joints) > 0, axis=1)

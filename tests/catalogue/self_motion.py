@@ -7,7 +7,7 @@ import numpy as np
 
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
-from tests.catalogue.roots import distance, solved_from
+from tests.catalogue.roots import distance, ends_from
 
 RATHER_FAR = 0.4
 """How far (radians, or reaches) the search for another posture of the same pose starts from the first."""
@@ -36,12 +36,11 @@ def is_free(machine: Machine, axes: Array) -> Array:
     motion, _ = null_vectors(machine, axes)
     joints, frames = machine.closure.joints(axes), machine.closure.poses(axes)
     found = np.zeros(len(axes), dtype=bool)
-    for row, (start, position, rotation) in enumerate(zip(joints, *frames, strict=True)):
-        for way in (RATHER_FAR, -RATHER_FAR):
-            moved = start + way * motion[row] * np.where(machine.closure.angles, 1.0, machine.reach)
-            other = solved_from(machine, moved[None], position, rotation)
-            apart = np.abs(distance(machine, start, other)).max(axis=1, initial=0.0)
-            found[row] |= bool((apart > LEAST).any()) and bool((apart < 3 * RATHER_FAR).all())
+    for way in (RATHER_FAR, -RATHER_FAR):
+        starts = joints + way * motion * np.where(machine.closure.angles, 1.0, machine.reach)
+        others, is_solution = ends_from(machine, starts, *frames)
+        apart = np.abs(distance(machine, joints, others)).max(axis=1)
+        found |= is_solution & (apart > LEAST) & (apart < 3 * RATHER_FAR)
     return found
 
 

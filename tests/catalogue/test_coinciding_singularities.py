@@ -58,6 +58,7 @@ def grid(one: Machine) -> Array:
     return np.array(list(product(*columns))) + one.closure.offsets
 
 
+@cache
 def folds(one: Machine) -> list[Locus]:
     """Where branches meet at an edge of the workspace; the others leave something free there."""
     first = [locus for locus in loci(one) if not locus.second]

@@ -58,20 +58,25 @@ class Entry:
     routine: types.Routine
     defaults: list[Callable[[], Any]]
 
+    def __post_init__(self) -> None:
+        self._handed = [
+            (p.name, p.scope, types.is_scalar(p.type), p.initial is not None and p.scope == "VAR_INPUT", make)
+            for p, make in zip(self.routine.parameters, self.defaults, strict=True)
+        ]
+
     def arguments(self, given: dict[str, Any]) -> tuple[list[Any], dict[str, Any]]:
         """Positional arguments, and the holders of outputs and scalar in-outs by name."""
         arguments, holders = [], {}
-        for parameter, make in zip(self.routine.parameters, self.defaults, strict=True):
-            scalar, name = types.is_scalar(parameter.type), parameter.name
-            if parameter.scope == "VAR_OUTPUT":
+        for name, scope, scalar, may_be_left_out, make in self._handed:
+            if scope == "VAR_OUTPUT":
                 value = holders[name] = Cell(make()) if scalar else make()
             else:
                 value = given.pop(name, _MISSING)
                 if value is _MISSING:
-                    if parameter.initial is None or parameter.scope != "VAR_INPUT":
+                    if not may_be_left_out:
                         raise TypeError(f"{self.routine.name} needs {name}")
                     value = make()
-                elif parameter.scope == "VAR_IN_OUT" and scalar:
+                elif scalar and scope == "VAR_IN_OUT":
                     value = holders[name] = value if isinstance(value, _CELLS) else Cell(value)
             arguments.append(value)
         if given:

@@ -1,8 +1,8 @@
 """Words of a text: what is refused by name alone, and where objects and their members begin and end."""
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 from .faults import Place, StError
 
@@ -38,8 +38,7 @@ REFUSED_WORDS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Token:
+class Token(NamedTuple):
     kind: str
     text: str
     start: int
@@ -51,12 +50,16 @@ class Token:
         return self.text.upper() if self.kind == "word" else ""
 
 
-def tokens(text: str) -> Iterator[Token]:
-    line, last = 1, 0
+@lru_cache(maxsize=4)
+def tokens(text: str) -> tuple[Token, ...]:
+    """All words of a text; it is read twice, for words that are refused and for where its objects end."""
+    found, line, last = [], 1, 0
     for match in _TOKEN.finditer(text):
-        line += text.count("\n", last, match.start())
-        last = match.start()
-        yield Token(str(match.lastgroup), match.group(), match.start(), match.end(), line)
+        start, end = match.span()
+        line += text.count("\n", last, start)
+        last = start
+        found.append(Token(str(match.lastgroup), match.group(), start, end, line))
+    return tuple(found)
 
 
 def refuse_words(text: str, file: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import count
 from types import CodeType
@@ -39,21 +40,52 @@ def compile_st(
 
     `instrument` may change the translated source, so that running it can be watched.
     """
+    translated = _translated(tuple(texts.items()), matrix_size, max_config_data)
+    return Library(translated, stubs.MatrixAccess(order), matrix_size, instrument)
+
+
+@dataclass(frozen=True, eq=False)
+class Translated:
+    """Texts, checked and translated. Libraries with another order of the matrix share it: nobody writes into it."""
+
+    universe: Universe
+    own: tuple[ast.Declaration, ...]
+    source: Source
+    filename: str
+
+    @cached_property
+    def python(self) -> str:
+        """The translation."""
+        return "\n".join(self.source.lines)
+
+    @cached_property
+    def code(self) -> CodeType:
+        """What defines all objects."""
+        return compile(self.python, self.filename, "exec")
+
+    @cached_property
+    def marked_code(self) -> dict[str, CodeType]:
+        """The same, function by function, with a flag set before every statement."""
+        return marked_code(self.python, self.filename)
+
+
+@lru_cache(maxsize=8)
+def _translated(texts: tuple[tuple[str, str], ...], matrix_size: int, max_config_data: int) -> Translated:
     universe = Universe()
     universe.declare("SM3M", "SMC_Matrix3", types.Opaque("SMC_Matrix3", matrix_size), Place("SM3M", 0))
     library_declarations: list[ast.Declaration] = []
     for space, declarations in _stub_declarations(max_config_data).items():
         universe.add(list(declarations), space)
         library_declarations += declarations
-    own = [declaration for file, text in texts.items() for declaration in _declarations(text, file)]
+    own = [declaration for file, text in texts for declaration in _declarations(text, file)]
     universe.add(own, "")
     everything = library_declarations + own
     facts = check(universe, everything)
     source = translate(universe, everything, facts, stubs.EXTRA_INITIALISATION)
-    return Library(universe, own, source, stubs.MatrixAccess(order), matrix_size, instrument)
+    return Translated(universe, tuple(own), source, f"<structured text {next(_numbers)}>")
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)
 def _declarations(text: str, file: str) -> tuple[ast.Declaration, ...]:
     """A text that stands in many libraries is parsed once: nobody writes into a syntax tree."""
     return tuple(parse(text, file))
@@ -69,19 +101,16 @@ class Library:
 
     def __init__(
         self,
-        universe: Universe,
-        own: list[ast.Declaration],
-        source: Source,
+        translated: Translated,
         access: stubs.MatrixAccess,
         matrix_size: int,
         instrument: Callable[[str], str] | None = None,
     ) -> None:
         # Typed loosely: what a declaration has depends on its kind, and a test knows the kind.
-        self.objects: dict[str, Any] = {declaration.name: declaration for declaration in own}
-        translated = "\n".join(source.lines)
-        self.python = instrument(translated) if instrument else translated
-        self.origin = Origin(f"<structured text {next(_numbers)}>", source.places)
-        self._universe = universe
+        self.objects: dict[str, Any] = {declaration.name: declaration for declaration in translated.own}
+        self.python = instrument(translated.python) if instrument else translated.python
+        self.origin = Origin(translated.filename, translated.source.places)
+        self._translated, self._universe = translated, translated.universe
         self._access = access
         self._functions: dict[str, Function] = {}
         self._names: dict[str, Any] = dict(ENVIRONMENT)
@@ -89,7 +118,8 @@ class Library:
         self._names["class_smc_matrix3"] = type("Matrix3", (Matrix,), {"__slots__": (), "size": matrix_size})
         for name, function in stubs.natives(access).items():
             self._names["function_" + name] = function
-        exec(compile(self.python, self.origin.filename, "exec"), self._names)
+        code = compile(self.python, translated.filename, "exec") if instrument else translated.code
+        exec(code, self._names)
         self._list_routines()
 
     def _list_routines(self) -> None:
@@ -137,13 +167,17 @@ class Library:
             raise KeyError(f"{name} is no function")
         return Function(self._entry(self._names[python_names.function(found)], found), self.origin)
 
-    def watched(self, note: Callable[[int], object]) -> AbstractContextManager[None]:
-        """While this is open, every statement that runs calls `note` with its line in the translation."""
-        return marked(self._names, self._marked_code, note)
+    def watched(self, ran: list[bool]) -> AbstractContextManager[None]:
+        """While this is open, every statement that runs sets the flag of its line in the translation, from 1."""
+        return marked(self._names, self._marked_code(), ran)
 
-    @cached_property
+    def flags(self) -> list[bool]:
+        """A flag for every line of the translation, from 1: none ran."""
+        return [False] * (len(self.origin.places) + 1)
+
     def _marked_code(self) -> dict[str, CodeType]:
-        return marked_code(self.python, self.origin.filename)
+        is_its_own = self.python is not self._translated.python
+        return marked_code(self.python, self.origin.filename) if is_its_own else self._translated.marked_code
 
     def constant(self, name: str) -> Any:
         """The value of a global variable or constant."""

@@ -1,15 +1,17 @@
-"""The translation of a text with a note before every statement: which ones run is known at the cost of a call each."""
+"""The translation of a text with a note before every statement: which ones run is known at the cost of an
+assignment each.
+"""
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from types import CodeType, FunctionType
 from typing import Any
 
-NOTE = "_note"
-"""The name of the function in the translation that notes a line."""
+RAN = "_ran"
+"""The name of the flags of the lines in the translation."""
 
 
 def marked_code(source: str, filename: str) -> dict[str, CodeType]:
@@ -37,8 +39,8 @@ def _mark(node: ast.AST) -> None:
 
 
 def _note(statement: ast.stmt) -> ast.stmt:
-    call = ast.Call(ast.Name(NOTE, ast.Load()), [ast.Constant(statement.lineno)], [])
-    return ast.fix_missing_locations(ast.copy_location(ast.Expr(call), statement))
+    flag = ast.Subscript(ast.Name(RAN, ast.Load()), ast.Constant(statement.lineno), ast.Store())
+    return ast.fix_missing_locations(ast.copy_location(ast.Assign([flag], ast.Constant(True)), statement))
 
 
 def _collect(code: CodeType, found: dict[str, CodeType]) -> None:
@@ -49,12 +51,12 @@ def _collect(code: CodeType, found: dict[str, CodeType]) -> None:
 
 
 @contextmanager
-def marked(names: dict[str, Any], codes: Mapping[str, CodeType], note: Callable[[int], object]) -> Iterator[None]:
+def marked(names: dict[str, Any], codes: Mapping[str, CodeType], ran: list[bool]) -> Iterator[None]:
     """The functions among the names of a translation, and those of its classes, with these codes;
-    afterwards as before.
+    afterwards as before. Each line that runs sets its flag.
     """
     before = {function: function.__code__ for function in _functions(names) if function.__code__.co_qualname in codes}
-    names[NOTE] = note
+    names[RAN] = ran
     for function in before:
         function.__code__ = codes[function.__code__.co_qualname]
     try:

@@ -23,11 +23,13 @@ def asked(call: Callable[..., Any], *arguments: Any) -> Answer:
 
 def is_close(found: Any, expected: Any) -> bool:
     """Whether numbers agree to rounding, and everything else exactly."""
+    if found == expected:
+        return True
     if isinstance(expected, float):
         return abs(found - expected) <= TOLERANCE * max(1.0, abs(expected))
     if isinstance(expected, tuple | list):
         return len(found) == len(expected) and all(map(is_close, found, expected))
-    return bool(found == expected)
+    return False
 
 
 def assert_same(found: Any, expected: Any, *context: object) -> None:

@@ -6,15 +6,17 @@ A test runs for every method that stands in the emitted text, and looks it up he
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import lru_cache
 
 import numpy as np
 
 from derive.description.mechanism import Joint, Kind, Turning
 from derive.equations.chain_splits import is_spatial
+from tests.catalogue.machines import Machine
 from tests.text.closeness import asked, assert_same, is_close
 from tests.text.controller import NOT_INITIALIZED, OK, UNREACHABLE, Answer, Controller
 from tests.text.reasons import compare_reason
-from tests.text.samples import HALF_TURN, NO_TURN, Bytes, Sample, commands
+from tests.text.samples import HALF_TURN, NO_TURN, Bytes, Command, Sample, commands
 from tests.text.serial_pairs import SerialPair
 from tests.text.settings import Range, own_limits, together
 
@@ -83,7 +85,7 @@ def axis_settings(pair: SerialPair, sample: Sample) -> None:
     if both is None:
         return
     robot = type(pair.robot)(**both)
-    for command in commands(pair.machine, sample):
+    for command, _ in solved(pair.machine, sample):
         frame = command.position, command.rotation
         status, answer = asked(robot.inverse, frame, command.configuration, command.reference)
         expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
@@ -116,15 +118,25 @@ def _is_spatial(pair: SerialPair) -> bool:
 
 
 def inverse(pair: SerialPair, sample: Sample) -> None:
-    for command in commands(pair.machine, sample):
+    for command, (status, answer) in solved(pair.machine, sample):
         frame = command.position, command.rotation
-        status, answer = asked(pair.robot.inverse, frame, command.configuration, command.reference)
         expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
         found = pair.controller.inverse(*frame, command.configuration, command.reference)
         if 3 in own_bytes(pair, sample) and _is_spatial(pair) and not is_close(found, (status, expected)):
             assert_same_pose(pair, found, (status, expected), command)
         else:
             assert_same(found, (status, expected), pair, command)
+
+
+@lru_cache(maxsize=1000)
+def solved(machine: Machine, sample: Sample) -> tuple[tuple[Command, Answer], ...]:
+    """The commands of a sample, each with the answer in Python: it is the same for all methods that are held against
+    it.
+    """
+    return tuple(
+        (c, asked(machine.robot.inverse, (c.position, c.rotation), c.configuration, c.reference))
+        for c in commands(machine, sample)
+    )
 
 
 def own_bytes(pair: SerialPair, sample: Sample) -> tuple[int, ...]:
@@ -152,8 +164,8 @@ def assert_same_pose(pair: SerialPair, found: Answer, expected: Answer, command:
 
 
 def diagnose(pair: SerialPair, sample: Sample) -> None:
-    for command in commands(pair.machine, sample):
-        compare_reason(pair, command)
+    for command, (status, _) in solved(pair.machine, sample):
+        compare_reason(pair, command, status)
 
 
 def orientation(pair: SerialPair, sample: Sample) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
+from itertools import compress
 
 from tests.harness.faults import Place
 from tests.harness.library import Library
@@ -18,24 +19,22 @@ class Statements:
     def __init__(self, files: Iterable[str], libraries: Iterable[Library]) -> None:
         self._files = frozenset(files)
         self._libraries = tuple(libraries)
-        self._lines: dict[str, set[int]] = {library.origin.filename: set() for library in self._libraries}
+        self._ran = [library.flags() for library in self._libraries]
 
     @contextmanager
     def watched(self) -> Iterator[None]:
         """Note every statement that runs."""
         with ExitStack() as stack:
-            for library in self._libraries:
-                stack.enter_context(library.watched(self._lines[library.origin.filename].add))
+            for library, ran in zip(self._libraries, self._ran, strict=True):
+                stack.enter_context(library.watched(ran))
             yield
 
     def left_out(self) -> list[Place]:
         """Where the statements stand that did not run."""
         every: set[Place] = set()
         ran: set[Place] = set()
-        for library in self._libraries:
+        for library, flags in zip(self._libraries, self._ran, strict=True):
             places = library.origin.places
             every.update(place for place in places if place is not None and place.file in self._files)
-            ran.update(
-                place for line in self._lines[library.origin.filename] if (place := places[line - 1]) is not None
-            )
+            ran.update(place for place in compress(places, flags[1:]) if place is not None)
         return sorted(every - ran, key=lambda place: (place.file, place.line))

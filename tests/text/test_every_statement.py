@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator
 from itertools import product
 
 import numpy as np
@@ -23,17 +24,18 @@ from tests.text import (
     test_shared_functions,
     test_singular_poses,
 )
-from tests.text.comparisons import COMPARISONS
+from tests.text.comparisons import COMPARISONS, POSELESS
 from tests.text.reasons import provoke
-from tests.text.samples import MANY, Sample, coinciding
+from tests.text.samples import Sample, coinciding
 from tests.text.serial_pairs import SerialPair, serial_pair, serial_pairs_of
 from tests.text.statements import Statements
 from tests.text.units import compiled, compiled_shared, file_of, shared_texts, text_of
 
 MACHINES = ("plain", "equal", "limited", "limited to a turn")
-FEW, FEW_OF_THE_GRID = 3, 25
+FEW, A_FEW = 3, 25
 """The numbers of samples: a watched call takes its time."""
-STEPS = range(0, MANY, FEW_OF_THE_GRID)
+POSED = COMPARISONS.keys() - POSELESS
+"""The methods that a pose goes into."""
 
 
 def test_every_statement_runs(mechanism: Mechanism) -> None:
@@ -43,21 +45,24 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
     with statements.watched():
         run_the_tests(mechanism, serial_pairs)
         for one in (one for one in serial_pairs if one.machine.label in MACHINES):
-            for sample in (
-                *few(one.regular, FEW),
-                *(few(one.grid, FEW_OF_THE_GRID) if one.machine.label == "equal" else ()),
-            ):
+            for sample in few(one.regular, FEW):
                 compare_all(one, sample)
-        if serial_pairs[0].machine.is_spatial and mechanism.branches:
-            for one in (*serial_pairs[:3], serial_pair(bare_machine(mechanism))):
-                for sample in few(coinciding(one.machine), FEW_OF_THE_GRID):
-                    compare_all(one, sample)
-        for one, samples in ((one, one.grid[k : k + FEW_OF_THE_GRID]) for one in serial_pairs for k in STEPS):
+        for one, sample in singular(mechanism, serial_pairs):  # a side of a choice that only a few singular poses reach
             if not left_out(mechanism, statements):
                 break
-            for sample in samples:  # a side of a choice that only a few singular poses reach
-                compare_all(one, sample)
+            compare_all(one, sample, POSED)
     assert left_out(mechanism, statements) == []
+
+
+def singular(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) -> Iterator[tuple[SerialPair, Sample]]:
+    """Singular poses: a few of the machine with equal links, where several singularities coincide, and then all."""
+    yield from (
+        (one, sample) for one in serial_pairs if one.machine.label == "equal" for sample in few(one.grid, A_FEW)
+    )
+    if serial_pairs[0].machine.is_spatial and mechanism.branches:
+        for one in (*serial_pairs[:3], serial_pair(bare_machine(mechanism))):
+            yield from ((one, sample) for sample in few(coinciding(one.machine), A_FEW))
+    yield from ((one, sample) for one in serial_pairs for sample in one.grid)
 
 
 def test_every_statement_of_the_shared_objects_runs() -> None:
@@ -106,9 +111,9 @@ def libraries(mechanism: Mechanism) -> list[Library]:
     return found
 
 
-def compare_all(one: SerialPair, sample: Sample) -> None:
+def compare_all(one: SerialPair, sample: Sample, methods: Collection[str] = COMPARISONS.keys()) -> None:
     for method, compare in COMPARISONS.items():
-        if method.lower() in one.controller.block.routines:
+        if method in methods and method.lower() in one.controller.block.routines:
             compare(one, sample)
 
 
@@ -128,6 +133,7 @@ def run_the_tests(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) ->
     test_garbage.test_a_pose_that_cannot_be_assembled(serial_pairs)
     test_garbage.test_what_is_no_rotation(serial_pairs)
     test_singular_poses.test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs[:3])
+    test_singular_poses.test_a_point_far_off_the_flange_is_out_of_reach(serial_pairs[:3])
     provoke(serial_pairs[1], serial_pairs[1].regular[0])
     if mechanism.constraints:
         test_initialise.test_the_coupling_is_given_once()

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from itertools import product
 
 import numpy as np
 import pytest
 
 from tests.catalogue.machines import bare_machine
 from tests.catalogue.test_offset import on_the_axis
-from tests.text.comparisons import COMPARISONS, assert_same_pose
-from tests.text.controller import OK
+from tests.text.closeness import asked, assert_same
+from tests.text.comparisons import COMPARISONS, assert_same_pose, point_at
+from tests.text.controller import OK, UNREACHABLE
 from tests.text.samples import NO_TURN, Sample, coinciding, near
 from tests.text.serial_pairs import SerialPair, serial_pair
 
@@ -77,6 +79,23 @@ def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs: tuple[Seria
         for sample in one.regular[:5]:
             for offset in fixed_points(one, sample):
                 COMPARISONS["CartesianToAxes_Offset"](one, replace(sample, offset=offset))
+
+
+def test_a_point_far_off_the_flange_is_out_of_reach(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """In one direction or another: then the place is nearer to an axis than the arm passes it."""
+    for one in serial_pairs:
+        if "cartesiantoaxes_offset" not in one.controller.block.routines:
+            continue
+        sample, refused = one.regular[0], 0
+        place, default = point_at(one, sample, (0.0, 0.0, 0.0)), one.robot.DEFAULT_CONFIGURATION
+        for index, size in product(range(3), (-2.0, 2.0)):
+            offset = tuple(size * one.machine.reach if k == index else 0.0 for k in range(3))
+            status, answer = asked(one.robot.inverse_offset, place, offset, default, sample.axes)
+            expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
+            found = one.controller.inverse_offset(place, offset, default, sample.axes)
+            assert_same(found, (status, expected), one, offset)
+            refused += status == UNREACHABLE
+        assert refused > 0 or not one.machine.has_a_reach
 
 
 def fixed_points(one: SerialPair, sample: Sample) -> Iterator[tuple[float, ...]]:

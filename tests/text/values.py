@@ -12,6 +12,7 @@ from tests.harness.runtime import StructValue
 
 AXES = 6
 """The entries of AXISPOS_REF."""
+NO_AXES = (nan,) * AXES
 MEANINGLESS = -4711.5
 """What stands in a real variable before a method is called."""
 MEANINGLESS_BYTE = 0xAB
@@ -47,8 +48,7 @@ def meaningless(library: Library, type_name: str) -> Any:
 def axes(library: Library, values: Numbers) -> Any:
     """Axis values. The entries beyond them are no numbers: nobody may read them."""
     made = new(library, AXES_TYPE)
-    for i in range(AXES):
-        setattr(made, f"a{i}", values[i] if i < len(values) else nan)
+    made.a0, made.a1, made.a2, made.a3, made.a4, made.a5 = (*values, *NO_AXES[len(values) :])
     return made
 
 
@@ -84,7 +84,7 @@ def configuration(library: Library, values: Iterable[int]) -> Any:
 
 def axes_of(value: Any) -> tuple[float, ...]:
     """All entries of axis values."""
-    return tuple(getattr(value, f"a{i}") for i in range(AXES))
+    return value.a0, value.a1, value.a2, value.a3, value.a4, value.a5
 
 
 def vector_of(value: Any) -> tuple[float, ...]:

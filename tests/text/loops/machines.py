@@ -26,7 +26,7 @@ BROKEN = 40
 """Axis values of one machine, drawn without asking whether the loop closes."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Machine:
     """A loop with its dimensions, in Python."""
 
