@@ -93,7 +93,7 @@ class OrientationController(Controller):
         return self._answer(status, lambda: values.vector_of(found))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Machine:
     """What `tests.text.comparisons` asks of a machine."""
 
