@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import sympy as sp
 
@@ -71,7 +72,18 @@ class Inverse:
     moving: tuple[Joint, ...]
     frozen: tuple[Joint, ...] = ()
 
+    @property
+    def known(self) -> tuple[Statement, ...]:
+        """Its statements, with those in front of the derivation."""
+        return (*self.naming, *self.derivation.statements)
 
+    @property
+    def signs(self) -> tuple[sp.Symbol, ...]:
+        """The signs of its two-root steps, which are still open."""
+        return tuple(slope.sigma for slope in self.derivation.slopes)
+
+
+@cache
 def solve_pose(mechanism: Mechanism) -> Inverse:
     """Solve the closure of a commanded pose for the joints."""
     closure = pose_closure(mechanism)
@@ -133,8 +145,8 @@ def _frozen_joints(mechanism: Mechanism) -> tuple[Joint, ...]:
 
 def heading_parts(mechanism: Mechanism) -> tuple[sp.Expr, sp.Expr]:
     """Cosine and sine of the nearest heading, up to a common factor: the tool direction comes first, then the twist."""
-    assert mechanism.chain is not None
-    relative = sp.Matrix(3, 3, ROTATION_ENTRIES) * flange_rotation(mechanism.chain).T
+    behind = flange_rotation(mechanism.chain) if mechanism.chain is not None else sp.eye(3)
+    relative = sp.Matrix(3, 3, ROTATION_ENTRIES) * behind.T
     return relative[0, 0] + relative[1, 1], relative[1, 0] - relative[0, 1]
 
 

@@ -25,7 +25,7 @@ def solutions(machine: Machine, position: Array, rotation: Array) -> list[Array]
     joints = rng.uniform(-1, 1, (starts, len(scale))) * np.where(closure.angles, np.pi, 2 * machine.reach)
     joints = principal(machine, solved_from(machine, joints, position, rotation), position, rotation)
     found: list[Array] = []
-    for row in joints[machine.is_own(joints, position)]:
+    for row in joints[machine.is_own(joints, position, rotation)]:
         if not any(np.abs(distance(machine, row, other)).max() < SAME for other in found):
             found.append(row)
     return found
@@ -71,7 +71,8 @@ def _equations(machine: Machine, joints: Array, position: Array, rotation: Array
     """The commanded part of the closure at one pose, lengths per reach."""
     count = len(joints)
     found = machine.closure.equations(joints, np.tile(position, (count, 1)), np.tile(rotation, (count, 1, 1)))
-    lengths = found.shape[1] - 3 * len(machine.closure.columns)
+    entries = 0 if machine.mechanism.is_platform else 3 * len(machine.closure.columns)
+    lengths = found.shape[1] - entries
     return np.hstack([found[:, :lengths] / machine.reach, found[:, lengths:]])
 
 

@@ -26,6 +26,16 @@ _HEXAPOD = {
     for letter, value in zip("xy", point, strict=True)
 } | {"home_z": 600.0}
 
+_3RRR = {
+    f"{side}_{i}_{letter}": value
+    for side, points in (
+        ("base", ((-260.0, -150.0), (265.0, -145.0), (5.0, 300.0))),
+        ("platform", ((-70.0, -40.0), (72.0, -38.0), (2.0, 80.0))),
+    )
+    for i, point in enumerate(points, 1)
+    for letter, value in zip("xy", point, strict=True)
+} | {f"{what}_length_{i}": size + 4.0 * i for what, size in (("arm", 150.0), ("rod", 170.0)) for i in (1, 2, 3)}
+
 DIMENSIONS: dict[str, dict[str, float]] = {
     "Kin_5Axes": {"tool_length": 90.0},
     "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": {
@@ -73,6 +83,7 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     },
     "Kin_TGantry2": {},
     "Kin_TGantry3": {},
+    "Softkin_Planar_3RRR": _3RRR,
     "Kin_Tool": {"tool_x": 15.0, "tool_y": -8.0, "tool_z": -60.0},
     "Kin_Tripod_Linear": {
         "outer_radius": 300.0, "inner_radius": 60.0, "arm_length": 400.0, "rail_angle": 30.0,

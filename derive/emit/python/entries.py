@@ -118,7 +118,7 @@ def literal(value: object) -> str:
 
 def _short(name: str) -> str:
     """Without the prefix, unless what is left is no name: `Kin_5Axes`."""
-    short = name.removeprefix("Kin_")
+    short = name.removeprefix("Softkin_").removeprefix("Kin_")
     return short if short.isidentifier() else name
 
 

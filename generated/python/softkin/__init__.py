@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from softkin.p2x_type2 import P2XType2
     from softkin.p2y import P2Y
     from softkin.pcc import PCC
+    from softkin.planar_3rrr import Planar3RRR
     from softkin.polar import Polar
     from softkin.polar_z import PolarZ
     from softkin.pos_rrr import PosRRR
@@ -104,6 +105,7 @@ __all__ = [
     "P2XType1",
     "P2XType2",
     "Parameter",
+    "Planar3RRR",
     "Polar",
     "PolarZ",
     "PosRRR",
@@ -153,6 +155,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_P2X_Type2": ("p2x_type2", "P2XType2"),
     "Kin_P2Y": ("p2y", "P2Y"),
     "Kin_PCC": ("pcc", "PCC"),
+    "Softkin_Planar_3RRR": ("planar_3rrr", "Planar3RRR"),
     "Kin_Polar": ("polar", "Polar"),
     "Kin_Polar_Z": ("polar_z", "PolarZ"),
     "Kin_Pos_RRR": ("pos_rrr", "PosRRR"),

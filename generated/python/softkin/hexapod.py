@@ -41,7 +41,7 @@ in the middle of their range. It does not test whether legs touch each other: ex
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
-    Jacobian against automatic differentiation below 1e-10,
+    Jacobian against automatic differentiation below 1e-11,
     solutions that a search from many starts finds: 1, as many as the inverse has.
 """
 
@@ -1460,7 +1460,7 @@ class Hexapod(IterativeForward):
         # nothing controls the plate
         if not (abs(determinant) > 1e-11):
             return Status.IMPOSSIBLE
-        # twist of the platform per velocity of each leg
+        # twist of the platform per velocity of each axis
         (
             _,
             column_1_vx,
