@@ -25,6 +25,7 @@ from derive.equations.closure import (
     offset_closure,
     pose_closure,
     signs_of,
+    with_fixed_names,
 )
 from derive.equations.problem import Problem
 from derive.geometry.frames import Motion
@@ -128,7 +129,10 @@ def _solve(
         columns=closure.columns,
         position=(*POSITION, *FLANGE),
         squares=fixed_squares(mechanism),
-        positive=tuple(polynomial(p, all_angles(mechanism), signs_of(mechanism)) for p in mechanism.positive),
+        positive=tuple(
+            polynomial(with_fixed_names(mechanism, p), all_angles(mechanism), signs_of(mechanism))
+            for p in mechanism.positive
+        ),
     )
     return solve(problem, closure.arguments, lambda angle: (*axis_lets(joints[angle]), plain_angle(joints[angle])))
 

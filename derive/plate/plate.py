@@ -127,6 +127,11 @@ def check_home(mechanism: Mechanism) -> None:
             f"a platform that a loop turns needs a rod for each of the {count} quantities of the task: "
             f"it has {rods} rods" + (" and other equations" if mechanism.closure else "")
         )
+    for rod in mechanism.rods:
+        if is_driven(mechanism, point_of(rod)):
+            raise DescriptionError(
+                f"rod {rod.name!r}: its end must be a point of the plate, which no joint moves on it"
+            )
     if len(mechanism.home) != count:
         raise DescriptionError(
             f"a platform that a loop turns needs a home pose of {count} coordinates, and has {len(mechanism.home)}"

@@ -9,16 +9,28 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from derive.description.mechanism import Mechanism
 from derive.ir.interpret import Array
 from derive.kinematics.kinematics import Kinematics
 from derive.plate.plate import home_branches, home_flag
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
-from derive.witness.home_samples import joints_at, poses_at_home
+from derive.witness.home_samples import joints_at, measured_legs, poses_at_home
+from derive.witness.roots import STARTS
 from derive.witness.samples import SEED, Samples, describe
 
-_STARTS = 200
+_EASY = 3
+"""Legs with two solutions each, of which `STARTS` starts find all; with each leg more it takes twice as many."""
+_WITHOUT_BRANCHES = 20
+"""Starts at home that are enough where `joints_at` starts again until positive quantities are positive."""
 _CLOSED = 1e-9
+
+
+def starts_for(mechanism: Mechanism) -> int:
+    """The number of starts from which all solutions are sought."""
+    if not mechanism.is_platform:
+        return STARTS
+    return int(STARTS * 2 ** max(0, len(mechanism.rods) - len(measured_legs(mechanism)) - _EASY))
 
 
 def in_own_mode(
@@ -43,7 +55,7 @@ def _sides(closure: Closure, joints: Array, pose: Array, parameters: Array) -> A
 
 def _home_side(kin: Kinematics, closure: Closure, samples: Samples, row: int) -> float:
     """The sign of det A at the home pose of the machine of a sample."""
-    part = samples.take(np.full(_STARTS, row))
+    part = samples.take(np.full(starts_for(kin.mechanism) if kin.branches else _WITHOUT_BRANCHES, row))
     pose = poses_at_home(kin.mechanism, part.values, part.reach)
     joints = joints_at(kin.mechanism, closure, pose, part.parameters, part.reach, np.random.default_rng(SEED + 5))
     state = (joints, pose, part.parameters)

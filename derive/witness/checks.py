@@ -111,12 +111,8 @@ def check_margins(kin: Kinematics, closure: Closure, samples: Samples) -> float:
     expected = np.ones(len(samples))
     for margin in kin.margins:
         expected = expected * np.abs(outputs[margin.factor]) ** margin.exponent
-    j = (
-        samples.jacobian
-        if samples.jacobian.shape[1] <= samples.jacobian.shape[2]
-        else np.swapaxes(samples.jacobian, 1, 2)
-    )
-    ratio = np.sqrt(np.linalg.det(j @ np.swapaxes(j, 1, 2))) / expected
+    volume = np.prod(np.linalg.svd(samples.jacobian, compute_uv=False), axis=1)  # squaring J would lose half the digits
+    ratio = volume / expected
     constant = {m: np.median(ratio[samples.machine == m]) for m in np.unique(samples.machine)}
     errors = np.abs(ratio / np.array([constant[m] for m in samples.machine]) - 1.0)
     return worst(kin, "singularity margins against det J", errors, samples, MARGIN_TOLERANCE)

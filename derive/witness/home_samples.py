@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.random import Generator
+from numpy.typing import NDArray
 
 from derive.description.mechanism import Mechanism
 from derive.ir.interpret import Array, evaluate
@@ -13,6 +14,8 @@ _SHIFT = 0.2
 """The largest distance of the platform from its home pose, in reaches."""
 _TURN = np.radians(20.0)
 _ITERATIONS = 60
+_ROUNDS = 12
+_STILL = 1e-15
 
 
 def axes_near_home(
@@ -48,15 +51,62 @@ def poses_at_home(mechanism: Mechanism, values: dict[str, Array], reach: Array) 
 def joints_at(
     mechanism: Mechanism, closure: Closure, pose: Array, parameters: Array, reach: Array, rng: Generator
 ) -> Array:
-    """Joint values at poses, by Newton's method; with branches from anywhere."""
+    """Joint values at poses, by Newton's method; from anywhere where a leg has several.
+
+    Where a quantity that must be positive is not, the joints on which it depends start elsewhere once more.
+    """
     joints = closure.joint_scale(reach)
-    if mechanism.branches:
-        joints = joints * np.where(closure.angles, np.pi, 1.0) * rng.uniform(-1.0, 1.0, joints.shape)
+    is_one_of_many = len(measured_legs(mechanism)) < len(mechanism.rods)
+    if is_one_of_many:
+        joints = _anywhere(closure, reach, rng)
+    joints = _solved(closure, joints, pose, parameters, reach if is_one_of_many else None)
+    for _ in range(_ROUNDS if is_one_of_many and mechanism.positive else 0):
+        negative = closure.positive(joints, pose, parameters)[:, :, 0] <= 0
+        again = (negative @ _touched(closure, joints, pose, parameters)) > 0
+        if not again.any():
+            break
+        joints = np.where(again, _anywhere(closure, reach, rng), joints)
+        joints = _solved(closure, joints, pose, parameters, reach)
+    return joints
+
+
+def measured_legs(mechanism: Mechanism) -> list[str]:
+    """The rods whose base ends no joint moves: their lengths are joints."""
+    joints = {j.symbol for j in mechanism.joints}
+    return [rod.name for rod in mechanism.rods if not any(v.free_symbols & joints for v in rod.base)]
+
+
+def _anywhere(closure: Closure, reach: Array, rng: Generator) -> Array:
+    size = closure.joint_scale(reach) * np.where(closure.angles, np.pi, 2.0)
+    return np.asarray(size * rng.uniform(-1.0, 1.0, size.shape))
+
+
+def _solved(closure: Closure, joints: Array, pose: Array, parameters: Array, longest: Array | None) -> Array:
+    """Newton's method; a step is at most `longest`."""
+    joints = joints.copy()
+    moving = np.arange(len(joints))
     for _ in range(_ITERATIONS):
-        residual, slopes = (f(joints, pose, parameters) for f in (closure.residual, closure.by_joints))
-        step = (np.linalg.pinv(slopes) @ residual)[:, :, 0]
-        joints = joints - (np.clip(step, -reach[:, None], reach[:, None]) if mechanism.branches else step)
-    return np.asarray(joints)
+        state = joints[moving], pose[moving], parameters[moving]
+        step = (np.linalg.pinv(closure.by_joints(*state)) @ closure.residual(*state))[:, :, 0]
+        if longest is not None:
+            step = np.clip(step, -longest[moving, None], longest[moving, None])
+        joints[moving] -= step
+        moving = moving[np.abs(step).max(axis=1) > _STILL * (1.0 + np.abs(joints[moving]).max(axis=1))]
+        if not len(moving):
+            break
+    return joints
+
+
+def _touched(closure: Closure, joints: Array, pose: Array, parameters: Array) -> NDArray[np.float64]:
+    """Which joints (columns) a positive quantity (rows) depends on."""
+    one = [part[:1] for part in (joints, pose, parameters)]
+    here = closure.positive(*one)[0, :, 0]
+    columns = []
+    for k in range(joints.shape[1]):
+        moved = one[0].copy()
+        moved[0, k] += 1.0
+        columns.append(closure.positive(moved, *one[1:])[0, :, 0] != here)
+    return np.stack(columns, axis=1).astype(float)
 
 
 def _turn(axis: int, angle: Array) -> Array:

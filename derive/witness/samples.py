@@ -133,6 +133,8 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
     names = {p.name for p in kin.mechanism.parameters} | {j.offset.name for j in kin.mechanism.joints}
     names |= {kin.mechanism.assembly.parameter} if kin.mechanism.assembly else set()
     names |= {home_flag(b) for b in kin.branches} if kin.mechanism.is_platform else set()
+    cones = [c for rod in kin.mechanism.rods for c in (rod.base_cone, rod.plate_cone) if c is not None]
+    names -= {s.name for cone in cones for s in cone.free_symbols}  # they refuse poses, and change no answer
     values = {}
     for parameter in kin.parameters:
         drawn = _draw(parameter, count, rng) if parameter.name in names else np.full(count, parameter.nominal)

@@ -23,6 +23,9 @@ def solutions(machine: Machine, position: Array, rotation: Array) -> list[Array]
     scale = np.where(closure.angles, 1.0, machine.reach)
     starts = MANY_STARTS if machine.robot.BRANCHES > 1 else STARTS
     joints = rng.uniform(-1, 1, (starts, len(scale))) * np.where(closure.angles, np.pi, 2 * machine.reach)
+    if machine.mechanism.is_platform and machine.robot.BRANCHES == 0:  # of many mirror images one is wanted
+        where = np.tile(position, (starts, 1)), np.tile(machine.closure.reachable(rotation[None]), (starts, 1, 1))
+        joints, _ = machine.closure.joints_at(*where, rng)
     joints = principal(machine, solved_from(machine, joints, position, rotation), position, rotation)
     found: list[Array] = []
     for row in joints[machine.is_own(joints, position, rotation)]:

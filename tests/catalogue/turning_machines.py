@@ -26,13 +26,17 @@ SHIFT, TURN = 0.2, 0.35
 """The largest distance of poses from home, in reaches and radians."""
 REGULAR = 0.08
 """Indicators at a regular pose are at least this part of their largest value, det A of the one at home."""
-POOL = 1500
+POOL = 1200
+"""Poses that are tried; of a platform that turns about every axis half as many."""
 PASSES = 40
 CONTROLLED = 0.25
 """Of det A at home: less may be lost on the way from there."""
 CLOSED = 1e-11
 """Of the reach: what is left of a rod's length where the loop closes."""
 STARTS = 60
+AGAIN = 12
+"""How often joints start elsewhere where a positive quantity is not."""
+STILL = 1e-15
 
 
 class TurningClosure(Closure):
@@ -64,10 +68,15 @@ class TurningClosure(Closure):
         joints = self.joints(axes)
         positions = np.tile(self.home_position, (len(axes), 1))
         rotations = np.tile(self.home_rotation, (len(axes), 1, 1))
+        moving = np.arange(len(axes))
         for _ in range(PASSES):
-            slopes = self.by_pose(joints, positions, rotations)
-            step = np.linalg.pinv(slopes) @ self._stated(joints, positions, rotations)[:, :, None]
-            self._move(positions, rotations, -_limited(step[:, :, 0], len(self.task), self.reach))
+            state = joints[moving], positions[moving], rotations[moving]
+            step = (np.linalg.pinv(self.by_pose(*state)) @ self._stated(*state)[:, :, None])[:, :, 0]
+            self._move(state[1], state[2], -_limited(step, len(self.task), self.reach))
+            positions[moving], rotations[moving] = state[1:]
+            moving = moving[np.abs(step).max(axis=1) > STILL * self.reach]
+            if not len(moving):
+                break
         left = np.abs(self._stated(joints, positions, rotations)).max(axis=1)
         good = (left < CLOSED * self.reach) & (self.side(joints, positions, rotations) > 0)
         good &= (self.positive_at(joints, positions, rotations) > 0).all(axis=1)
@@ -76,19 +85,41 @@ class TurningClosure(Closure):
 
     def joints_at(self, positions: Array, rotations: Array, rng: Generator) -> tuple[Array, NDArray[np.bool_]]:
         """Joint values at poses, on any branch, and whether they close the loop."""
-        size = np.where(self.angles, np.pi, 3.0 * self.reach)
-        joints = rng.uniform(-1.0, 1.0, (len(positions), len(size))) * size
-        if not self.mechanism.branches:
-            joints = np.abs(joints)
-        for _ in range(PASSES):
-            slopes = derivative(lambda q: self._stated(q, positions, rotations), joints)
-            step = np.linalg.pinv(slopes) @ self._stated(joints, positions, rotations)[:, :, None]
-            joints = joints - np.clip(step[:, :, 0], -np.where(self.angles, 1.0, self.reach), np.inf).clip(
-                max=np.where(self.angles, 1.0, self.reach)
-            )
+        joints = self._newton(self._anywhere(len(positions), rng), positions, rotations)
+        for _ in range(AGAIN if self.mechanism.positive else 0):
+            negative = self.positive_at(joints, positions, rotations) <= 0
+            again = negative.astype(float) @ self._touched > 0
+            if not again.any():
+                break
+            joints = np.where(again, self._anywhere(len(positions), rng), joints)
+            joints = self._newton(joints, positions, rotations)
         closed = np.abs(self._stated(joints, positions, rotations)).max(axis=1) < CLOSED * self.reach
         closed &= (self.positive_at(joints, positions, rotations) > 0).all(axis=1)
         return np.where(self.angles, (joints + np.pi) % (2 * np.pi) - np.pi, joints), closed
+
+    def _anywhere(self, count: int, rng: Generator) -> Array:
+        size = np.where(self.angles, np.pi, 3.0 * self.reach)
+        return rng.uniform(-1.0, 1.0, (count, len(size))) * size
+
+    def _newton(self, joints: Array, positions: Array, rotations: Array) -> Array:
+        joints, longest = joints.copy(), np.where(self.angles, 1.0, self.reach)
+        moving = np.arange(len(joints))
+        for _ in range(PASSES):
+            there = positions[moving], rotations[moving]
+            slopes = derivative(lambda q: self._stated(q, *there), joints[moving])  # noqa: B023 - called at once
+            step = np.linalg.pinv(slopes) @ self._stated(joints[moving], *there)[:, :, None]
+            step = np.clip(step[:, :, 0], -longest, longest)
+            joints[moving] -= step
+            moving = moving[(np.abs(step) > STILL * longest).any(axis=1)]
+            if not len(moving):
+                break
+        return joints
+
+    @cached_property
+    def _touched(self) -> Array:
+        """Which joints (columns) the positive quantities (rows) depend on."""
+        own = [j.symbol for j in self.mechanism.joints]
+        return np.array([[float(s in v.free_symbols) for s in own] for v in self.mechanism.positive])
 
     def around_home(self, count: int, rng: Generator, size: float = 1.0) -> tuple[Array, Array]:
         """Poses around home."""
@@ -269,13 +300,15 @@ class TurningMachine(Machine):
     def pool(self) -> Array:
         """Axis values of regular poses around home: Newton's method from home leads back to the same pose."""
         rng = np.random.default_rng(29)
-        positions, rotations = self.closure.around_home(POOL, rng)
+        count = POOL if len(self.closure.axes_of_turn) == 1 else POOL // 2
+        positions, rotations = self.closure.around_home(count, rng)
         joints, closed = self.closure.joints_at(positions, rotations, rng)
         closed &= self.closure.side(joints, positions, rotations) > 0
         axes = self.closure.axes(joints[closed])
         with np.errstate(invalid="ignore"):
             back = np.abs(self.closure.poses(axes)[0] - positions[closed]).max(axis=1) < 1e-9 * self.reach
         axes = axes[back]
+        axes = axes[self.leads_back(axes)]
         axes = axes[self.is_possible(axes)]
         assert len(axes) >= 30, (self.mechanism.name, self.given)
         return axes
@@ -326,6 +359,8 @@ def turning_machine(mechanism: Mechanism, label: str, given: Mapping[str, float]
 def _near(parameter: Parameter, rng: Generator) -> float:
     if parameter.role is Role.FLAG:
         return float(rng.integers(2))
+    if parameter.role is Role.SIGN:
+        return parameter.nominal
     if parameter.role is Role.ANGLE:
         return float(np.clip(parameter.nominal + rng.uniform(-8.0, 8.0), parameter.low, parameter.high))
     size = 0.12 * abs(parameter.nominal) if parameter.nominal else 12.0

@@ -52,7 +52,7 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
     slope = sp.cancel(sp.diff(equation.expression, unknown) / a)
     written_out = slope.xreplace({let.name: let.value for let in equation.lets})
     known_sign = _known_sign(problem, written_out, unknown)
-    sigma = sign_of(unknown) if known_sign is None else sp.Integer(known_sign)
+    sigma = sign_of(unknown) if known_sign is None else known_sign
     half = sp.cancel(scale / (2 * a))
     radicand = sp.factor(sp.cancel(b**2 / (4 * a**2) - c / a))
     reason = cannot_reach(equation.label, radicand, naming.lets)
@@ -69,15 +69,17 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
     return Binding("quadratic", (unknown,), statements, Slope(unknown, slope, over))
 
 
-def _known_sign(problem: Problem, slope: sp.Expr, unknown: sp.Symbol) -> int | None:
+def _known_sign(problem: Problem, slope: sp.Expr, unknown: sp.Symbol) -> sp.Expr | None:
     """The sign of a slope that is a multiple of a positive quantity, with other unknowns eliminated by affine
-    equations.
+    equations. It may be a sign of the machine.
     """
     for quantity in problem.positive:
         value = _through(problem, quantity, unknown)
         ratio = sp.cancel(slope / value) if value != 0 else sp.Integer(0)
-        if ratio.is_number and ratio != 0:
-            return 1 if ratio > 0 else -1
+        for sign in (sp.Integer(1), *(s for s in problem.signs if s.is_nonzero and s in ratio.free_symbols)):
+            number = sp.cancel(ratio * sign)
+            if number.is_number and number != 0:
+                return sign if number > 0 else -sign
     return None
 
 

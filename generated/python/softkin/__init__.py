@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from softkin.gantry3 import Gantry3
     from softkin.gantrycutter2 import GantryCutter2
     from softkin.gantrycutter3 import GantryCutter3
+    from softkin.hexaglide import Hexaglide
     from softkin.hexapod import Hexapod
     from softkin.hgantry2 import HGantry2
     from softkin.hgantry3 import HGantry3
@@ -94,6 +95,7 @@ __all__ = [
     "GantryCutter3",
     "HGantry2",
     "HGantry3",
+    "Hexaglide",
     "Hexapod",
     "Kin5Axes",
     "KinType12XY",
@@ -144,6 +146,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Gantry3": ("gantry3", "Gantry3"),
     "Kin_GantryCutter2": ("gantrycutter2", "GantryCutter2"),
     "Kin_GantryCutter3": ("gantrycutter3", "GantryCutter3"),
+    "Softkin_Hexaglide": ("hexaglide", "Hexaglide"),
     "Kin_Hexapod": ("hexapod", "Hexapod"),
     "Kin_HGantry2": ("hgantry2", "HGantry2"),
     "Kin_HGantry3": ("hgantry3", "HGantry3"),

@@ -45,7 +45,7 @@ def test_every_pose_around_home_is_found_in_the_configuration_of_home(machines: 
         positions, rotations = machine.closure.around_home(COUNT, np.random.default_rng(41))
         axes, statuses = machine.robot.inverse_batch(positions, rotations, home_slot(machine))
         good = statuses == Status.OK
-        assert good.mean() > 0.5 and set(statuses[~good]) <= {Status.UNREACHABLE}
+        assert good.mean() > 0.3 and set(statuses[~good]) <= {Status.UNREACHABLE}
         back, turned, written, found = machine.robot.forward_batch(axes[good])
         assert (found == Status.OK).all()
         assert np.abs(back - positions[good]).max() < 1e-9 * machine.reach
@@ -77,7 +77,8 @@ def test_the_inverse_accepts_what_is_in_the_mode_of_home(machines: tuple[Turning
 
 def _solved(machine: TurningMachine, position: Array, rotation: Array) -> list[Array]:
     """All joint values at a pose, by Newton's method from many starts."""
-    where = np.tile(position, (600, 1)), np.tile(rotation, (600, 1, 1))
+    starts = 600 if machine.robot.BRANCHES else 60
+    where = np.tile(position, (starts, 1)), np.tile(rotation, (starts, 1, 1))
     joints, closed = machine.closure.joints_at(*where, np.random.default_rng(47))
     found: list[Array] = []
     for row in joints[closed]:
@@ -99,7 +100,7 @@ def test_the_margin_is_the_determinant_by_definition(machines: tuple[TurningMach
 def test_a_home_pose_out_of_reach_or_singular_is_refused(machines: tuple[TurningMachine, ...]) -> None:
     machine = machines[0]
     points = [n for n in machine.given if n.startswith("platform_")]
-    far = {n: 1e5 for n in machine.given if n == "home_x"}
+    far = {n: 1e5 for n in machine.given if n == "home_y"}
     for given in (far, dict.fromkeys(points, 0.0), dict.fromkeys(points, 7.0)):
         with pytest.raises(KinematicsError) as refused:
             machine.changed(**given)
@@ -163,14 +164,14 @@ def test_a_machine_that_stands_far_away(machines: tuple[TurningMachine, ...]) ->
     """Its base and its home shifted by a hundred times its size: the same axes for poses that are shifted as much."""
     machine = machines[1]
     shift = 100.0 * round(machine.reach)
-    moved = {n: v + shift if n == "home_x" or (n.startswith("base_") and n.endswith("_x")) else v
-             for n, v in machine.given.items()}  # fmt: skip
+    ours = {n for n in machine.given if n.startswith(("base_", "rail_")) and n.endswith("_y")} | {"home_y"}
+    moved = {n: v + shift if n in ours else v for n, v in machine.given.items()}
     there = turning_machine(machine.mechanism, "far", moved)
     positions, rotations = machine.closure.around_home(50, np.random.default_rng(61))
     axes, statuses = machine.robot.inverse_batch(positions, rotations, home_slot(machine))
-    found, others = there.robot.inverse_batch(positions + [shift, 0.0, 0.0], rotations, home_slot(machine))
+    found, others = there.robot.inverse_batch(positions + [0.0, shift, 0.0], rotations, home_slot(machine))
     assert (statuses == others).all() and (statuses == Status.OK).any()
     good = statuses == Status.OK
     assert np.abs(found - axes)[good].max() < 1e-7
     back = there.robot.forward_batch(found[good])[0]
-    assert np.abs(back - positions[good] - [shift, 0.0, 0.0]).max() < 1e-8 * machine.reach
+    assert np.abs(back - positions[good] - [0.0, shift, 0.0]).max() < 1e-8 * machine.reach
