@@ -207,7 +207,8 @@ class Mechanism:
     """The bars that are drawn, where the rods are not the bodies: each joins two points, and is as long as stated."""
     assembly: Assembly | None = None
     home: tuple[sp.Expr, ...] = ()
-    """The start of an iterative forward kinematics: x, y, z, then roll, pitch and yaw in radians (Rz Ry Rx)."""
+    """The start of an iterative forward kinematics: the commanded coordinates, then the heading, or roll, pitch and yaw
+    (Rz Ry Rx), in radians."""
     bounds: tuple[Bound, ...] = ()
     branches: tuple[Branch, ...] = ()
     search: Search | None = None
@@ -250,8 +251,8 @@ class Mechanism:
 
     @property
     def is_platform(self) -> bool:
-        """Whether this is a platform that follows the whole commanded pose: its forward kinematics iterates."""
-        return self.chain is None and self.task.turning is Turning.FULL
+        """Whether a closed loop turns its platform, as the commanded rotation says: its forward kinematics iterates."""
+        return self.chain is None and self.task.turning is not Turning.NONE
 
     @property
     def is_orientation(self) -> bool:
@@ -301,9 +302,11 @@ def rod(
     )
 
 
-def on_plate(x: object, y: object, z: object) -> tuple[sp.Expr, ...]:
-    """The position of a point of the plate, from its coordinates in the frame of the plate."""
-    return tuple(sp.Matrix([X.symbol, Y.symbol, Z.symbol]) + ROTATION * sp.Matrix([x, y, z]))
+def on_plate(x: object, y: object, z: object | None = None) -> tuple[sp.Expr, ...]:
+    """The position of a point of the plate, from its coordinates in the frame of the plate; without z, in the plane."""
+    point = sp.Matrix([x, y] if z is None else [x, y, z])
+    size = len(point)
+    return tuple(sp.Matrix([X.symbol, Y.symbol, Z.symbol][:size]) + ROTATION[:size, :size] * point)
 
 
 def bound(value: object, largest: object, meaning: str) -> Bound:

@@ -184,7 +184,7 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
     known = joints | _parameters(mechanism)
     if mechanism.chain is None:
         known |= {quantity.symbol for quantity in (X, Y, Z)}
-    if mechanism.task.turning is Turning.FULL:
+    if mechanism.is_platform or mechanism.task.turning is Turning.FULL:
         known |= set(ROTATION)
     named = [
         *_equations(mechanism),

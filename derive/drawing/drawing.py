@@ -16,6 +16,7 @@ from derive.drawing.scene import Scene, Segment, Spot
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.reference_cases import Reals
+from derive.plate.plate import home_position
 from derive.report.reference_calls import Machine, branches
 
 _ANGLES = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0)
@@ -56,7 +57,7 @@ def drawing_of(kinematics: Kinematics) -> Drawing:
     pose = drawn_pose(machine)
     scene = scene_at(machine, pose)
     if mechanism.home:
-        home = Spot(tuple(map(plain, mechanism.home[:3])), pose.tool.position)
+        home = Spot(tuple(map(plain, home_position(mechanism))), pose.tool.position)
         scene = replace(scene, spots=(*scene.spots, home))
     return Drawing(
         scene=scene,

@@ -33,6 +33,7 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     COORDINATE_NAMES,
+    HEADING,
     OFFSET,
     ROTATION_ENTRIES,
     cosine,
@@ -119,12 +120,23 @@ def all_angles(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
 
 
 def with_fixed_names(mechanism: Mechanism, expression: sp.Expr) -> sp.Expr:
-    """The expression with the sines and cosines of fixed angles, and the roots of parameters, by their names."""
+    """The expression with the sines and cosines of fixed angles and of the heading of a platform, and the roots of
+    parameters, by their names.
+    """
     functions = ((cosine, sp.cos), (sine, sp.sin))
     table = {g(a * DEGREE): f(a) for a in fixed_angles(mechanism) for f, g in functions}
+    if mechanism.is_platform and mechanism.task.turning is Turning.ABOUT_Z:
+        table |= _heading_entries()
     for root, let in _fixed_roots(mechanism.equations, tuple(p.symbol for p in mechanism.parameters)):
         table[root] = let.name
     return sp.sympify(expression).xreplace(table)
+
+
+def _heading_entries() -> dict[sp.Expr, sp.Expr]:
+    """The entries of a rotation about z, by the names of its cosine and sine."""
+    cos_heading, sin_heading = cosine(HEADING), sine(HEADING)
+    entries = (cos_heading, -sin_heading, 0, sin_heading, cos_heading, 0, 0, 0, 1)
+    return dict(zip(ROTATION_ENTRIES, map(sp.sympify, entries), strict=True))
 
 
 def angles_of(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:

@@ -33,10 +33,13 @@ from derive.ir.program import (
 from derive.ir.reason import Reason, Unit, Why, about
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
+    DETERMINANT,
     MIN_TYPE2_MARGIN,
     real,
 )
 from derive.kinematics.sampling import sample_axes, sample_machine
+from derive.plate.legs import MARGIN
+from derive.plate.plate import platform_checks
 
 _SAMPLES = 256
 
@@ -48,10 +51,14 @@ class Assembled:
     forward: Forward
     margin: sp.Expr | None
     """The determinant over its scale, in the names of the forward derivation; None where forward has one solution."""
+    name: str = ""
+    """The name of the margin."""
 
 
 def assembled(mechanism: Mechanism, forward: Forward) -> Assembled:
     """Bind the assembly sign to the parameter of the machine, as the indicator of the description tells."""
+    if mechanism.is_platform:
+        return Assembled(forward, DETERMINANT, MARGIN)
     if mechanism.assembly is None or forward.determinant is None:
         return Assembled(forward, None)
     first = mechanism.assembly.signs[0] * _orientation(mechanism, forward)
@@ -60,7 +67,7 @@ def assembled(mechanism: Mechanism, forward: Forward) -> Assembled:
         chosen = Select(sp.Gt(with_fixed_names(mechanism, mechanism.assembly.handedness), 0), chosen, -chosen)
     sign = Let(ASSEMBLY_SIGN, chosen, "assembly mode of this machine: the sign of the determinant of its rods")
     margin = forward.determinant.value / forward.determinant.scale
-    return Assembled(replace(forward, statements=(sign, *forward.statements)), margin)
+    return Assembled(replace(forward, statements=(sign, *forward.statements)), margin, mechanism.assembly.margin)
 
 
 def _orientation(mechanism: Mechanism, forward: Forward) -> int:
@@ -89,6 +96,8 @@ def assembly_checks(
     """The checks of a solved branch: the assembly mode of this machine, and the least distance from a type 2
     singularity.
     """
+    if mechanism.is_platform:
+        return platform_checks(mechanism, solved)
     if done.margin is None or mechanism.assembly is None:
         return ()
     bound = {s.name for s in solved if isinstance(s, Let)} | {real(c) for c in "xyz"}

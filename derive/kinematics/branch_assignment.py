@@ -37,6 +37,7 @@ from derive.kinematics.forward import (
 )
 from derive.kinematics.inverse import Inverse
 from derive.kinematics.sampling import sample_axes, sample_machine
+from derive.plate.turning import given_pose, samples_near_home
 
 _SAMPLES = 64
 
@@ -122,19 +123,25 @@ def _signs(
         mechanism, [with_fixed_names(mechanism, b.indicator) * b.signs[0] for b in mechanism.branches]
     )
     determinants = [s.value for s in inverse.derivation.determinants]
+    if mechanism.is_platform:
+        forward = given_pose(mechanism)
     named = [Let(real(f"sign_{k}"), v) for k, v in enumerate([*determinants, *indicators])]
     statements = (*derivation_at_axes(mechanism, inverse, forward), *lets, *named)
     program = normalise("signs", statements, [Output(n.name.name, n.name) for n in named])
     machine = sample_machine(mechanism, 21, optional_zero)
-    samples = {**machine, **sample_axes(mechanism, machine, _SAMPLES, 22)}
+    if mechanism.is_platform:
+        samples = samples_near_home(mechanism, inverse.known, inverse.signs, machine, 22)
+    else:
+        samples = {**machine, **sample_axes(mechanism, machine, _SAMPLES, 22)}
     samples.update({f"point_{c}": np.asarray(0.0) for c in "xyz"})
+    count = max(v.size for v in samples.values())
     values, status = run(program, samples)
-    good = np.broadcast_to(status == Status.OK, (_SAMPLES,))
+    good = np.broadcast_to(status == Status.OK, (count,))
     if not good.any():
         raise DescriptionError(
             "no sampled pose is possible: a quantity that must be positive never is, or the loop never closes"
         )
-    rows = [np.sign(np.broadcast_to(values[n.name.name], (_SAMPLES,))[good]) for n in named]
+    rows = [np.sign(np.broadcast_to(values[n.name.name], (count,))[good]) for n in named]
     return rows[: len(determinants)], rows[len(determinants) :]
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from derive.description.mechanism import (
     DescriptionError,
@@ -23,6 +25,7 @@ from derive.equations.pose_at_axes import (
 from derive.equations.windows import windows
 from derive.geometry.frames import Motion
 from derive.geometry.pose import pose_of
+from derive.ir.interpret import run
 from derive.ir.passes import hoist, normalise
 from derive.ir.program import (
     Let,
@@ -52,6 +55,7 @@ from derive.kinematics.differential import (
     factor_of,
     jacobian_program,
     jacobian_rows,
+    samples_anywhere,
     singularity_program,
     twist_program,
 )
@@ -65,19 +69,14 @@ from derive.kinematics.forward import (
 from derive.kinematics.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics.kinematics import Freedom, Kinematics, Margin
 from derive.kinematics.parameters import machine_parameters, setup_program
+from derive.kinematics.sampling import sample_machine
 from derive.kinematics.scan.derivations import from_joints, solve_both
 from derive.kinematics.scan.inverse import branch_statements, search_given
 from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements
 from derive.kinematics.shared_names import refuse_names_of_joints, refuse_shared_names
 from derive.lowering.lower import lowered
-from derive.plate.legs import MARGIN
-from derive.plate.newton import (
-    at_given,
-    at_home,
-    found_from,
-    search_program,
-)
-from derive.plate.plate import platform_checks, platform_singularity
+from derive.plate.plate import check_home
+from derive.plate.turning import forward_from_given, joints_at_home, samples_near_home
 from derive.solver.solve import Unsolved
 
 
@@ -86,7 +85,7 @@ def build(mechanism: Mechanism) -> Kinematics:
     _count(mechanism)
     refuse_names_of_joints(mechanism)
     if mechanism.is_platform:
-        return _platform(mechanism)
+        check_home(mechanism)
     if mechanism.search is not None:
         return _scanned(mechanism)
     closed = assembled(mechanism, pose_at_axes(mechanism))
@@ -100,10 +99,12 @@ def build(mechanism: Mechanism) -> Kinematics:
     jacobian = jacobian_program(mechanism, forward)
     determinants, conditionings = assignments, inverse.derivation.conditionings
     factors = [*(factor_of(mechanism, a) for a in determinants), *(factor_of(mechanism, m) for m in conditionings)]
-    if mechanism.assembly is not None and closed.margin is not None:
-        factors.append(Factor(mechanism.assembly.margin, closed.margin))
-    singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian)
+    if closed.margin is not None:
+        factors.append(Factor(closed.name, closed.margin))
     statements = with_branch_signs(inverse.derivation.statements, assignments)
+    at_home = joints_at_home(mechanism, statements) if mechanism.is_platform else ()
+    samples = _samples(mechanism, inverse, at_home)
+    singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian, samples)
     forward_only = replace(forward, statements=at_axes)
     programs = [
         forward_program(mechanism, forward_only, margins),
@@ -116,36 +117,31 @@ def build(mechanism: Mechanism) -> Kinematics:
     ]
     if mechanism.task.turning is not Turning.NONE:
         programs.append(_projection_program(mechanism))
+    if mechanism.is_platform:
+        programs.append(_forward_from(mechanism, inverse, margins))
     if _turns_in_a_coupling(mechanism):
         programs.append(twist_program(mechanism, forward))
     if mechanism.is_orientation:
         programs += coupling_programs(mechanism)
     elif mechanism.offset_interface:
         programs += _offset_programs(mechanism, closed)
-    return _finished(mechanism, programs, kept)
+    return _finished(mechanism, programs, kept, at_home)
 
 
-def _platform(mechanism: Mechanism) -> Kinematics:
-    """The programs of a platform that moves with its whole pose: forward kinematics iterates, det A is the margin."""
-    inverse = solve_pose(mechanism)
-    if inverse.derivation.determinants or mechanism.branches:
-        raise DescriptionError("a platform that moves freely has no branches: its closure must determine every joint")
-    statements = inverse.derivation.statements
-    search = search_program(mechanism)
-    forward, from_start = (found_from(mechanism, start, search) for start in (at_home(mechanism), at_given()))
-    checks = (*platform_checks(mechanism, (*inverse.naming, *statements)), *bound_checks(mechanism, offset=False))
-    programs = [
-        forward_program(mechanism, forward, ()),
-        replace(forward_program(mechanism, from_start, ()), name="forward_from"),
-        orientation_program(forward),
-        inverse_program("branch", mechanism, inverse, statements, checks),
-        limits_program(mechanism),
-        platform_singularity(forward.statements),
-        jacobian_program(mechanism, forward),
-        _image_program(mechanism),
-        _projection_program(mechanism),
-    ]
-    return _finished(mechanism, programs, (Margin(MARGIN, -1, "type 2"),))
+def _samples(mechanism: Mechanism, inverse: Inverse, at_home: Sequence[Statement]) -> dict[str, NDArray[np.float64]]:
+    """Poses at which the exponents of margins are found."""
+    if not mechanism.is_platform:
+        return samples_anywhere(mechanism)
+    samples = samples_near_home(mechanism, inverse.known, inverse.signs, sample_machine(mechanism, 11), 12)
+    constants, _ = run(setup_program(mechanism, machine_parameters(mechanism), at_home=at_home), samples)
+    return samples | constants
+
+
+def _forward_from(mechanism: Mechanism, inverse: Inverse, margins: tuple[Let, ...]) -> Program:
+    """Forward kinematics from a start that is given."""
+    forward = forward_from_given(mechanism)
+    at_axes = replace(forward, statements=derivation_at_axes(mechanism, inverse, forward))
+    return replace(forward_program(mechanism, at_axes, margins), name="forward_from")
 
 
 def _scanned(mechanism: Mechanism) -> Kinematics:
@@ -198,10 +194,12 @@ def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
     )
 
 
-def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...]) -> Kinematics:
+def _finished(
+    mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...], at_home: Sequence[Statement] = ()
+) -> Kinematics:
     """The bundle of all programs, with the values that depend on parameters alone moved into the setup."""
     parameters = machine_parameters(mechanism)
-    constants = [o.name for o in setup_program(mechanism, parameters).outputs]
+    constants = [o.name for o in setup_program(mechanism, parameters, at_home=at_home).outputs]
     unsettled = {o.name for window in windows(mechanism) for o in window.outputs}  # drives may change these later
     settled = [name for name in constants if name not in unsettled]
     whole, first = hoist([with_choices(p, parameters) for p in (*shared(programs), *programs)], settled)
@@ -209,9 +207,11 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
     hoisted = (*first, *second)
     derived = next(program for program in whole if program.name == "branch")
     read = frozenset(s for program in (*shorter, derived) for s in program.inputs)
-    setup = setup_program(mechanism, parameters, hoisted, read)
+    setup = setup_program(mechanism, parameters, hoisted, read, at_home=at_home)
     settable = (
-        setup_program(mechanism, parameters, hoisted, read, has_settings=True) if mechanism.period_joints else None
+        setup_program(mechanism, parameters, hoisted, read, has_settings=True, at_home=at_home)
+        if mechanism.period_joints
+        else None
     )
     finished = {program.name: program for program in shorter}
     called = {program.name for program in shared(shorter)}
@@ -310,10 +310,9 @@ def _projection_program(mechanism: Mechanism) -> Program:
     if mechanism.task.turning in (Turning.DIRECTION, Turning.FULL):
         own = [Output(r.name, r) for r in ROTATION_ENTRIES]
         return normalise("projection", (), own)
-    assert mechanism.chain is not None
     cos_heading, sin_heading = real("cos_heading"), real("sin_heading")
     turned = sp.Matrix([[cos_heading, -sin_heading, 0], [sin_heading, cos_heading, 0], [0, 0, 1]])
-    rotation = turned * flange_rotation(mechanism.chain)
+    rotation = turned if mechanism.chain is None else turned * flange_rotation(mechanism.chain)
     outputs = [Output(r.name, v) for r, v in zip(ROTATION_ENTRIES, rotation, strict=True)]
     return normalise("projection", heading_lets(mechanism), outputs)
 
@@ -324,13 +323,11 @@ def _turns_in_a_coupling(mechanism: Mechanism) -> bool:
 
 
 def _freedom(mechanism: Mechanism) -> Freedom:
-    """How the flange turns. With stated equations it keeps its orientation or follows all of it; a chain may turn it
-    about z.
-    """
+    """How the flange turns."""
     if mechanism.task.turning is Turning.FULL:
         return Freedom.THREE
     if mechanism.chain is None:
-        return Freedom.ZERO
+        return Freedom.ONE if mechanism.is_platform else Freedom.ZERO
     joints = {j.symbol for j in mechanism.joints}
     turns = [t for t in pose_of(mechanism.chain).turns if t.motion is Motion.TURN]  # opposite ones have merged
     if not any(t.amount.free_symbols & joints for t in turns):

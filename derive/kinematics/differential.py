@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,7 +81,13 @@ def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
 
 
 def twist_program(mechanism: Mechanism, forward: Forward) -> Program:
-    """All six rows of the twist at the end of a chain, whatever its task: a coupling needs them."""
+    """All six rows of the twist, whatever the task: a coupling needs them."""
+    if mechanism.is_platform:
+        solved, values = platform_jacobian(mechanism, _motor_matrix(mechanism))
+        width = len(mechanism.joints)
+        own = {row: values[k * width : (k + 1) * width] for k, row in enumerate(jacobian_rows(mechanism))}
+        entries = [e for row in _ROWS[:6] for e in own.get(row, [sp.Integer(0)] * width)]
+        return normalise("twist", (*forward.statements, *solved), _entries_of(entries, width))
     lets, values = _per_motor(mechanism, _by_screws(mechanism, _ROWS[:6]))
     return normalise("twist", (*forward.statements, *lets), _entries_of(values, len(mechanism.joints)))
 
@@ -221,9 +227,13 @@ def factor_of(mechanism: Mechanism, found: Assignment | Conditioning) -> Factor:
 
 
 def singularity_program(
-    mechanism: Mechanism, statements: Sequence[Statement], factors: Sequence[Factor], jacobian: Program
+    mechanism: Mechanism,
+    statements: Sequence[Statement],
+    factors: Sequence[Factor],
+    jacobian: Program,
+    samples: Mapping[str, NDArray[np.float64]],
 ) -> tuple[Program, tuple[Margin, ...]]:
-    """The margins whose product, with integer exponents, is the determinant of the Jacobian."""
+    """The margins whose product, with integer exponents, is the determinant of the Jacobian: found at the samples."""
     lets = [let for f in factors for let in f.lets]
     lengths = {f.name: Output(f"length_{f.name}", f.lets[0].name) for f in factors if f.is_length}
     told = {f.name: Output(f.name, f.lets[-1].name) for f in factors}
@@ -231,7 +241,7 @@ def singularity_program(
     if not mechanism.joints:
         return normalise("singularity", statements, []), ()
     draft = normalise("singularity", (*statements, *lets), outputs)
-    exponents = _exponents(mechanism, draft, jacobian)
+    exponents = _exponents(mechanism, draft, jacobian, samples)
     kept = [(f.name, e) for f, e in zip(factors, exponents, strict=True) if e != 0]
     shown = [o for name, _ in kept for o in (told[name], *([lengths[name]] if name in lengths else []))]
     program = normalise("singularity", (*statements, *lets), shown)
@@ -239,18 +249,26 @@ def singularity_program(
     return program, tuple(Margin(n, e, "type 1" if e > 0 else "type 2", of_length.get(n)) for n, e in kept)
 
 
-def _exponents(mechanism: Mechanism, margins: Program, jacobian: Program) -> list[int]:
-    """Fit log|det J| = c + Σ e_k log|m_k| over poses of one machine; the e_k must be integers and the fit exact."""
+def samples_anywhere(mechanism: Mechanism) -> dict[str, NDArray[np.float64]]:
+    """One machine, with axis values over its whole range."""
     machine = sample_machine(mechanism, 11)
-    samples = {**machine, **sample_axes(mechanism, machine, 64, 12)}
+    return {**machine, **sample_axes(mechanism, machine, 64, 12)}
+
+
+def _exponents(
+    mechanism: Mechanism, margins: Program, jacobian: Program, samples: Mapping[str, NDArray[np.float64]]
+) -> list[int]:
+    """Fit log|det J| = c + Σ e_k log|m_k| over poses of one machine; the e_k must be integers and the fit exact."""
+    count = max(v.size for v in samples.values())
     values, status = run(margins, samples)
     entries, _ = run(jacobian, samples)
-    good = np.broadcast_to(status == Status.OK, (64,))
+    good = np.broadcast_to(status == Status.OK, (count,))
     rows, columns = len(jacobian_rows(mechanism)), len(mechanism.joints)
-    matrix = np.stack([np.broadcast_to(v, (64,)) for v in entries.values()], axis=-1).reshape(64, rows, columns)[good]
+    flat = np.stack([np.broadcast_to(v, (count,)) for v in entries.values()], axis=-1)
+    matrix = flat.reshape(count, rows, columns)[good]
     matrix = matrix[:, :, [j in mechanism.solved_joints for j in mechanism.joints]]
     volume = np.log(np.sqrt(np.abs(np.linalg.det(matrix @ matrix.transpose(0, 2, 1)))))
-    logs = [np.log(np.abs(np.broadcast_to(values[o.name], (64,))[good])) for o in margins.outputs]
+    logs = [np.log(np.abs(np.broadcast_to(values[o.name], (count,))[good])) for o in margins.outputs]
     own = _independent(logs)
     design = np.stack([*(logs[k] for k in own), np.ones_like(volume)], axis=-1)
     solution, *_ = np.linalg.lstsq(design, volume, rcond=None)

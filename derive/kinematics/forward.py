@@ -56,6 +56,7 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.kinematics.inverse import Inverse
+from derive.plate.turning import forward_from_home
 from derive.solver.solve import Derivation, solve
 
 
@@ -63,6 +64,8 @@ def pose_at_axes(mechanism: Mechanism) -> Forward:
     """The pose of a mechanism at its axis values; it requires the quantities to be positive that the description says
     are.
     """
+    if mechanism.is_platform:
+        return forward_from_home(mechanism)
     checks = (*finite([j.axis for j in mechanism.joints]), *joint_lets(mechanism), *_positive(mechanism))
     if mechanism.chain is not None and is_spatial(mechanism.chain):
         return _frame_by_frame(mechanism, checks)

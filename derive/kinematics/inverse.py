@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import sympy as sp
 
@@ -25,6 +26,7 @@ from derive.equations.closure import (
     offset_closure,
     pose_closure,
     signs_of,
+    with_fixed_names,
 )
 from derive.equations.problem import Problem
 from derive.geometry.frames import Motion
@@ -72,7 +74,18 @@ class Inverse:
     moving: tuple[Joint, ...]
     frozen: tuple[Joint, ...] = ()
 
+    @property
+    def known(self) -> tuple[Statement, ...]:
+        """Its statements, with those in front of the derivation."""
+        return (*self.naming, *self.derivation.statements)
 
+    @property
+    def signs(self) -> tuple[sp.Symbol, ...]:
+        """The signs of its two-root steps, which are still open."""
+        return tuple(step.sigma for step in self.derivation.determinants)
+
+
+@cache
 def solve_pose(mechanism: Mechanism) -> Inverse:
     """Solve the closure of a commanded pose for the joints."""
     closure, held = pose_closure(mechanism), mechanism.held_joints
@@ -122,7 +135,10 @@ def _solve(
         point=closure.target.point,
         point_lets=closure.target.lets,
         squares=fixed_squares(mechanism),
-        positive=tuple(polynomial(p, all_angles(mechanism), signs_of(mechanism)) for p in mechanism.positive),
+        positive=tuple(
+            polynomial(with_fixed_names(mechanism, p), all_angles(mechanism), signs_of(mechanism))
+            for p in mechanism.positive
+        ),
     )
     return solve(problem, closure.arguments, lambda angle: (*axis_lets(joints[angle]), plain_angle(joints[angle])))
 
@@ -140,8 +156,8 @@ def _frozen_joints(mechanism: Mechanism) -> tuple[Joint, ...]:
 
 def heading_parts(mechanism: Mechanism) -> tuple[sp.Expr, sp.Expr]:
     """Cosine and sine of the nearest heading, up to a common factor: the tool direction comes first, then the twist."""
-    assert mechanism.chain is not None
-    relative = sp.Matrix(3, 3, ROTATION_ENTRIES) * flange_rotation(mechanism.chain).T
+    behind = flange_rotation(mechanism.chain) if mechanism.chain is not None else sp.eye(3)
+    relative = sp.Matrix(3, 3, ROTATION_ENTRIES) * behind.T
     return relative[0, 0] + relative[1, 1], relative[1, 0] - relative[0, 1]
 
 

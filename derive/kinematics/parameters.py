@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from functools import cache
 
 import sympy as sp
 
-from derive.description.mechanism import Joint, Mechanism, Parameter, Role
+from derive.description.mechanism import Branch, Joint, Mechanism, Parameter, Role
 from derive.equations.choices import converted, input_of
 from derive.equations.windows import windows
 from derive.geometry.frames import Motion
@@ -34,7 +34,7 @@ from derive.ir.symbols import (
     real,
 )
 from derive.ir.verify import verify
-from derive.plate.plate import machine_constants, machine_statements
+from derive.plate.plate import home_branches, home_flag, machine_constants, machine_statements
 
 CHECK_LIMITS = "check_limits"
 TIE_OF_LENGTHS = real("tie")
@@ -75,7 +75,7 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
 def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:
     """The assembly mode of a closed loop, and its least distance from a type 2 singularity."""
     if mechanism.is_platform:
-        return [_least_margin()]
+        return [*map(_at_home, home_branches(mechanism)), _least_margin()]
     if mechanism.assembly is None:
         return []
     name, chosen = mechanism.assembly.parameter, mechanism.assembly.names[1]
@@ -84,6 +84,13 @@ def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:
         Parameter(real(name), name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, 0.0),
         _least_margin(),
     ]
+
+
+def _at_home(branch: Branch) -> Parameter:
+    """The branch at the home pose: with it the assembly mode of the machine is told."""
+    meaning = f"branch {branch.name} at the home pose: {branch.names[1]} instead of {branch.names[0]}"
+    name = home_flag(branch)
+    return Parameter(real(name), name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, 0.0)
 
 
 def _least_margin() -> Parameter:
@@ -109,11 +116,13 @@ def setup_program(
     read: Collection[sp.Symbol] = (),
     *,
     has_settings: bool = False,
+    at_home: Sequence[Statement] = (),
 ) -> Program:
     """Check every parameter; the outputs are the parameters, the effective limits, and the hoisted values that are
     `read`.
 
-    has_settings: drives hand over limits, so that the outputs of `limits_of_axis` are left to it.
+    has_settings: drives hand over limits, so that the outputs of `limits_of_axis` are left to it. at_home: the joints
+    at the home pose of a loop that turns its platform.
     """
     body: list[Statement] = [condition for p in parameters for condition in _range_of(p)]
     for constraint in mechanism.constraints:
@@ -129,7 +138,7 @@ def setup_program(
             body += window.ends
             outputs += window.outputs
     if mechanism.is_platform:
-        body += machine_statements(mechanism)
+        body += machine_statements(mechanism, at_home)
         outputs += machine_constants(mechanism)
     else:
         body.append(Let(SCALE, machine_scale(mechanism), "characteristic length of the machine"))

@@ -8,7 +8,7 @@ vector is needed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import sympy as sp
 
@@ -33,19 +33,18 @@ from derive.ir.program import (
 )
 from derive.ir.reason import Unit, Why, about_leg
 from derive.ir.symbols import (
-    ROTATION_ENTRIES,
     real,
 )
-from derive.plate.legs import names, of, turned
+from derive.plate.legs import names, of, rotation_of, turned, vector_word
 
 _HOME, _SEEN, _TURNED = "home_along", "plate_axis", "cone_axis"
 """The rod's direction at home; the same in the frame of the plate; the same as the plate has turned it."""
 _BEYOND = {"base": Why.BEYOND_BASE_CONE, "plate": Why.BEYOND_PLATE_CONE}
 
 
-def cone_axes(mechanism: Mechanism, home_rotation: Sequence[sp.Expr]) -> tuple[Let, ...]:
+def cone_axes(mechanism: Mechanism, home_rotation: sp.Matrix) -> tuple[Let, ...]:
     """The axes of the cones on the plate, in its frame. Those on the base are the rods' directions at the home pose."""
-    back = sp.Matrix(3, 3, list(home_rotation)).T
+    back = home_rotation.T
     rods = (rod for rod in mechanism.rods if rod.plate_cone is not None)
     return tuple(let for rod in rods for let in turned(back, names("along", rod), names(_SEEN, rod)))
 
@@ -62,11 +61,15 @@ def cone_checks(mechanism: Mechanism) -> tuple[Statement, ...]:
     """The conditions on the directions of the rods at a solved pose."""
     on_base = [(rod, rod.base_cone) for rod in mechanism.rods if rod.base_cone is not None]
     on_plate = [(rod, rod.plate_cone) for rod in mechanism.rods if rod.plate_cone is not None]
-    taken = (let for rod, _ in on_plate for let in turned(ROTATION_ENTRIES, names(_SEEN, rod), names(_TURNED, rod)))
-    return (*_inside("base", on_base, _HOME), *taken, *_inside("plate", on_plate, _TURNED))
+    rotation = rotation_of(mechanism)
+    taken = (let for rod, _ in on_plate for let in turned(rotation, names(_SEEN, rod), names(_TURNED, rod)))
+    vectors = {rod.name: names(vector_word(mechanism, rod), rod) for rod in mechanism.rods}
+    return (*_inside("base", on_base, vectors, _HOME), *taken, *_inside("plate", on_plate, vectors, _TURNED))
 
 
-def _inside(side: str, cones: Sequence[tuple[Rod, sp.Expr]], axis: str) -> Iterator[Statement]:
+def _inside(
+    side: str, cones: Sequence[tuple[Rod, sp.Expr]], vectors: Mapping[str, Sequence[sp.Symbol]], axis: str
+) -> Iterator[Statement]:
     """Every rod inside its cone. The boundary belongs to the cone; a cone of 180 degrees sets no bound."""
     widths = list(dict.fromkeys(cone for _, cone in cones))
     least = {cone: real(f"least_cos_{side}" + (f"_{k}" if len(widths) > 1 else "")) for k, cone in enumerate(widths, 1)}
@@ -78,7 +81,7 @@ def _inside(side: str, cones: Sequence[tuple[Rod, sp.Expr]], axis: str) -> Itera
     for rod, cone in cones:
         ahead = of(f"along_{side}_cone", rod)
         note = f"leg {rod.name}: how far it reaches along the axis of its cone on the {side}"
-        yield Let(ahead, sp.Add(*[a * b for a, b in zip(names("span", rod), names(axis, rod), strict=True)]), note)
+        yield Let(ahead, sp.Add(*[a * b for a, b in zip(vectors[rod.name], names(axis, rod), strict=True)]), note)
         beyond = angle_of_cosine(ahead, rod.length) - angle_of_cosine(least[cone])
         reason = about_leg(rod.name, _BEYOND[side], beyond / DEGREE, Unit.ANGLE)
         yield Require(sp.Ge(ahead, least[cone] * rod.length), Status.UNREACHABLE, reason=reason)

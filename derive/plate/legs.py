@@ -1,7 +1,8 @@
 """The legs of a platform at a pose: names, vectors, and the rows of the matrix A in A (v, w) = -e.
 
 The length error of rod i is e = |span| - length. Let a be the arm from the origin of the plate to the rod's joint, and
-u the unit vector along the rod. Then e' = [u, a x u] (v, w): a row of A is the rod as a line, in Pluecker coordinates.
+u the unit vector along the rod. Then e' = [u, a x u] (v, w): a row of A is the rod as a line, in Pluecker coordinates,
+of which it has those that the task commands: in a plane the components x and y of u, and z of its moment.
 Moments are divided by the platform's radius, so that det A has no unit.
 """
 
@@ -16,6 +17,7 @@ from derive.description.mechanism import (
     DescriptionError,
     Mechanism,
     Rod,
+    Turning,
     on_plate,
 )
 from derive.ir.constants import (
@@ -30,9 +32,12 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     COORDINATE_NAMES,
+    HEADING,
     ROTATION_ENTRIES,
     SCALE,
+    cosine,
     real,
+    sine,
 )
 
 RADIUS = real("platform_radius")
@@ -42,9 +47,42 @@ ANGLES = ("roll", "pitch", "yaw")
 Vector = tuple[sp.Expr, ...]
 
 
+def spins(mechanism: Mechanism) -> tuple[str, ...]:
+    """The axes about which the platform turns."""
+    return COORDINATE_NAMES if mechanism.task.turning is Turning.FULL else ("z",)
+
+
+def angles(mechanism: Mechanism) -> tuple[str, ...]:
+    """The angles of its rotation from the start of an iteration."""
+    return ANGLES if mechanism.task.turning is Turning.FULL else ("yaw",)
+
+
+def home_angles(mechanism: Mechanism) -> tuple[str, ...]:
+    """The angles of its home pose."""
+    words = ANGLES if mechanism.task.turning is Turning.FULL else (HEADING.name,)
+    return tuple(f"home_{word}" for word in words)
+
+
+def position_of(mechanism: Mechanism) -> Vector:
+    """The position of the platform: zero where the task commands none."""
+    return tuple(real(c) if c in mechanism.task.position else sp.Integer(0) for c in COORDINATE_NAMES)
+
+
+def rotation_of(mechanism: Mechanism) -> sp.Matrix:
+    """The rotation of the platform, in the names of its entries, or of the cosine and sine of its heading."""
+    if mechanism.task.turning is Turning.FULL:
+        return sp.Matrix(3, 3, ROTATION_ENTRIES)
+    return about_z(cosine(HEADING), sine(HEADING))
+
+
+def about_z(cos_value: sp.Expr, sin_value: sp.Expr) -> sp.Matrix:
+    """A rotation about z."""
+    return sp.Matrix([[cos_value, -sin_value, 0], [sin_value, cos_value, 0], [0, 0, 1]])
+
+
 def names(word: str, rod: Rod) -> tuple[sp.Symbol, ...]:
-    """The names of the components of a rod's vector: `span_1_x` and so on."""
-    return tuple(real(f"{word}_{rod.name}_{c}") for c in COORDINATE_NAMES)
+    """The names of the components of a rod's vector: `span_1_x` and so on; in a plane it has two."""
+    return tuple(real(f"{word}_{rod.name}_{c}") for c in COORDINATE_NAMES[: len(rod.plate)])
 
 
 def of(word: str, rod: Rod) -> sp.Symbol:
@@ -52,22 +90,35 @@ def of(word: str, rod: Rod) -> sp.Symbol:
     return real(f"{word}_{rod.name}")
 
 
+def vector_word(mechanism: Mechanism, rod: Rod) -> str:
+    """The word for a rod's vector: "span"; where joints move its base end, that is the word for the known part."""
+    return "rod" if is_driven(mechanism, rod.base) else "span"
+
+
+def is_driven(mechanism: Mechanism, values: Iterable[sp.Expr]) -> bool:
+    """Whether joints move any of the values."""
+    joints = {j.symbol for j in mechanism.joints}
+    return any(v.free_symbols & joints for v in values)
+
+
 def point_of(rod: Rod) -> Vector:
     """The rod's joint in the frame of the plate."""
-    point = tuple(sp.diff(rod.plate[0], entry) for entry in ROTATION_ENTRIES[:3])
+    point = tuple(sp.diff(rod.plate[0], entry) for entry in ROTATION_ENTRIES[: len(rod.plate)])
     if any(sp.expand(a - b) != 0 for a, b in zip(rod.plate, on_plate(*point), strict=True)):
         raise DescriptionError(f"rod {rod.name!r}: its end must be a point of the plate")
     return point
 
 
-def turned(rotation: Sequence[sp.Expr], point: Sequence[sp.Expr], called: Sequence[sp.Symbol]) -> tuple[Let, ...]:
-    """The product of a rotation, given by rows, and a point, bound to the names `called`."""
-    matrix = sp.Matrix(3, 3, list(rotation))
-    return tuple(Let(n, v) for n, v in zip(called, matrix * sp.Matrix(list(point)), strict=True))
+def turned(rotation: sp.Matrix, point: Sequence[sp.Expr], called: Sequence[sp.Symbol]) -> tuple[Let, ...]:
+    """The product of a rotation and a point, bound to the names `called`."""
+    size = len(point)
+    return tuple(Let(n, v) for n, v in zip(called, rotation[:size, :size] * sp.Matrix(list(point)), strict=True))
 
 
 def by_angles(words: Sequence[str] = ANGLES) -> sp.Matrix:
-    """Rz(yaw) Ry(pitch) Rx(roll), in the names of the cosines and sines."""
+    """Rz(yaw) Ry(pitch) Rx(roll), or Rz of a single angle, in the names of the cosines and sines."""
+    if len(words) == 1:
+        return about_z(real(f"cos_{words[0]}"), real(f"sin_{words[0]}"))
     (cr, cp, cy), (sr, sp_, sy) = (tuple(real(f"{f}_{w}") for w in words) for f in ("cos", "sin"))
     return sp.Matrix(
         [
@@ -78,38 +129,48 @@ def by_angles(words: Sequence[str] = ANGLES) -> sp.Matrix:
     )
 
 
-def span(rod: Rod, position: Sequence[sp.Expr], arm: Sequence[sp.Expr], base: Sequence[sp.Expr]) -> tuple[Let, ...]:
+def span(
+    rod: Rod, position: Sequence[sp.Expr], arm: Sequence[sp.Expr], base: Sequence[sp.Expr], word: str = "span"
+) -> tuple[Let, ...]:
     """The vector from the joint on the base to the joint on the plate."""
-    lets = (Let(n, p + a - b) for n, p, a, b in zip(names("span", rod), position, arm, base, strict=True))
+    lets = (Let(n, p + a - b) for n, p, a, b in zip(names(word, rod), position, arm, base, strict=False))
     return with_note(lets, f"leg {rod.name}: vector from its joint on the base to its joint on the platform")
 
 
-def length(rod: Rod) -> Let:
+def length(rod: Rod, word: str = "span") -> Let:
     """The length of the span."""
-    return Let(of("length", rod), Root(sp.Add(*[c**2 for c in names("span", rod)])))
+    return Let(of("length", rod), Root(sp.Add(*[c**2 for c in names(word, rod)])))
 
 
-def row(rod: Rod, arm: Sequence[sp.Expr], measured: sp.Expr) -> tuple[Let, ...]:
+def row(
+    mechanism: Mechanism, rod: Rod, arm: Sequence[sp.Expr], measured: sp.Expr, word: str = "span"
+) -> tuple[Let, ...]:
     """A row of A: the unit vector along a span of known length, and its moment about the origin of the plate."""
     along, one = names("along", rod), divisor(rod, measured)
     lets = (
         one,
-        *(Let(a, s / one.name) for a, s in zip(along, names("span", rod), strict=True)),
-        *_moment(rod, arm, along),
+        *(Let(a, s / one.name) for a, s in zip(along, names(word, rod), strict=True)),
+        *_moment(mechanism, rod, arm, along),
     )
     return with_note(lets, f"leg {rod.name} as a line: unit vector, and its moment about the platform's origin")
 
 
-def span_moment(rod: Rod, arm: Sequence[sp.Expr]) -> tuple[Let, ...]:
+def span_moment(mechanism: Mechanism, rod: Rod, arm: Sequence[sp.Expr], word: str = "span") -> tuple[Let, ...]:
     """The moment in a row of A, times the length of the leg: nothing is divided."""
     return with_note(
-        _moment(rod, arm, names("span", rod)), f"leg {rod.name}: the moment of its span about the platform's origin"
+        _moment(mechanism, rod, arm, names(word, rod)),
+        f"leg {rod.name}: the moment of its span about the platform's origin",
     )
 
 
-def _moment(rod: Rod, arm: Sequence[sp.Expr], vector: Sequence[sp.Expr]) -> tuple[Let, ...]:
-    moment = sp.Matrix(list(arm)).cross(sp.Matrix(list(vector))) / RADIUS
-    return tuple(Let(n, v) for n, v in zip(names("moment", rod), moment, strict=True))
+def _moment(mechanism: Mechanism, rod: Rod, arm: Sequence[sp.Expr], vector: Sequence[sp.Expr]) -> tuple[Let, ...]:
+    padded = [sp.Matrix([*v, *[0] * (3 - len(v))]) for v in (arm, vector)]
+    moment = dict(zip(COORDINATE_NAMES, padded[0].cross(padded[1]) / RADIUS, strict=True))
+    return tuple(Let(n, moment[c]) for n, c in zip(_moments(mechanism, rod), spins(mechanism), strict=True))
+
+
+def _moments(mechanism: Mechanism, rod: Rod) -> tuple[sp.Symbol, ...]:
+    return tuple(real(f"moment_{rod.name}_{c}") for c in spins(mechanism))
 
 
 def divisor(rod: Rod, measured: sp.Expr) -> Let:
@@ -123,8 +184,14 @@ def with_note(lets: Iterable[Let], note: str) -> tuple[Let, ...]:
     return (replace(first, note=note), *others)
 
 
-def rows(mechanism: Mechanism, vector: str = "along") -> tuple[sp.Symbol, ...]:
-    """The names of the entries of A, by rows. With the vector "span" each row is multiplied by the
+def rows(mechanism: Mechanism, vectors: Sequence[str] | None = None) -> tuple[sp.Symbol, ...]:
+    """The names of the entries of A, by rows. With the words of the rods' vectors each row is multiplied by the
     length of its leg.
     """
-    return tuple(entry for rod in mechanism.rods for word in (vector, "moment") for entry in names(word, rod))
+    width = len(mechanism.task.position)
+    words = vectors or ["along"] * len(mechanism.rods)
+    return tuple(
+        entry
+        for rod, word in zip(mechanism.rods, words, strict=True)
+        for entry in (*names(word, rod)[:width], *_moments(mechanism, rod))
+    )

@@ -1,10 +1,10 @@
-"""Forward kinematics of a platform that moves freely: Newton's method on the lengths of its rods, from a start pose.
+"""Forward kinematics of a platform that a loop turns: Newton's method on the lengths of its rods, from a start pose.
 
 The state is the position, and the rotation from the start in roll, pitch and yaw: R = Rz(yaw) Ry(pitch) Rx(roll)
-R_start. A step solves A (v, w) = -e for the twist; w = E (roll', pitch', yaw') gives the rates of the angles. A step is
-at most half the size of the machine and half a radian, so that nothing overflows, and a far start does not lead into
-another assembly mode. The iteration ends when the rods fit for the second time: the step between leaves rounding errors
-only, however small det A is.
+R_start; of a platform that turns about z alone it is yaw. A step solves A (v, w) = -e for the twist; w = E (roll',
+pitch', yaw') gives the rates of the angles. A step is at most half the size of the machine and half a radian, so that
+nothing overflows, and a far start does not lead into another assembly mode. The iteration ends when the rods fit for
+the second time: the step between leaves rounding errors only, however small det A is.
 """
 
 from __future__ import annotations
@@ -16,8 +16,10 @@ import sympy as sp
 
 from derive.description.mechanism import (
     Mechanism,
+    Turning,
 )
 from derive.equations.axes import finite, joint_lets
+from derive.equations.closure import fixed_lets, with_fixed_names
 from derive.equations.pose_at_axes import (
     Forward,
 )
@@ -45,29 +47,37 @@ from derive.ir.program import (
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
-    COORDINATE_NAMES,
     DETERMINANT,
+    HEADING,
     HOME_ROTATION,
-    POSITION,
     ROTATION_ENTRIES,
     SCALE,
     START_POSITION,
     START_ROTATION,
+    cosine,
     flag,
     real,
+    sine,
 )
 from derive.plate.legs import (
     ANGLES,
     RADIUS,
+    about_z,
+    angles,
     by_angles,
+    home_angles,
     length,
     names,
     of,
     point_of,
+    position_of,
+    rotation_of,
     row,
     rows,
     span,
+    spins,
     turned,
+    vector_word,
     with_note,
 )
 
@@ -75,8 +85,9 @@ SEARCH = "find_platform"
 """The name of the program."""
 LIMIT = 20
 """Iterations, at most: from a neighbouring pose it takes four."""
-_TURN = tuple(real(f"turned_{r.name[1:]}") for r in ROTATION_ENTRIES)
+_TURN = sp.Matrix(3, 3, [real(f"turned_{r.name[1:]}") for r in ROTATION_ENTRIES])
 """The rotation from the start."""
+_START_HEADING = (real("start_cos_heading"), real("start_sin_heading"))
 
 
 @dataclass(frozen=True)
@@ -91,12 +102,57 @@ class Start:
 
 def at_home(mechanism: Mechanism) -> Start:
     """Start at the machine's home pose."""
-    return Start((), mechanism.home[:3], HOME_ROTATION, "the home pose")
+    rotation = HOME_ROTATION if _is_free(mechanism) else tuple(by_angles(home_angles(mechanism))[:2, 0])
+    return Start((), mechanism.home[: len(mechanism.task.position)], rotation, "the home pose")
 
 
-def at_given() -> Start:
-    """Start at a given pose, which is an input of the program."""
-    return Start(finite(START_POSITION), START_POSITION, START_ROTATION, "the given start")
+def at_given(mechanism: Mechanism) -> Start:
+    """Start at a given pose, which is an input of the program: of its rotation the nearest one about z where the
+    platform turns about z alone.
+    """
+    position = START_POSITION[: len(mechanism.task.position)]
+    if _is_free(mechanism):
+        return Start(finite(position), position, START_ROTATION, "the given start")
+    along, across, size = (real(f"start_{word}") for word in ("along", "across", "length"))
+    given = sp.Matrix(3, 3, START_ROTATION)
+    determined = sp.Gt(size, FREE_ANGLE)
+    cos_start, sin_start = _START_HEADING
+    divisor = real("start_divisor")
+    lets = (
+        Let(along, given[0, 0] + given[1, 1], "nearest rotation about Z"),
+        Let(across, given[1, 0] - given[0, 1]),
+        Let(size, Root(along**2 + across**2)),
+        Require(determined, Status.BAD_INPUT, reason=about_machine(Why.OPPOSITE)),
+        Let(divisor, Select(determined, size, sp.Integer(1))),
+        Let(cos_start, along / divisor),
+        Let(sin_start, across / divisor),
+    )
+    return Start((*finite(position), *lets), position, _START_HEADING, "the given start")
+
+
+def _is_free(mechanism: Mechanism) -> bool:
+    """Whether the platform turns about every axis."""
+    return mechanism.task.turning is Turning.FULL
+
+
+def _start_arguments(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """The pose at which the shared program starts: position, then the rotation or cosine and sine of the heading."""
+    rotation = START_ROTATION if _is_free(mechanism) else _START_HEADING
+    return (*START_POSITION[: len(mechanism.task.position)], *rotation)
+
+
+def _start_rotation(mechanism: Mechanism) -> sp.Matrix:
+    return sp.Matrix(3, 3, START_ROTATION) if _is_free(mechanism) else about_z(*_START_HEADING)
+
+
+def _position(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """The part of the position that the iteration finds."""
+    return tuple(map(real, mechanism.task.position))
+
+
+def _rotation_names(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """The rotation that it finds: all entries, or cosine and sine of the heading."""
+    return ROTATION_ENTRIES if _is_free(mechanism) else (cosine(HEADING), sine(HEADING))
 
 
 def found_from(mechanism: Mechanism, start: Start, search: Program) -> Forward:
@@ -104,23 +160,26 @@ def found_from(mechanism: Mechanism, start: Start, search: Program) -> Forward:
     all programs share.
     """
     axes = tuple((j.axis, j.axis) for j in mechanism.joints)
-    begin = zip((*START_POSITION, *START_ROTATION), (*start.position, *start.rotation), strict=True)
+    begin = zip(_start_arguments(mechanism), (*start.position, *start.rotation), strict=True)
     outputs = tuple(real(o.name) for o in search.outputs)
     call = Call(search, (*axes, *begin), outputs, f"pose of the platform, by Newton's method from {start.name}")
     lets = (*joint_lets(mechanism), *_bases(mechanism)[0])
-    return Forward((*start.statements, *lets, call), POSITION, ROTATION_ENTRIES)
+    return Forward((*start.statements, *lets, call), position_of(mechanism), tuple(rotation_of(mechanism)))
 
 
 def search_program(mechanism: Mechanism) -> Program:
     """The program that finds the pose of the platform at its axis values from a start, the rows of
     A there, and det A.
     """
-    outputs = [Output(n.name, n) for n in (*POSITION, *ROTATION_ENTRIES, DETERMINANT, *rows(mechanism))]
-    positive = sp.And(*[sp.Gt(v, 0) for v in mechanism.positive])
+    found = (*_position(mechanism), *_rotation_names(mechanism))
+    outputs = [Output(n.name, n) for n in (*found, DETERMINANT, *rows(mechanism))]
+    joints = {j.symbol for j in mechanism.joints}
+    positive = [sp.Gt(v, 0) for v in mechanism.positive if v.free_symbols <= joints]
+    mirror = Require(sp.And(*positive), Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_MIRROR))
     checks: tuple[Statement, ...] = (
         *finite([j.axis for j in mechanism.joints]),
         *joint_lets(mechanism),
-        Require(positive, Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_MIRROR)),
+        *([mirror] if positive else []),
     )
     search = normalise(SEARCH, (*checks, *_newton(mechanism)), outputs)
     return replace(
@@ -130,15 +189,20 @@ def search_program(mechanism: Mechanism) -> Program:
 
 def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
     """The iteration: position and rotation at given joint values, and the rows of A there."""
-    pose = (*POSITION, *map(real, ANGLES))
+    pose = (*_position(mechanism), *map(real, angles(mechanism)))
     within = real("within")
     bases = _bases(mechanism)
     fits = sp.And(*[sp.Le(sp.Abs(of("error", rod)), within) for rod in mechanism.rods])
     fit, fitted = flag("fit"), flag("fitted")
-    rotation = sp.Matrix(3, 3, _TURN) * sp.Matrix(3, 3, START_ROTATION)
+    rotation = _turn(mechanism) * _start_rotation(mechanism)
+    entries = rotation if _is_free(mechanism) else rotation[:2, 0]
     loop = Iterate(
         state=(*pose, fitted),
-        start=(*START_POSITION, *[sp.Integer(0)] * 3, sp.false),
+        start=(
+            *START_POSITION[: len(mechanism.task.position)],
+            *[sp.Integer(0)] * len(angles(mechanism)),
+            sp.false,
+        ),
         step=(
             *_pass(mechanism, bases),
             Let(fit, fits, "whether every leg has its length"),
@@ -151,43 +215,68 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
         note="Newton's method: every pass improves the pose until all legs fit",
         reason=about_machine(Why.NOT_CONVERGED),
     )
-    arms = (let for rod in mechanism.rods for let in turned(START_ROTATION, point_of(rod), names("start_arm", rod)))
+    start = _start_rotation(mechanism)
+    arms = (let for rod in mechanism.rods for let in turned(start, point_of(rod), names("start_arm", rod)))
     return (
         *with_note(arms, "joints of the platform, seen from its origin, in the orientation of the start"),
         *bases[0],
         Let(within, CONVERGED * SCALE, "tolerance of the leg lengths"),
         loop,
         Require(sp.Gt(ASSEMBLY_SIGN * DETERMINANT, 0), Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_ASSEMBLY)),
-        *with_note((Let(n, v) for n, v in zip(ROTATION_ENTRIES, rotation, strict=True)), "orientation of the platform"),
+        *with_note(
+            (Let(n, v) for n, v in zip(_rotation_names(mechanism), entries, strict=True)), "orientation of the platform"
+        ),
+        *_mirrors(mechanism),
     )
+
+
+def _mirrors(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """The conditions that quantities of joints and pose are positive, at the pose that was found."""
+    joints = {j.symbol for j in mechanism.joints}
+    values = [with_fixed_names(mechanism, v) for v in mechanism.positive if not v.free_symbols <= joints]
+    lets, named = named_trigonometry(mechanism, values) if values else ((), [])
+    reason = about_machine(Why.OTHER_MIRROR)
+    return (*fixed_lets(mechanism), *lets, *(Require(sp.Ge(v, 0), Status.IMPOSSIBLE, reason=reason) for v in named))
+
+
+def _turn(mechanism: Mechanism) -> sp.Matrix:
+    """The rotation from the start, in names."""
+    return _TURN if _is_free(mechanism) else by_angles(angles(mechanism))
 
 
 def _bases(mechanism: Mechanism) -> tuple[tuple[Let, ...], list[sp.Expr]]:
     """The base joints of the rods and their lengths, every sine and cosine by its name."""
-    return named_trigonometry(mechanism, [v for rod in mechanism.rods for v in (*rod.base, rod.length)])
+    values = [with_fixed_names(mechanism, v) for rod in mechanism.rods for v in (*rod.base, rod.length)]
+    lets, named = named_trigonometry(mechanism, values)
+    return (*fixed_lets(mechanism), *lets), named
 
 
 def _pass(mechanism: Mechanism, bases: tuple[tuple[Let, ...], list[sp.Expr]]) -> tuple[Let, ...]:
     """The rods at the pose of the state: their lines, and their length errors."""
-    lets = [Let(real(f"{w}_{a}"), f(real(a))) for a in ANGLES for w, f in (("cos", sp.cos), ("sin", sp.sin))]
-    turn = (Let(n, v) for n, v in zip(_TURN, by_angles(), strict=True))
-    lets += with_note(turn, "rotation from the start: Rz(yaw) Ry(pitch) Rx(roll)")
-    for i, rod in enumerate(mechanism.rods):
-        *base, wanted = bases[1][4 * i : 4 * i + 4]
-        arm = names("arm", rod)
-        lets += turned(_TURN, names("start_arm", rod), arm)
-        lets += [*span(rod, POSITION, arm, base), length(rod), *row(rod, arm, of("length", rod))]
+    words = angles(mechanism)
+    lets = [Let(real(f"{w}_{a}"), f(real(a))) for a in words for w, f in (("cos", sp.cos), ("sin", sp.sin))]
+    if _is_free(mechanism):
+        turn = (Let(n, v) for n, v in zip(_TURN, by_angles(), strict=True))
+        lets += with_note(turn, "rotation from the start: Rz(yaw) Ry(pitch) Rx(roll)")
+    values = iter(bases[1])
+    for rod in mechanism.rods:
+        base, wanted = [next(values) for _ in rod.base], next(values)
+        arm, word = names("arm", rod), vector_word(mechanism, rod)
+        lets += turned(_turn(mechanism), names("start_arm", rod), arm)
+        lets += [*span(rod, position_of(mechanism), arm, base, word), length(rod, word)]
+        lets += row(mechanism, rod, arm, of("length", rod), word)
         lets.append(Let(of("error", rod), of("length", rod) - wanted, f"length error of leg {rod.name}"))
     return tuple(lets)
 
 
 def _step(mechanism: Mechanism) -> tuple[Let | Solve, ...]:
     """The step of the state that cancels every error to first order, and the divisor that keeps it within bounds."""
-    twist = tuple(real(f"{c}_rate") for c in COORDINATE_NAMES), tuple(real(f"swing_{c}") for c in COORDINATE_NAMES)
-    spin = tuple(real(f"spin_{c}") for c in COORDINATE_NAMES)
+    about = spins(mechanism)
+    twist = tuple(real(f"{c}_rate") for c in mechanism.task.position), tuple(real(f"swing_{c}") for c in about)
+    spin = tuple(real(f"spin_{c}") for c in about)
     size = real("size")
     too_large = sp.Gt(size, sp.Rational(1, 2))
-    shares = [*(v / SCALE for v in twist[0]), *(real(f"{a}_rate") for a in ANGLES)]
+    shares = [*(v / SCALE for v in twist[0]), *(real(f"{a}_rate") for a in angles(mechanism))]
     errors = tuple(-of("error", rod) for rod in mechanism.rods)
     return (
         Solve(
@@ -205,7 +294,12 @@ def _step(mechanism: Mechanism) -> tuple[Let | Solve, ...]:
 
 
 def _rates(spin: Sequence[sp.Expr]) -> tuple[Let, ...]:
-    """w = E (roll', pitch', yaw') with E = [[cp cy, -sy, 0], [cp sy, cy, 0], [-sp, 0, 1]], solved for the rates."""
+    """The rates of the angles: of yaw alone it is w.
+
+    Else w = E (roll', pitch', yaw') with E = [[cp cy, -sy, 0], [cp sy, cy, 0], [-sp, 0, 1]].
+    """
+    if len(spin) == 1:
+        return (Let(real("yaw_rate"), spin[0]),)
     roll, pitch, yaw = (real(f"{a}_rate") for a in ANGLES)
     cos_pitch, sin_pitch, cos_yaw, sin_yaw = map(real, ("cos_pitch", "sin_pitch", "cos_yaw", "sin_yaw"))
     divisor = real("cos_pitch_divisor")

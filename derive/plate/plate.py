@@ -1,4 +1,4 @@
-"""A platform on six rods that moves with its whole pose: its home pose, the checks of its inverse, and its singularity.
+"""A platform that a loop turns: its home pose, the checks of its inverse, and its Jacobian.
 
 det A (see `legs`) is the margin: it is zero where the lines of the rods belong to one linear complex (type 2). The
 inverse computes it from the spans of the legs, and divides by their lengths at the end.
@@ -10,17 +10,21 @@ from collections.abc import Sequence
 
 import sympy as sp
 
+from derive.algebra.normal_form import polynomial
 from derive.description.mechanism import (
+    Branch,
     DescriptionError,
     Mechanism,
     Rod,
 )
+from derive.equations.closure import all_angles, fixed_angles, fixed_lets, signs_of, with_fixed_names
+from derive.equations.trigonometry import named_trigonometry
 from derive.ir.constants import (
+    DEGREE,
     FREE_ANGLE,
     SHORTEST_LINK,
     SINGULAR,
 )
-from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -28,7 +32,6 @@ from derive.ir.primitives import (
 from derive.ir.program import (
     Let,
     Output,
-    Program,
     Require,
     Solve,
     Statement,
@@ -41,54 +44,115 @@ from derive.ir.symbols import (
     DETERMINANT,
     HOME_ROTATION,
     MIN_TYPE2_MARGIN,
-    POSITION,
-    ROTATION_ENTRIES,
     SCALE,
+    cosine,
     real,
+    sine,
 )
 from derive.plate.cones import cone_axes, cone_checks, cone_constants
 from derive.plate.legs import (
-    ANGLES,
     MARGIN,
     RADIUS,
     by_angles,
     divisor,
+    home_angles,
+    is_driven,
     length,
     names,
     of,
     point_of,
+    position_of,
+    rotation_of,
     row,
     rows,
     span,
     span_moment,
+    spins,
     turned,
+    vector_word,
 )
 
 _APART = "legs that have a length at the home pose, and joints that are apart"
 _HELD = "a home pose at which the legs hold the platform"
 
 
-def machine_statements(mechanism: Mechanism) -> tuple[Statement, ...]:
+def machine_statements(mechanism: Mechanism, at_home: Sequence[Statement] = ()) -> tuple[Statement, ...]:
     """The statements that depend on parameters alone: home rotation and arms, scales, assembly mode
     at the home pose.
+
+    at_home: the statements that bind the joints at the home pose, `home_cos_a1`, where joints move ends of rods.
     """
-    if len(mechanism.rods) != 6 or len(mechanism.home) != 6:
-        raise DescriptionError("a platform that moves freely needs six rods and a home pose of six coordinates")
-    turns = tuple(zip(ANGLES, mechanism.home[3:], strict=True))
-    trigonometric = (Let(real(f"{w}_home_{n}"), f(v)) for n, v in turns for w, f in (("cos", sp.cos), ("sin", sp.sin)))
-    rotation = by_angles([f"home_{n}" for n in ANGLES])
+    later = (rod for rod in mechanism.rods if is_driven(mechanism, rod.base))
+    return (
+        *platform_size(mechanism),
+        *at_home,
+        *(let for rod in later for let in _span_at_home(mechanism, rod)),
+        *_mode_at_home(mechanism),
+    )
+
+
+def platform_size(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """The home pose, the arms there, and the scales of the machine. Lengths that are joints are those at home."""
+    turns = tuple(zip(home_angles(mechanism), mechanism.home[len(mechanism.task.position) :], strict=True))
+    trigonometric = (Let(real(f"{w}_{n}"), f(v)) for n, v in turns for w, f in (("cos", sp.cos), ("sin", sp.sin)))
+    rotation = by_angles([n for n, _ in turns])
+    entries = zip(HOME_ROTATION, rotation, strict=True) if len(turns) > 1 else ()
+    home = home_rotation(mechanism)
     return (
         *trigonometric,
-        *(Let(n, v) for n, v in zip(HOME_ROTATION, rotation, strict=True)),
-        *(let for rod in mechanism.rods for let in turned(HOME_ROTATION, point_of(rod), names("home_arm", rod))),
+        *(Let(n, v) for n, v in entries),
+        *(let for rod in mechanism.rods for let in turned(home, point_of(rod), names("home_arm", rod))),
         *_platform_radius(mechanism),
-        *_at_home(mechanism),
+        *_lengths_at_home(mechanism),
     )
+
+
+def home_flag(branch: Branch) -> str:
+    """The parameter that tells that the machine is in the second way of a branch at its home pose."""
+    return f"home_{branch.name}_{branch.names[1]}"
+
+
+def home_branches(mechanism: Mechanism) -> tuple[Branch, ...]:
+    """The branches on which the lines of the legs at the home pose depend."""
+    is_needed = is_driven(mechanism, [v for rod in mechanism.rods for v in rod.base])
+    return mechanism.branches if is_needed else ()
+
+
+def check_home(mechanism: Mechanism) -> None:
+    """Refuse a loop that is not stated as these programs need it."""
+    count = len(mechanism.task.position) + len(spins(mechanism))
+    rods = len(mechanism.rods)
+    if rods != count or mechanism.closure:
+        raise DescriptionError(
+            f"a platform that a loop turns needs a rod for each of the {count} quantities of the task: "
+            f"it has {rods} rods" + (" and other equations" if mechanism.closure else "")
+        )
+    for rod in mechanism.rods:
+        if is_driven(mechanism, point_of(rod)):
+            raise DescriptionError(
+                f"rod {rod.name!r}: its end must be a point of the plate, which no joint moves on it"
+            )
+    if len(mechanism.home) != count:
+        raise DescriptionError(
+            f"a platform that a loop turns needs a home pose of {count} coordinates, and has {len(mechanism.home)}"
+        )
+
+
+def home_rotation(mechanism: Mechanism) -> sp.Matrix:
+    """The rotation of the home pose, in names that the setup binds."""
+    words = home_angles(mechanism)
+    return by_angles(words) if len(words) == 1 else sp.Matrix(3, 3, HOME_ROTATION)
+
+
+def home_position(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
+    """The position of the home pose: zero where the task commands none."""
+    given = dict(zip(mechanism.task.position, mechanism.home, strict=False))
+    return tuple(given.get(c, sp.Integer(0)) for c in COORDINATE_NAMES)
 
 
 def _platform_radius(mechanism: Mechanism) -> tuple[Let, ...]:
     points = [point_of(rod) for rod in mechanism.rods]
-    centre = tuple(real(f"centre_{c}") for c in COORDINATE_NAMES)
+    centre = tuple(real(f"centre_{c}") for c, _ in zip(COORDINATE_NAMES, points[0], strict=False))
     means = (sp.Add(*column) / len(points) for column in zip(*points, strict=True))
     squares = [(c - m) ** 2 for point in points for c, m in zip(point, centre, strict=True)]
     spread = real("spread")
@@ -99,20 +163,44 @@ def _platform_radius(mechanism: Mechanism) -> tuple[Let, ...]:
     )
 
 
-def _at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
-    """The legs at the home pose, which must hold the platform."""
-    rods, arms = mechanism.rods, [names("home_arm", rod) for rod in mechanism.rods]
+def _lengths_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """The lengths of the legs at the home pose: where one is a joint, it follows from the pose."""
+    rods = mechanism.rods
+    fixed = [rod for rod in rods if not is_driven(mechanism, rod.base)]
+    measured = [rod for rod in fixed if is_driven(mechanism, [rod.length])]
     lengths = tuple(of("length", rod) for rod in rods)
     shortest = SHORTEST_LINK * SCALE
     apart = sp.And(sp.Gt(real("spread"), shortest), *[sp.Gt(v, shortest) for v in lengths])
-    spans = (span(rod, mechanism.home[:3], arm, rod.base) for rod, arm in zip(rods, arms, strict=True))
     return (
-        *(let for lets in spans for let in lets),
-        *(length(rod) for rod in rods),
+        *(let for rod in fixed for let in _span_at_home(mechanism, rod)),
+        *(length(rod) if rod in measured else Let(of("length", rod), rod.length) for rod in rods),
         Let(SCALE, sp.Add(*lengths) / len(lengths) + RADIUS, "characteristic length: mean leg, radius of the platform"),
         Require(apart, Status.NOT_INITIALIZED, reason=about_parameters(_APART)),
-        *(let for rod, arm in zip(rods, arms, strict=True) for let in row(rod, arm, of("length", rod))),
-        *cone_axes(mechanism, HOME_ROTATION),
+    )
+
+
+def _span_at_home(mechanism: Mechanism, rod: Rod) -> tuple[Let, ...]:
+    base = [at_home_joints(mechanism, v) for v in rod.base]
+    return span(rod, home_position(mechanism), names("home_arm", rod), base, vector_word(mechanism, rod))
+
+
+def at_home_joints(mechanism: Mechanism, value: sp.Expr) -> sp.Expr:
+    """A value with the joints at the home pose: `home_cos_a1`, `home_a1`."""
+    form = polynomial(with_fixed_names(mechanism, value), all_angles(mechanism), signs_of(mechanism))
+    own = [s for j in mechanism.joints for s in (j.symbol, cosine(j.symbol), sine(j.symbol))]
+    unfixed = {f(a): g(a * DEGREE) for a in fixed_angles(mechanism) for f, g in ((cosine, sp.cos), (sine, sp.sin))}
+    return form.xreplace({s: real(f"home_{s.name}") for s in own} | unfixed) if is_driven(mechanism, [value]) else value
+
+
+def _mode_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """The lines of the legs at the home pose, and the sign of their determinant."""
+    lines = (
+        row(mechanism, rod, names("home_arm", rod), of("length", rod), vector_word(mechanism, rod))
+        for rod in mechanism.rods
+    )
+    return (
+        *(let for lets in lines for let in lets),
+        *cone_axes(mechanism, home_rotation(mechanism)),
         Solve(
             (),
             rows(mechanism),
@@ -129,7 +217,9 @@ def _at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 def machine_constants(mechanism: Mechanism) -> tuple[Output, ...]:
     """The outputs that other programs may read."""
-    own = (Output(n.name, n) for n in (*HOME_ROTATION, RADIUS, SCALE, ASSEMBLY_SIGN))
+    words = home_angles(mechanism)
+    rotation = HOME_ROTATION if len(words) > 1 else tuple(real(f"{w}_{words[0]}") for w in ("cos", "sin"))
+    own = (Output(n.name, n) for n in (*rotation, RADIUS, SCALE, ASSEMBLY_SIGN))
     return (*own, *cone_constants(mechanism))
 
 
@@ -140,20 +230,29 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
     bound = {s.name for s in solved if isinstance(s, Let)}
     lets: list[Let] = []
     for rod in mechanism.rods:
-        arm = names("arm", rod)
+        arm, word = names("arm", rod), vector_word(mechanism, rod)
+        base = [
+            polynomial(with_fixed_names(mechanism, v), all_angles(mechanism), signs_of(mechanism))
+            if is_driven(mechanism, rod.base)
+            else v
+            for v in rod.base
+        ]
         vectors = (
-            *turned(ROTATION_ENTRIES, point_of(rod), arm),
-            *span(rod, POSITION, arm, rod.base),
-            *span_moment(rod, arm),
+            *turned(rotation_of(mechanism), point_of(rod), arm),
+            *span(rod, position_of(mechanism), arm, base, word),
+            *span_moment(mechanism, rod, arm, word),
         )
-        lets += [let for let in (*vectors, divisor(rod, rod.length)) if let.name not in bound]
+        lets += [let for let in vectors if let.name not in bound]
+        lets += [divisor(rod, rod.length)] if is_driven(mechanism, [rod.length]) else []
     margin, least = ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN)
-    of_spans, lengths = real("determinant_of_spans"), sp.Mul(*[of("divisor", rod) for rod in mechanism.rods])
+    lengths = sp.Mul(*[of("divisor", r) if is_driven(mechanism, [r.length]) else r.length for r in mechanism.rods])
+    of_spans = real("determinant_of_spans")
+    words = [vector_word(mechanism, rod) for rod in mechanism.rods]
     return (
         *lets,
-        *(_long_enough(rod) for rod in mechanism.rods),
+        *(_long_enough(rod) for rod in mechanism.rods if is_driven(mechanism, [rod.length])),
         *cone_checks(mechanism),
-        Solve((), rows(mechanism, "span"), (), of_spans, "determinant of the spans of the legs and their moments"),
+        Solve((), rows(mechanism, words), (), of_spans, "determinant of the spans of the legs and their moments"),
         Let(
             DETERMINANT,
             of_spans / lengths,
@@ -172,22 +271,21 @@ def _long_enough(rod: Rod) -> Require:
 def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
     """The Jacobian A^-1 (-B) at a pose that forward kinematics has found."""
     joints = [j.symbol for j in mechanism.joints]
-    driven = sp.Matrix([_driven(rod).jacobian(joints) for rod in mechanism.rods]) * motors
-    width = len(joints)
-    words = (*(f"v{c}" for c in COORDINATE_NAMES), *(f"w{c}" for c in COORDINATE_NAMES))
+    driven = sp.Matrix([_driven(mechanism, rod).jacobian(joints) for rod in mechanism.rods]) * motors
+    lets, named = named_trigonometry(mechanism, list(driven))
+    width, shifts = len(joints), len(mechanism.task.position)
+    words = (*(f"v{c}" for c in mechanism.task.position), *(f"w{c}" for c in spins(mechanism)))
     entries = [real(f"column_{column}_{word}") for word in words for column in range(1, width + 1)]
     held = Require(sp.Gt(sp.Abs(DETERMINANT), FREE_ANGLE), Status.IMPOSSIBLE, reason=about_machine(Why.UNCONTROLLED))
     system = Solve(
-        tuple(entries), rows(mechanism), tuple(driven), None, "twist of the platform per velocity of each leg"
+        tuple(entries), rows(mechanism), tuple(named), None, "twist of the platform per velocity of each axis"
     )
-    return (held, system), [e if k // width < 3 else e / RADIUS for k, e in enumerate(entries)]
+    return (held, *fixed_lets(mechanism), *lets, system), [
+        e if k // width < shifts else e / RADIUS for k, e in enumerate(entries)
+    ]
 
 
-def _driven(rod: Rod) -> sp.Matrix:
+def _driven(mechanism: Mechanism, rod: Rod) -> sp.Matrix:
     """The negative of a rod's residual as a function of the joints, at a constant direction: along . base + length."""
-    return sp.Matrix([sum((a * b for a, b in zip(names("along", rod), rod.base, strict=True)), rod.length)])
-
-
-def platform_singularity(statements: Sequence[Statement]) -> Program:
-    """The margin at a pose that forward kinematics has found."""
-    return normalise("singularity", statements, [Output(MARGIN, DETERMINANT)])
+    ahead = sum((a * b for a, b in zip(names("along", rod), rod.base, strict=True)), rod.length)
+    return sp.Matrix([with_fixed_names(mechanism, ahead)])

@@ -21,12 +21,12 @@ from derive.ir.program import (
     Status,
 )
 from derive.ir.symbols import (
-    HOME_ROTATION,
     ROTATION_ENTRIES,
 )
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS
 from derive.kinematics.reference_cases import Bytes, Reals
+from derive.plate.plate import home_flag, home_position, home_rotation
 
 FRAME = ("x", "y", "z", *(r.name for r in ROTATION_ENTRIES))
 _DECIMALS, _ROTATION_DECIMALS = 6, 9
@@ -45,10 +45,14 @@ class Machine:
 
     @property
     def home(self) -> Reals:
-        """Axis values of a platform at its home pose."""
-        position = (float(evaluate(v, self.values)) for v in self.kinematics.mechanism.home[:3])
-        frame = (*position, *(float(self.values[n.name]) for n in HOME_ROTATION))
-        return inverse(self, frame, (), (0.0,) * len(self.kinematics.mechanism.joints))[1]
+        """Axis values of a platform at its home pose, in the branches that the parameters tell for it."""
+        mechanism = self.kinematics.mechanism
+        position = (float(evaluate(v, self.values)) for v in home_position(mechanism))
+        frame = (*position, *(float(evaluate(entry, self.values)) for entry in home_rotation(mechanism)))
+        told = {b.name: self.given.get(home_flag(b), 0.0) for b in mechanism.branches}
+        chosen = tuple(1 + int(told[b.name]) for b in mechanism.branches)
+        configuration = (*chosen, *(0,) * len(mechanism.period_joints))
+        return inverse(self, frame, configuration, (0.0,) * len(mechanism.joints))[1]
 
 
 def machine_with(kinematics: Kinematics, given: Mapping[str, float]) -> Machine:

@@ -112,8 +112,8 @@ def check_margins(kin: Kinematics, closure: Closure, samples: Samples) -> float:
     for margin in kin.margins:
         expected = expected * np.abs(outputs[margin.factor]) ** margin.exponent
     solved = samples.jacobian[:, :, closure.solved]
-    j = solved if solved.shape[1] <= solved.shape[2] else np.swapaxes(solved, 1, 2)
-    ratio = np.sqrt(np.linalg.det(j @ np.swapaxes(j, 1, 2))) / expected
+    volume = np.prod(np.linalg.svd(solved, compute_uv=False), axis=1)  # squaring J would lose half the digits
+    ratio = volume / expected
     constant = {m: np.median(ratio[samples.machine == m]) for m in np.unique(samples.machine)}
     errors = np.abs(ratio / np.array([constant[m] for m in samples.machine]) - 1.0)
     return worst(kin, "singularity margins against det J", errors, samples, MARGIN_TOLERANCE)

@@ -1,37 +1,112 @@
-"""Axis values of a platform that moves freely: the closure solved for the joints at poses around its home pose."""
+"""Axis values of a loop that turns its platform: the closure solved for the joints at poses around its home pose."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.random import Generator
+from numpy.typing import NDArray
 
 from derive.description.mechanism import Mechanism
 from derive.ir.interpret import Array, evaluate
 from derive.witness.closure import Closure
 
-_SHIFT = 0.02
-"""The largest distance of the platform from its home pose, in reaches: a reach is the sum of all coordinates."""
+_SHIFT = 0.2
+"""The largest distance of the platform from its home pose, in reaches."""
 _TURN = np.radians(20.0)
 _ITERATIONS = 60
+_ROUNDS = 12
+_STILL = 1e-15
 
 
 def axes_near_home(
     mechanism: Mechanism, closure: Closure, values: dict[str, Array], parameters: Array, reach: Array, rng: Generator
 ) -> Array:
     """Axis values at random poses around home, by Newton's method on the closure itself."""
-    home = np.stack([np.broadcast_to(evaluate(v, values), reach.shape) for v in mechanism.home], axis=1)
-    position = home[:, :3] + _SHIFT * reach[:, None] * rng.uniform(-1.0, 1.0, (len(reach), 3))
-    rotation = _turn(2, home[:, 5]) @ _turn(1, home[:, 4]) @ _turn(0, home[:, 3])
-    for axis in range(3):
-        rotation = _turn(axis, _TURN * rng.uniform(-1.0, 1.0, len(reach))) @ rotation
+    home = poses_at_home(mechanism, values, reach)
+    position = home[:, :3].copy()
+    width = len(mechanism.task.position)
+    position[:, :width] += _SHIFT * reach[:, None] * rng.uniform(-1.0, 1.0, (len(reach), width))
+    rotation = home[:, 3:].reshape(-1, 3, 3)
+    for row in closure.task[width:]:
+        rotation = _turn("xyz".index(row[-1]), _TURN * rng.uniform(-1.0, 1.0, len(reach))) @ rotation
     pose = np.concatenate([position, rotation.reshape(-1, 9)], axis=1)
-    joints = closure.joint_scale(reach)
-    for _ in range(_ITERATIONS):
-        residual, slopes = (f(joints, pose, parameters) for f in (closure.residual, closure.by_joints))
-        joints = joints - (np.linalg.pinv(slopes) @ residual)[:, :, 0]
     units = closure.joint_scale(reach) / closure.axis_scale(reach)
     offsets = np.stack([values[j.offset.name] for j in mechanism.joints], axis=1)
-    return np.asarray(joints / units + offsets)
+    return np.asarray(joints_at(mechanism, closure, pose, parameters, reach, rng) / units + offsets)
+
+
+def poses_at_home(mechanism: Mechanism, values: dict[str, Array], reach: Array) -> Array:
+    """The home pose of every machine: position, then rotation by rows."""
+    home = np.stack([np.broadcast_to(evaluate(v, values), reach.shape) for v in mechanism.home], axis=1)
+    width = len(mechanism.task.position)
+    position = np.zeros((len(reach), 3))
+    position[:, :width] = home[:, :width]
+    turns = dict(zip((2,) if home.shape[1] - width == 1 else (0, 1, 2), home[:, width:].T, strict=True))
+    rotation = np.tile(np.eye(3), (len(reach), 1, 1))
+    for axis, angle in turns.items():
+        rotation = _turn(axis, angle) @ rotation
+    return np.concatenate([position, rotation.reshape(-1, 9)], axis=1)
+
+
+def joints_at(
+    mechanism: Mechanism, closure: Closure, pose: Array, parameters: Array, reach: Array, rng: Generator
+) -> Array:
+    """Joint values at poses, by Newton's method; from anywhere where a leg has several.
+
+    Where a quantity that must be positive is not, the joints on which it depends start elsewhere once more.
+    """
+    joints = closure.joint_scale(reach)
+    is_one_of_many = len(measured_legs(mechanism)) < len(mechanism.rods)
+    if is_one_of_many:
+        joints = _anywhere(closure, reach, rng)
+    joints = _solved(closure, joints, pose, parameters, reach if is_one_of_many else None)
+    for _ in range(_ROUNDS if is_one_of_many and mechanism.positive else 0):
+        negative = closure.positive(joints, pose, parameters)[:, :, 0] <= 0
+        again = (negative @ _touched(closure, joints, pose, parameters)) > 0
+        if not again.any():
+            break
+        joints = np.where(again, _anywhere(closure, reach, rng), joints)
+        joints = _solved(closure, joints, pose, parameters, reach)
+    return joints
+
+
+def measured_legs(mechanism: Mechanism) -> list[str]:
+    """The rods whose base ends no joint moves: their lengths are joints."""
+    joints = {j.symbol for j in mechanism.joints}
+    return [rod.name for rod in mechanism.rods if not any(v.free_symbols & joints for v in rod.base)]
+
+
+def _anywhere(closure: Closure, reach: Array, rng: Generator) -> Array:
+    size = closure.joint_scale(reach) * np.where(closure.angles, np.pi, 2.0)
+    return np.asarray(size * rng.uniform(-1.0, 1.0, size.shape))
+
+
+def _solved(closure: Closure, joints: Array, pose: Array, parameters: Array, longest: Array | None) -> Array:
+    """Newton's method; a step is at most `longest`."""
+    joints = joints.copy()
+    moving = np.arange(len(joints))
+    for _ in range(_ITERATIONS):
+        state = joints[moving], pose[moving], parameters[moving]
+        step = (np.linalg.pinv(closure.by_joints(*state)) @ closure.residual(*state))[:, :, 0]
+        if longest is not None:
+            step = np.clip(step, -longest[moving, None], longest[moving, None])
+        joints[moving] -= step
+        moving = moving[np.abs(step).max(axis=1) > _STILL * (1.0 + np.abs(joints[moving]).max(axis=1))]
+        if not len(moving):
+            break
+    return joints
+
+
+def _touched(closure: Closure, joints: Array, pose: Array, parameters: Array) -> NDArray[np.float64]:
+    """Which joints (columns) a positive quantity (rows) depends on."""
+    one = [part[:1] for part in (joints, pose, parameters)]
+    here = closure.positive(*one)[0, :, 0]
+    columns = []
+    for k in range(joints.shape[1]):
+        moved = one[0].copy()
+        moved[0, k] += 1.0
+        columns.append(closure.positive(moved, *one[1:])[0, :, 0] != here)
+    return np.stack(columns, axis=1).astype(float)
 
 
 def _turn(axis: int, angle: Array) -> Array:

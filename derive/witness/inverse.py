@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from derive.ir.interpret import Array, run
 from derive.ir.program import Program, Status
 from derive.kinematics.kinematics import Kinematics
+from derive.witness.assembly import in_own_mode, starts_for
 from derive.witness.checks import CLEAR, CLOSURE_TOLERANCE, least_move, worst
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
@@ -67,7 +68,9 @@ def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> tupl
     axes, ok = _ranks(kin, part)
     offered = [within_one_turn(problem, closure.joints(a, part.parameters)[:, :, 0] / problem.units) for a in axes]
     counts, missed = [], 0
-    for row, found in enumerate(all_solutions(problem)):
+    solutions = all_solutions(problem, starts_for(kin.mechanism))
+    own = in_own_mode(kin, closure, part, solutions, problem.units)
+    for row, found in enumerate(f[kept] for f, kept in zip(solutions, own, strict=True)):
         slots = np.array([offered[slot][row] for slot in np.flatnonzero(ok[:, row])]).reshape(-1, axes.shape[2])
         slots = distinct(slots, problem.angles) if is_search else slots  # one opposite the reference is found twice
         missing = _compare(kin, problem, (found, slots), describe(kin, part, row))

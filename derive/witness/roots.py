@@ -82,10 +82,10 @@ def problem_at(closure: Closure, samples: Samples) -> Problem:
     return Problem(closure, samples.pose, samples.parameters, 1.0 / sizes, units, closure.angles, held)
 
 
-def all_solutions(problem: Problem) -> list[Array]:
+def all_solutions(problem: Problem, starts_of_each: int = STARTS) -> list[Array]:
     """The distinct solutions at every pose, without those that the description excludes."""
     count = len(problem.pose)
-    rows = np.repeat(np.arange(count), STARTS)
+    rows = np.repeat(np.arange(count), starts_of_each)
     many = problem.take(rows)
     size = np.where(problem.angles, np.pi, 4.0)
     starts = np.random.default_rng(SEED).uniform(-1.0, 1.0, (len(rows), len(size))) * size

@@ -11,13 +11,15 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from derive.description.mechanism import Joint, Mechanism, Parameter, Role, Turning
+from derive.description.mechanism import Joint, Mechanism, Parameter, Role
 from derive.ir.interpret import Array, run
 from derive.ir.program import Status
 from derive.ir.symbols import (
     MIN_TYPE2_MARGIN,
+    SCALE,
 )
 from derive.kinematics.kinematics import Kinematics
+from derive.plate.plate import home_flag
 from derive.witness.closure import LEAST_MARGIN, POSE, Closure
 from derive.witness.disagreement import Disagreement
 from derive.witness.home_samples import axes_near_home
@@ -33,6 +35,8 @@ WITHOUT_LENGTHS = 500.0
 _CANDIDATES = 100
 _FIRST = 2 * POSES
 """Candidates of each machine of which nearly always enough are regular."""
+_NEAR_CANDIDATES = 400
+"""Poses near home to try where branches have assembly modes of their own."""
 _LOOP_CANDIDATES = 2500
 """Random axis values to try: few of them close a loop."""
 _SPREAD = {Role.PITCH: 20.0, Role.GEAR: 0.1, Role.COUPLING: 0.5, Role.ANGLE: 200.0}
@@ -72,8 +76,15 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
     rng = np.random.default_rng(SEED)
     machines = random_machines(kin, rng)
     count = len(next(iter(machines.values())))
-    is_loop = bool(kin.mechanism.rods) and kin.mechanism.task.turning is Turning.NONE
-    machine = np.repeat(np.arange(count), _LOOP_CANDIDATES if is_loop else _CANDIDATES)
+    is_loop = bool(kin.mechanism.rods) and not kin.mechanism.is_platform
+    tried = (
+        _LOOP_CANDIDATES
+        if is_loop
+        else _NEAR_CANDIDATES
+        if kin.mechanism.branches and kin.mechanism.rods
+        else _CANDIDATES
+    )
+    machine = np.repeat(np.arange(count), tried)
     values = {name: column[machine] for name, column in machines.items()}
     reach = _reach(kin.mechanism, values)
     parameters = np.stack([values[name] for name in closure.parameters], axis=1)
@@ -135,6 +146,9 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
     count = 8 * MACHINES
     names = {p.name for p in kin.mechanism.parameters} | {j.offset.name for j in kin.mechanism.joints}
     names |= {kin.mechanism.assembly.parameter} if kin.mechanism.assembly else set()
+    names |= {home_flag(b) for b in kin.branches} if kin.mechanism.is_platform else set()
+    cones = [c for rod in kin.mechanism.rods for c in (rod.base_cone, rod.plate_cone) if c is not None]
+    names -= {s.name for cone in cones for s in cone.free_symbols}  # they refuse poses, and change no answer
     values = {}
     for parameter in kin.parameters:
         drawn = _draw(parameter, count, rng) if parameter.name in names else np.full(count, parameter.nominal)
@@ -169,13 +183,15 @@ def _draw(parameter: Parameter, count: int, rng: Generator) -> Array:
 
 
 def _reach(mechanism: Mechanism, values: dict[str, Array]) -> Array:
+    if mechanism.is_platform:  # the sum of all its coordinates says little
+        return values[SCALE.name]
     lengths = [
         np.abs(values[p.name])
         for p in mechanism.parameters
         if p.role in (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
     ]
     total = np.sum(lengths, axis=0) if lengths else np.zeros_like(next(iter(values.values())))
-    legs = max(1, len(mechanism.rods)) if mechanism.task.turning is Turning.NONE else 1  # one leg of a loop
+    legs = max(1, len(mechanism.rods))  # one leg of a loop
     return np.where(total > 0, total / legs, WITHOUT_LENGTHS)
 
 

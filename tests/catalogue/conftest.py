@@ -1,7 +1,7 @@
 """Every test that asks for a mechanism or its machines runs for the whole catalogue.
 
 Tests marked `serial` know a shape of serial arms (an elbow's sine, a hole in the middle): closed loops go through
-tests of the same thing in `loops`. A platform that moves with its whole pose has `hexapod`.
+tests of the same thing in `loops`. The hexapod, which has no branches, has `hexapod`.
 """
 
 from __future__ import annotations
@@ -13,16 +13,20 @@ import pytest
 from derive.description.mechanism import Mechanism
 from tests.catalogue.loop_machines import LOOPS, loop_machines_of
 from tests.catalogue.machines import MECHANISMS, Machine, machines_of
+from tests.catalogue.turning_machines import TURNING, turning_machines_of
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Give `mechanism` its values."""
     if "mechanism" in metafunc.fixturenames and metafunc.definition.path.parent == Path(__file__).parent:
         is_serial = metafunc.definition.get_closest_marker("serial") is not None
-        metafunc.parametrize("mechanism", MECHANISMS if is_serial else (*MECHANISMS, *LOOPS), ids=lambda m: m.name)
+        every = (*MECHANISMS, *LOOPS, *(m for m in TURNING if m.name != "Kin_Hexapod"))
+        metafunc.parametrize("mechanism", MECHANISMS if is_serial else every, ids=lambda m: m.name)
 
 
 @pytest.fixture
 def machines(mechanism: Mechanism) -> tuple[Machine, ...]:
     """Its machines."""
+    if mechanism.is_platform:
+        return turning_machines_of(mechanism)
     return loop_machines_of(mechanism) if mechanism.rods else machines_of(mechanism)

@@ -12,13 +12,13 @@ import sympy as sp
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from derive.description.mechanism import Mechanism, Role, Turning
+from derive.description.mechanism import Mechanism, Role
 from tests.catalogue.closure import Array, Closure, derivative
 from tests.catalogue.machines import TURNS, Machine
 from tests.mechanisms import catalogue
 
-LOOPS = tuple(m for _, m in catalogue() if m.rods and m.task.turning is not Turning.FULL)
-"""Loops whose plate keeps its orientation. One whose plate turns has tests of its own: `hexapod`."""
+LOOPS = tuple(m for _, m in catalogue() if m.rods and not m.is_platform)
+"""Loops whose plate keeps its orientation. Those whose plate turns are in `turning_machines.py`."""
 CANDIDATES = 6000
 REGULAR = 0.08
 """Indicators at a regular pose are at least this part of their largest value."""
@@ -141,7 +141,7 @@ class LoopMachine(Machine):
         possible[possible] = self.closure.room(joints, self.closure.poses(axes[possible])[0]) > 1e-3
         return possible
 
-    def is_own(self, joints: Array, position: Array) -> NDArray[np.bool_]:
+    def is_own(self, joints: Array, position: Array, rotation: Array | None = None) -> NDArray[np.bool_]:
         """Which solutions of the closure are this machine's: those on its side, inside its bounds."""
         there = np.tile(position, (len(joints), 1))
         return (self.closure.side(joints, there) > 0) & (self.closure.room(joints, there) >= 0)

@@ -126,9 +126,17 @@ class Machine:
         """Whether the machine can be at axis values, and the inverse brings it there: a serial one can be anywhere."""
         return np.ones(len(axes), dtype=bool)
 
-    def is_own(self, joints: Array, position: Array) -> NDArray[np.bool_]:
+    def is_own(self, joints: Array, position: Array, rotation: Array | None = None) -> NDArray[np.bool_]:
         """Which solutions of the closure are this machine's: of a serial one, all."""
         return np.ones(len(joints), dtype=bool)
+
+    def leads_back(self, axes: Array) -> NDArray[np.bool_]:
+        """Where forward kinematics leads from a solution back to the pose: everywhere, unless it iterates from home."""
+        return np.ones(len(axes), dtype=bool)
+
+    def placed(self, axis: int, value: float, count: int) -> tuple[Machine, Array]:
+        """The machine, or one with another offset, and regular poses with one axis at a value."""
+        return self, self.with_axis_at(axis, value, count)
 
     def own(self, axes: Array) -> NDArray[np.int8]:
         """The configurations of poses, with open periods."""

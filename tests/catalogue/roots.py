@@ -26,9 +26,12 @@ def solutions(machine: Machine, position: Array, rotation: Array) -> list[Array]
     scale = np.where(closure.angles, 1.0, machine.reach)
     starts = MANY_STARTS if machine.robot.BRANCHES > 1 else STARTS
     joints = rng.uniform(-1, 1, (starts, len(scale))) * np.where(closure.angles, np.pi, 2 * machine.reach)
+    if machine.mechanism.is_platform and machine.robot.BRANCHES == 0:  # of many mirror images one is wanted
+        where = np.tile(position, (starts, 1)), np.tile(machine.closure.reachable(rotation[None]), (starts, 1, 1))
+        joints, _ = machine.closure.joints_at(*where, rng)
     joints = principal(machine, solved_from(machine, joints, position, rotation), position, rotation)
     found: list[Array] = []
-    for row in joints[machine.is_own(joints, position)]:
+    for row in joints[machine.is_own(joints, position, rotation)]:
         if not any(np.abs(distance(machine, row, other)).max() < SAME for other in found):
             found.append(row)
     return found
@@ -88,7 +91,8 @@ def _equations(machine: Machine, joints: Array, position: Array, rotation: Array
     """The commanded part of the closure, at one pose or one of every row, lengths per reach."""
     positions = np.broadcast_to(position, (len(joints), 3))
     found = machine.closure.equations(joints, positions, np.broadcast_to(rotation, (len(joints), 3, 3)))
-    lengths = found.shape[1] - 3 * len(machine.closure.columns)
+    entries = 0 if machine.mechanism.is_platform else 3 * len(machine.closure.columns)
+    lengths = found.shape[1] - entries
     return np.hstack([found[:, :lengths] / machine.reach, found[:, lengths:]])
 
 

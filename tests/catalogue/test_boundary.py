@@ -151,7 +151,7 @@ def test_the_plane_of_a_planar_machine(mechanism: Mechanism, machines: tuple[Mac
         axes = machine.draw(40, np.random.default_rng(3))
         positions, rotations = machine.closure.poses(axes)
         own = machine.robot.forward_batch(axes)[2]
-        scale = sum(lengths(machine)) or 1.0
+        scale = machine.reach if mechanism.is_platform else sum(lengths(machine)) or 1.0
         for factor, met in ((0.0, True), (0.999, True), (-0.999, True), (1.001, False), (-1.001, False), (1e3, False)):
             shifted = positions + np.array([0.0, 0.0, factor * PLANE * scale])
             if abs(factor) > 2 and machine.is_spatial:

@@ -45,9 +45,9 @@ def test_bytes_say_branch_and_turn(machines: tuple[Machine, ...]) -> None:
 
 def test_turns_are_counted_at_their_edges(machines: tuple[Machine, ...]) -> None:
     """An edge belongs to the turn above it, in spite of rounding: so does what is 1e-10 below."""
-    for machine in machines:
-        for column, axis in enumerate(turning(machine.mechanism), machine.robot.BRANCHES):
-            first = machine.with_axis_at(axis, 180.0, 7)
+    for one in machines:
+        for column, axis in enumerate(turning(one.mechanism), one.robot.BRANCHES):
+            machine, first = one.placed(axis, 180.0, 7)
             for edge, above in ((-180.0, 1), (180.0, 2), (540.0, 3), (-540.0, -1)):
                 below = {1: -1, -1: -2}.get(above, above - 1)
                 axes = first.copy()
@@ -65,10 +65,10 @@ def test_turns_are_counted_at_their_edges(machines: tuple[Machine, ...]) -> None
 
 def test_a_named_turn_is_where_the_axis_is_put(machines: tuple[Machine, ...]) -> None:
     """Far turns too, positive and negative, up to what a byte can hold; beyond it the byte is 0."""
-    for machine in machines:
-        robot = machine.changed(check_limits=False)
-        for column, axis in enumerate(turning(machine.mechanism), robot.BRANCHES):
-            axes = machine.with_axis_at(axis, 17.0, 5)
+    for one in machines:
+        for column, axis in enumerate(turning(one.mechanism), one.robot.BRANCHES):
+            machine, axes = one.placed(axis, 17.0, 5)
+            robot = machine.changed(check_limits=False)
             axes[:, axis] += 360.0 * np.array([126, -127, 127, -128, 1000])
             positions, rotations, configurations, _ = forward(robot, axes)
             assert configurations[:, column].tolist() == [127, -127, 0, 0, 0]

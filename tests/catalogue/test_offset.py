@@ -14,7 +14,7 @@ POSES = 150
 ROUND_TRIP = 1e-8
 REGULAR = 0.03
 """How much the point moves at least, in reaches per radian or per length, whichever way."""
-WITHOUT = ("Kin_Polar", "Kin_Polar_Z", "Kin_Scara3_Z")
+WITHOUT = ("Kin_Polar", "Kin_Polar_Z", "Kin_Scara3_Z", "Softkin_Planar_3RRR")
 
 
 def offered(machines: tuple[Machine, ...]) -> tuple[Machine, ...]:

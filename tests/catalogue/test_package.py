@@ -125,6 +125,8 @@ def test_parameters_are_those_of_the_description(mechanism: Mechanism, machines:
     expected += [f"{word}_{key}" for key in keys for word in ("lower", "upper")]
     if mechanism.assembly is not None:
         expected += [f"{mechanism.assembly.name}_{mechanism.assembly.names[1]}", "min_type2_margin"]
+    if mechanism.is_platform:
+        expected += [*(f"home_{b.name}_{b.names[1]}" for b in mechanism.branches), "min_type2_margin"]
     assert [p.name for p in machines[0].robot.PARAMETERS] == [*expected, "check_limits"]
     assert all(p.meaning and p.range for p in machines[0].robot.PARAMETERS)
 

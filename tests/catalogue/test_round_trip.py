@@ -64,8 +64,10 @@ def test_every_slot_satisfies_the_closure(machines: tuple[Machine, ...]) -> None
             answers += answered
             found = found[answered]
             assert machine.miss(found, *(f[answered] for f in frames)).max(initial=0.0) < FRAME
-            written = machine.robot.forward_batch(found)[2]
-            assert (written[:, : len(slot)] == slot).all()
+            positions, _, written, _ = machine.robot.forward_batch(found)
+            back = machine.leads_back(found)
+            assert np.abs(positions - frames[0][answered])[back].max(initial=0.0) < AXES * machine.reach
+            assert (written[back, : len(slot)] == slot).all()
         assert (answers >= 1).all()
         assert answers.max() == 2**machine.robot.BRANCHES or machine.mechanism.rods
 

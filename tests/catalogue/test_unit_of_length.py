@@ -13,6 +13,7 @@ import softkin
 from softkin import KinematicsError, Status
 
 from derive.description.mechanism import Mechanism, Role
+from derive.plate.plate import home_position
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import LENGTHS
 from tests.mechanisms import catalogue
@@ -51,9 +52,10 @@ def axes_of(mechanism: Mechanism, robot: softkin.Mechanism, scale: float) -> Arr
     """Axis values at which the machine is somewhere, singular poses with them."""
     rng = np.random.default_rng(3)
     if mechanism.is_platform:
-        position = np.array([float(v.xreplace({p.symbol: given_to(mechanism)[p.name] for p in mechanism.parameters}))
-                             for v in mechanism.home[:3]])  # fmt: skip
-        frames = position + rng.uniform(-0.02, 0.02, (POSES, 3)) * scale
+        values = {p.symbol: given_to(mechanism)[p.name] for p in mechanism.parameters}
+        position = np.array([float(v.xreplace(values)) for v in home_position(mechanism)])
+        own = [c in mechanism.task.position for c in "xyz"]
+        frames = position + rng.uniform(-0.02, 0.02, (POSES, 3)) * scale * own
         return robot.inverse_batch(frames, np.tile(np.eye(3), (POSES, 1, 1)))[0]
     columns = []
     for joint in mechanism.joints:

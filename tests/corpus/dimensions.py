@@ -26,6 +26,27 @@ _HEXAPOD = {
     for letter, value in zip("xy", point, strict=True)
 } | {"home_z": 600.0}
 
+_3RRR = {
+    f"{side}_{i}_{letter}": value
+    for side, points in (
+        ("base", ((-260.0, -150.0), (265.0, -145.0), (5.0, 300.0))),
+        ("platform", ((-70.0, -40.0), (72.0, -38.0), (2.0, 80.0))),
+    )
+    for i, point in enumerate(points, 1)
+    for letter, value in zip("xy", point, strict=True)
+} | {f"{what}_length_{i}": size + 4.0 * i for what, size in (("arm", 150.0), ("rod", 170.0)) for i in (1, 2, 3)}
+
+_HEXAGLIDE = {
+    f"platform_{i}_{letter}": value
+    for i, point in enumerate(
+        ((40.0, -145.0), (145.0, -42.0), (2.0, 150.0), (-75.0, -130.0), (75.0, 133.0), (145.0, 40.0)), 1
+    )
+    for letter, value in zip("xy", point, strict=True)
+} | {f"rail_{i}_y": y for i, y in enumerate((-320.0, -192.0, -60.0, 61.0, 190.0, 319.0), 1)}
+_HEXAGLIDE |= {f"rod_length_{i}": 620.0 + 3.0 * i for i in range(1, 7)} | {"home_z": -420.0}
+_HEXAGLIDE |= {f"rail_{i}_z": 2.0 * i for i in range(1, 7)}
+_HEXAGLIDE |= {f"carriage_side_{i}": -1.0 for i in (2, 3, 4, 6)}
+
 DIMENSIONS: dict[str, dict[str, float]] = {
     "Kin_5Axes": {"tool_length": 90.0},
     "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": {
@@ -73,6 +94,8 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     },
     "Kin_TGantry2": {},
     "Kin_TGantry3": {},
+    "Softkin_Hexaglide": _HEXAGLIDE,
+    "Softkin_Planar_3RRR": _3RRR,
     "Kin_Tool": {"tool_x": 15.0, "tool_y": -8.0, "tool_z": -60.0},
     "Kin_Tripod_Linear": {
         "outer_radius": 300.0, "inner_radius": 60.0, "arm_length": 400.0, "rail_angle": 30.0,

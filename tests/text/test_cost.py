@@ -37,6 +37,7 @@ from derive.kinematics.parameters import (
     machine_parameters,
 )
 from derive.kinematics.sampling import sample_axes
+from derive.plate.plate import home_position
 from derive.report.cost import Cost, cost_of, expression_cost, solve_cost
 from tests.mechanisms import catalogue
 from tests.text.controller import OK, Controller
@@ -136,9 +137,11 @@ def _costs(
 def _axes(mechanism: Mechanism, machine: Controller, parameters: Mapping[str, float]) -> list[Numbers]:
     """Axis values all over the ranges; of a platform, at poses near home."""
     if mechanism.is_platform:
-        home = [float(e.subs({real(n): v for n, v in parameters.items()})) for e in mechanism.home[:3]]
+        home = [float(e.subs({real(n): v for n, v in parameters.items()})) for e in home_position(mechanism)]
         places = ((home[0] + k, home[1] - 2 * k, home[2]) for k in range(3))
-        return [machine.inverse(place, NO_TURN, (), ())[1] for place in places]
+        count = len(mechanism.joints)
+        first = (1,) * len(mechanism.branches) + (0,) * len(mechanism.period_joints)
+        return [machine.inverse(place, NO_TURN, first, (0.0,) * count)[1][:count] for place in places]
     drawn = sample_axes(mechanism, {n: np.asarray(v) for n, v in (parameters | {SCALE.name: REACH}).items()}, POSES, 2)
     return np.stack([drawn[j.axis.name] for j in mechanism.joints], axis=1).tolist()
 

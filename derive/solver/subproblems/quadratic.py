@@ -52,7 +52,7 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
     determinant = cancelled(sp.diff(equation.expression, unknown) / a)
     written_out = determinant.xreplace({let.name: let.value for let in equation.lets})
     known_sign = _known_sign(problem, written_out, unknown)
-    sigma = sign_of(unknown) if known_sign is None else sp.Integer(known_sign)
+    sigma = sign_of(unknown) if known_sign is None else known_sign
     half = cancelled(scale / (2 * a))
     radicand = factored(cancelled(b**2 / (4 * a**2) - c / a))
     reason = cannot_reach(equation.label, radicand, naming.lets)
@@ -71,15 +71,17 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
     return Binding("quadratic", (unknown,), statements, StepDeterminant(unknown, determinant, over))
 
 
-def _known_sign(problem: Problem, determinant: sp.Expr, unknown: sp.Symbol) -> int | None:
+def _known_sign(problem: Problem, determinant: sp.Expr, unknown: sp.Symbol) -> sp.Expr | None:
     """The sign of a determinant that is a multiple of a positive quantity, with other unknowns eliminated by affine
-    equations.
+    equations. It may be a sign of the machine.
     """
     for quantity in problem.positive:
         value = _through(problem, quantity, unknown)
         ratio = cancelled(determinant / value) if value != 0 else sp.Integer(0)
-        if ratio.is_number and ratio != 0:
-            return 1 if ratio > 0 else -1
+        for sign in (sp.Integer(1), *(s for s in problem.signs if s.is_nonzero and s in ratio.free_symbols)):
+            number = cancelled(ratio * sign)
+            if number.is_number and number != 0:
+                return sign if number > 0 else -sign
     return None
 
 

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from softkin.gantrycutter3 import GantryCutter3
     from softkin.headhead_cb import HeadHeadCB
     from softkin.headtable_bc import HeadTableBC
+    from softkin.hexaglide import Hexaglide
     from softkin.hexapod import Hexapod
     from softkin.hgantry2 import HGantry2
     from softkin.hgantry3 import HGantry3
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     from softkin.p2x_type2 import P2XType2
     from softkin.p2y import P2Y
     from softkin.pcc import PCC
+    from softkin.planar_3rrr import Planar3RRR
     from softkin.polar import Polar
     from softkin.polar_z import PolarZ
     from softkin.pos_rrr import PosRRR
@@ -98,6 +100,7 @@ __all__ = [
     "HGantry3",
     "HeadHeadCB",
     "HeadTableBC",
+    "Hexaglide",
     "Hexapod",
     "Kin5Axes",
     "KinType12XY",
@@ -109,6 +112,7 @@ __all__ = [
     "P2XType1",
     "P2XType2",
     "Parameter",
+    "Planar3RRR",
     "Polar",
     "PolarZ",
     "PosRRR",
@@ -150,6 +154,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_GantryCutter3": ("gantrycutter3", "GantryCutter3"),
     "Softkin_HeadHead_CB": ("headhead_cb", "HeadHeadCB"),
     "Softkin_HeadTable_BC": ("headtable_bc", "HeadTableBC"),
+    "Softkin_Hexaglide": ("hexaglide", "Hexaglide"),
     "Kin_Hexapod": ("hexapod", "Hexapod"),
     "Kin_HGantry2": ("hgantry2", "HGantry2"),
     "Kin_HGantry3": ("hgantry3", "HGantry3"),
@@ -161,6 +166,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_P2X_Type2": ("p2x_type2", "P2XType2"),
     "Kin_P2Y": ("p2y", "P2Y"),
     "Kin_PCC": ("pcc", "PCC"),
+    "Softkin_Planar_3RRR": ("planar_3rrr", "Planar3RRR"),
     "Kin_Polar": ("polar", "Polar"),
     "Kin_Polar_Z": ("polar_z", "PolarZ"),
     "Kin_Pos_RRR": ("pos_rrr", "PosRRR"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from derive.description.mechanism import Turning
 from tests.text.closeness import assert_same
 from tests.text.comparisons import COMPARISONS as SERIAL
 from tests.text.controller import OK
@@ -10,7 +11,10 @@ from tests.text.samples import HALF_TURN, NO_TURN, Sample
 
 
 def image_with_orientation(loop: Loop, sample: Sample) -> None:
-    """All rotations can be had: a space of the one that is asked for."""
+    """All rotations can be had: a space of the one that is asked for. One that turns about z has its headings."""
+    if loop.mechanism.task.turning is Turning.ABOUT_Z:
+        SERIAL["GetFlangeOrientationImageWithOri"](loop, sample)  # type: ignore[arg-type]
+        return
     for rows in (sample.rotation, NO_TURN, HALF_TURN):
         status, (dof, zero, *_) = loop.controller.image_with_orientation(rows)
         assert (status, dof) == (OK, "zero")

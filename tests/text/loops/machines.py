@@ -103,6 +103,8 @@ def _possible(mechanism: Mechanism, rng: Generator) -> Loop | None:
 
 
 def _near(parameter: Parameter, rng: Generator) -> float:
+    if parameter.role is Role.SIGN:
+        return parameter.nominal
     size = 5.0 if parameter.role is Role.ANGLE else 0.12 * abs(parameter.nominal)
     return float(np.clip(parameter.nominal + rng.uniform(-size, size), parameter.low, parameter.high))
 

@@ -1,0 +1,130 @@
+"""A loop that turns its platform: forward kinematics by iteration, its joints at the home pose, and sampled poses.
+
+Forward kinematics starts at the home pose, and the assembly mode is the one of that pose: the sign of det A there. It
+depends on the branches as well, so parameters tell the branches at home: `home_elbow_1_left` is a flag, and the
+derivation of the inverse is run at the home pose with these signs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from derive.description.mechanism import DescriptionError, Mechanism, Turning
+from derive.equations.axes import axis_lets, joint_lets, reference_value
+from derive.equations.closure import fixed_lets
+from derive.equations.pose_at_axes import Forward
+from derive.ir.interpret import evaluate, run
+from derive.ir.passes import normalise, renamed
+from derive.ir.program import Let, Output, Require, Statement, Status, rewritten
+from derive.ir.reason import about_parameters
+from derive.ir.symbols import HEADING, POSITION, ROTATION_ENTRIES, SCALE, Flag, cosine, is_count, real, sine
+from derive.plate.legs import angles, by_angles, is_driven, position_of, rotation_of
+from derive.plate.newton import at_given, at_home, found_from, search_program
+from derive.plate.plate import home_flag, platform_size
+
+Samples = dict[str, NDArray[np.float64]]
+
+_REACHED = "a home pose that the legs reach"
+_AROUND, _TURNED = 0.1, 0.2
+"""The largest distance of sampled poses from home, in characteristic lengths and radians."""
+_SAMPLES = 256
+
+
+def forward_from_home(mechanism: Mechanism) -> Forward:
+    """The pose at axis values, by iteration from the home pose."""
+    return found_from(mechanism, at_home(mechanism), search_program(mechanism))
+
+
+def forward_from_given(mechanism: Mechanism) -> Forward:
+    """The same from a pose that is given."""
+    return found_from(mechanism, at_given(mechanism), search_program(mechanism))
+
+
+def given_pose(mechanism: Mechanism) -> Forward:
+    """A pose that is known with the axis values: nothing is searched."""
+    return Forward(joint_lets(mechanism), position_of(mechanism), tuple(rotation_of(mechanism)))
+
+
+def joints_at_home(mechanism: Mechanism, statements: Sequence[Statement]) -> tuple[Statement, ...]:
+    """The statements that bind the joints at the home pose, each name with `home_` before it; none where no joint moves
+    an end of a rod.
+
+    statements: those of the inverse, in the signs of branches.
+    """
+    if not is_driven(mechanism, [v for rod in mechanism.rods for v in rod.base]):
+        return ()
+    signs = [Let(real(f"sign_{b.name}"), 1 - 2 * real(home_flag(b))) for b in mechanism.branches]
+    own = [s for s in statements if not (isinstance(s, Let) and s.name in {sign.name for sign in signs})]
+    wanted = [s for j in mechanism.joints for s in ((cosine(j.symbol), sine(j.symbol)) if j.is_angle else (j.symbol,))]
+    program = normalise("home", (*signs, *fixed_lets(mechanism), *own), [Output(s.name, s) for s in wanted])
+    bound = {s: real(f"home_{s.name}") for s in program.bound()}
+    pose = dict(zip(map(real, mechanism.task.position), mechanism.home, strict=False))
+    pose |= {reference_value(j): sp.Integer(0) for j in mechanism.joints}
+    if mechanism.task.turning is Turning.FULL:
+        pose |= {r: real(f"home_{r.name}") for r in ROTATION_ENTRIES}
+    else:
+        pose |= {cosine(HEADING): real("cos_home_heading"), sine(HEADING): real("sin_home_heading")}
+    table = {**pose, **bound}
+    named = [Let(real(f"home_{o.name}"), o.value.xreplace(table)) for o in program.outputs if real(o.name) not in bound]
+    return (*(_at_home(s, table) for s in program.body), *named)
+
+
+def _at_home(statement: Statement, table: dict[sp.Symbol, sp.Expr]) -> Statement:
+    known = rewritten(statement, lambda e: e.xreplace(table))
+    if isinstance(known, Require):
+        return Require(known.condition, Status.NOT_INITIALIZED, reason=about_parameters(_REACHED))
+    return renamed(known, lambda name: real(f"home_{name.name}"))
+
+
+def samples_near_home(
+    mechanism: Mechanism, derivation: Sequence[Statement], signs: Sequence[sp.Symbol], machine: Samples, seed: int
+) -> Samples:
+    """Poses near the home of a machine, and the axes there: in every branch, by the derivation of the inverse in the
+    signs of its steps.
+
+    signs: those of its steps. Raises `DescriptionError` where none of the poses is possible.
+    """
+    size = normalise("size", platform_size(mechanism), [Output(SCALE.name, SCALE)])
+    machine = {**machine, SCALE.name: run(size, machine)[0][SCALE.name]}
+    rng = np.random.default_rng(seed)
+    poses = _poses(mechanism, machine, rng)
+    axes = [Let(let.name, let.value) for j in mechanism.joints for let in axis_lets(j)]
+    own = {s.name for s in derivation if isinstance(s, Let)}
+    statements = (*derivation, *(let for let in axes if let.name not in own))
+    program = normalise("joints", statements, [Output(j.axis.name, j.axis) for j in mechanism.joints])
+    values = {**machine, **poses}
+    values |= {sign.name: rng.choice([-1.0, 1.0], _SAMPLES) for sign in signs}
+    rest = {s.name: _nothing(s) for s in program.inputs if s.name not in values}
+    found, status = run(program, values | rest)
+    good = np.broadcast_to(status == Status.OK, (_SAMPLES,))
+    if not good.any():
+        raise DescriptionError("no pose near the home pose is possible: is it where the legs reach it?")
+    columns = {n: np.broadcast_to(v, (_SAMPLES,))[good] for n, v in (poses | found).items()}
+    return {**machine, **columns, **{j.reference.name: columns[j.axis.name] for j in mechanism.joints}}
+
+
+def _poses(mechanism: Mechanism, machine: Samples, rng: np.random.Generator) -> Samples:
+    """Poses around home, by the names that programs read."""
+    width, reach = len(mechanism.task.position), float(machine[SCALE.name])
+    home = [float(evaluate(v, machine)) for v in mechanism.home]
+    sizes = np.array([_AROUND * reach if k < width else _TURNED for k in range(len(home))])
+    drawn = np.array(home) + sizes * rng.uniform(-1.0, 1.0, (_SAMPLES, len(home)))
+    values: Samples = {c.name: np.zeros(_SAMPLES) for c in POSITION}
+    values |= {c: drawn[:, k] for k, c in enumerate(mechanism.task.position)}
+    turns = dict(zip(angles(mechanism), drawn[:, width:].T, strict=True))
+    named = {f"{w}_{a}": f(v) for a, v in turns.items() for w, f in (("cos", np.cos), ("sin", np.sin))}
+    matrix = by_angles(angles(mechanism))
+    for name, entry in zip(ROTATION_ENTRIES, matrix, strict=True):
+        values[name.name] = np.broadcast_to(evaluate(entry, named), (_SAMPLES,))
+    if len(turns) == 1:
+        values |= {cosine(HEADING).name: values["r11"], sine(HEADING).name: values["r21"]}
+    return values
+
+
+def _nothing(symbol: sp.Symbol) -> np.ndarray:
+    """No limits, no commanded turns, a reference at zero."""
+    return np.asarray(False if isinstance(symbol, Flag) else 0 if is_count(symbol) else 0.0)

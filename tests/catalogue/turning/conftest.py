@@ -1,0 +1,22 @@
+"""Every test that asks for a mechanism or its machines runs for every loop that turns its platform by joints that move
+ends of its rods. The hexapod, whose legs are joints, has `hexapod`.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from derive.description.mechanism import Mechanism
+from tests.catalogue.turning_machines import TURNING, TurningMachine, turning_machines_of
+
+
+@pytest.fixture(params=[m for m in TURNING if m.name != "Kin_Hexapod"], ids=lambda m: m.name)
+def mechanism(request: pytest.FixtureRequest) -> Mechanism:
+    """A mechanism with rods."""
+    return request.param
+
+
+@pytest.fixture
+def machines(mechanism: Mechanism) -> tuple[TurningMachine, ...]:
+    """As it is drawn, and with unequal dimensions, at home in several branches."""
+    return turning_machines_of(mechanism)
