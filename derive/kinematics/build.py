@@ -22,6 +22,7 @@ from derive.equations.limits import limits_program
 from derive.equations.pose_at_axes import (
     Forward,
 )
+from derive.equations.problem import Measure
 from derive.equations.windows import windows
 from derive.geometry.pose import pose_of
 from derive.ir.interpret import run
@@ -88,8 +89,6 @@ from derive.solver.solve import Unsolved
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
     _count(mechanism)
-    if mechanism.is_platform:
-        check_home(mechanism)
     if mechanism.search is not None:
         return _scanned(mechanism)
     closed = assembled(mechanism, pose_at_axes(mechanism))
@@ -100,14 +99,13 @@ def build(mechanism: Mechanism) -> Kinematics:
     at_axes = derivation_at_axes(mechanism, inverse, forward)
     margins = margin_lets(mechanism, assignments)
     jacobian = jacobian_program(mechanism, forward)
-    slopes, measures = assignments, inverse.derivation.measures
-    factors = [*(factor_of(mechanism, a) for a in slopes), *(factor_of(mechanism, m) for m in measures)]
-    if closed.margin is not None:
-        factors.append(Factor(closed.name, closed.margin))
+    told: list[Assignment | Measure] = [*assignments, *inverse.derivation.measures]
+    factors = [factor_of(mechanism, found) for found in told]
+    factors += [Factor(closed.name, closed.margin)] if closed.margin is not None else []
     statements = with_branch_signs(inverse.derivation.statements, assignments)
     at_home = joints_at_home(mechanism, statements) if mechanism.is_platform else ()
-    samples = _samples(mechanism, inverse, at_home)
-    singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian, samples)
+    at_poses = _samples(mechanism, inverse, at_home)
+    singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian, at_poses)
     forward_only = replace(forward, statements=at_axes)
     programs = [
         forward_program(mechanism, forward_only, margins),
@@ -180,6 +178,8 @@ def _count(mechanism: Mechanism) -> None:
         raise DescriptionError(f"the task commands {commanded}, and there are only {len(joints)} joints")
     if len(equations) > len(rows):
         raise DescriptionError(f"the closure has {len(equations)} equations, and the task commands only {commanded}")
+    if mechanism.is_platform:
+        check_home(mechanism)
 
 
 def _finished(
