@@ -21,6 +21,8 @@ from derive.report.reference_calls import Machine, branches
 
 _ANGLES = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0)
 """Values of the rotary axes at which a configuration is shown, tried in this order."""
+_AROUND, _TRIED = 60.0, 300
+"""Of a loop that turns its platform: how far from home (degrees), and at how many poses, a configuration is sought."""
 _VISIBLE = 0.04
 """Two poses look different where some point moves by this fraction of the machine's size."""
 
@@ -99,6 +101,9 @@ def _choices(machine: Machine, drawn: Pose) -> Iterator[Choice]:
 
 def _candidates(mechanism: Mechanism, drawn: Pose) -> Iterator[Reals]:
     """Candidates for the pose of a choice: near the drawn pose for a loop, and with every rotary axis turned."""
+    if mechanism.is_platform:  # the other branch must be in the assembly mode of the machine, too
+        around = np.random.default_rng(1).uniform(-_AROUND, _AROUND, (_TRIED, len(drawn.axes)))
+        yield from (tuple(row) for row in (np.array(drawn.axes) + around).tolist())
     for part in (0.0, 0.4, -0.4, 0.8, 1.2):
         turned = zip(mechanism.joints, drawn.axes, (*_ANGLES,) * 2, strict=False)
         if part or not drawn.is_zero or mechanism.chain is None:
@@ -113,6 +118,8 @@ def _pair(machine: Machine, pose: Pose, index: int) -> tuple[Scene, Scene] | Non
     periods = (0,) * (len(pose.configuration) - count)
     _, solutions, statuses = branches(machine, pose.frame, (*other, *periods), pose.axes)
     flipped = pose_at(machine, solutions[0]) if statuses[0] is Status.OK else None
+    if machine.kinematics.mechanism.is_platform and statuses[0] is Status.OK:  # which forward may not find from home
+        flipped = Pose(solutions[0], pose.frame, (*other, *periods))
     if flipped is None:
         return None
     return _different(*(scene_at(machine, p) for p in ((pose, flipped) if first else (flipped, pose))))

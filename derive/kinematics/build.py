@@ -22,6 +22,7 @@ from derive.equations.limits import limits_program
 from derive.equations.pose_at_axes import (
     Forward,
 )
+from derive.equations.problem import Conditioning
 from derive.equations.windows import windows
 from derive.geometry.frames import Motion
 from derive.geometry.pose import pose_of
@@ -84,8 +85,6 @@ def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
     _count(mechanism)
     refuse_names_of_joints(mechanism)
-    if mechanism.is_platform:
-        check_home(mechanism)
     if mechanism.search is not None:
         return _scanned(mechanism)
     closed = assembled(mechanism, pose_at_axes(mechanism))
@@ -97,14 +96,13 @@ def build(mechanism: Mechanism) -> Kinematics:
     at_axes = derivation_at_axes(mechanism, inverse, forward)
     margins = margin_lets(mechanism, assignments)
     jacobian = jacobian_program(mechanism, forward)
-    determinants, conditionings = assignments, inverse.derivation.conditionings
-    factors = [*(factor_of(mechanism, a) for a in determinants), *(factor_of(mechanism, m) for m in conditionings)]
-    if closed.margin is not None:
-        factors.append(Factor(closed.name, closed.margin))
+    told: list[Assignment | Conditioning] = [*assignments, *inverse.derivation.conditionings]
+    factors = [factor_of(mechanism, found) for found in told]
+    factors += [Factor(closed.name, closed.margin)] if closed.margin is not None else []
     statements = with_branch_signs(inverse.derivation.statements, assignments)
     at_home = joints_at_home(mechanism, statements) if mechanism.is_platform else ()
-    samples = _samples(mechanism, inverse, at_home)
-    singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian, samples)
+    at_poses = _samples(mechanism, inverse, at_home)
+    singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian, at_poses)
     forward_only = replace(forward, statements=at_axes)
     programs = [
         forward_program(mechanism, forward_only, margins),
@@ -178,6 +176,8 @@ def _count(mechanism: Mechanism) -> None:
         raise DescriptionError(_wrong_number(mechanism, spare, commanded))
     if len(equations) > len(rows):
         raise DescriptionError(f"the closure has {len(equations)} equations, and the task commands only {commanded}")
+    if mechanism.is_platform:
+        check_home(mechanism)
 
 
 def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:

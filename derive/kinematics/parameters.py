@@ -137,12 +137,9 @@ def setup_program(
         if not (has_settings and window.is_axis):
             body += window.ends
             outputs += window.outputs
-    if mechanism.is_platform:
-        body += machine_statements(mechanism, at_home)
-        outputs += machine_constants(mechanism)
-    else:
-        body.append(Let(SCALE, machine_scale(mechanism), "characteristic length of the machine"))
-        outputs.append(Output(SCALE.name, SCALE))
+    sized, constants = _size(mechanism, at_home)
+    body += sized
+    outputs += constants
     if chooses_by_lengths(mechanism):
         body.append(Let(TIE_OF_LENGTHS, TIE_SHARE**2 * SCALE**2, "squared distances closer than this are equal"))
         outputs.append(Output(TIE_OF_LENGTHS.name, TIE_OF_LENGTHS))
@@ -151,6 +148,14 @@ def setup_program(
     inputs = tuple(input_of(p) for p in parameters)
     typed = tuple(converted(s, parameters) for s in without_assumptions(body))
     return verify(Program("setup", inputs, typed, tuple(outputs)))
+
+
+def _size(mechanism: Mechanism, at_home: Sequence[Statement]) -> tuple[tuple[Statement, ...], tuple[Output, ...]]:
+    """The characteristic length of the machine; of a loop that turns its platform all that its home pose tells."""
+    if mechanism.is_platform:
+        return machine_statements(mechanism, at_home), machine_constants(mechanism)
+    let = Let(SCALE, machine_scale(mechanism), "characteristic length of the machine")
+    return (let,), (Output(SCALE.name, SCALE),)
 
 
 def _as_constant(parameter: Parameter) -> Output:

@@ -9,7 +9,7 @@ the second time: the step between leaves rounding errors only, however small det
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -194,8 +194,6 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
     bases = _bases(mechanism)
     fits = sp.And(*[sp.Le(sp.Abs(of("error", rod)), within) for rod in mechanism.rods])
     fit, fitted = flag("fit"), flag("fitted")
-    rotation = _turn(mechanism) * _start_rotation(mechanism)
-    entries = rotation if _is_free(mechanism) else rotation[:2, 0]
     loop = Iterate(
         state=(*pose, fitted),
         start=(
@@ -223,11 +221,16 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
         Let(within, CONVERGED * SCALE, "tolerance of the leg lengths"),
         loop,
         Require(sp.Gt(ASSEMBLY_SIGN * DETERMINANT, 0), Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_ASSEMBLY)),
-        *with_note(
-            (Let(n, v) for n, v in zip(_rotation_names(mechanism), entries, strict=True)), "orientation of the platform"
-        ),
+        *with_note(_orientation(mechanism), "orientation of the platform"),
         *_mirrors(mechanism),
     )
+
+
+def _orientation(mechanism: Mechanism) -> Iterator[Let]:
+    """The rotation that was found: the one from the start, times that of the start."""
+    rotation = _turn(mechanism) * _start_rotation(mechanism)
+    entries = rotation if _is_free(mechanism) else rotation[:2, 0]
+    yield from (Let(n, v) for n, v in zip(_rotation_names(mechanism), entries, strict=True))
 
 
 def _mirrors(mechanism: Mechanism) -> tuple[Statement, ...]:

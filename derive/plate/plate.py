@@ -16,6 +16,7 @@ from derive.description.mechanism import (
     DescriptionError,
     Mechanism,
     Rod,
+    Turning,
 )
 from derive.equations.closure import all_angles, fixed_angles, fixed_lets, signs_of, with_fixed_names
 from derive.equations.trigonometry import named_trigonometry
@@ -120,6 +121,14 @@ def home_branches(mechanism: Mechanism) -> tuple[Branch, ...]:
 
 def check_home(mechanism: Mechanism) -> None:
     """Refuse a loop that is not stated as these programs need it."""
+    if mechanism.task.turning is Turning.DIRECTION:
+        raise DescriptionError("a loop may turn its platform about z, or about every axis: it commands no direction")
+    if mechanism.offset_interface:
+        raise DescriptionError(
+            "a loop that turns its platform needs offset_interface=False: a position alone leaves its joints open"
+        )
+    if mechanism.assembly is not None:
+        raise DescriptionError("a loop that turns its platform needs no assembly: its home pose tells the mode")
     count = len(mechanism.task.position) + len(spins(mechanism))
     rods = len(mechanism.rods)
     if rods != count or mechanism.closure:

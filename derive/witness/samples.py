@@ -76,15 +76,7 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
     rng = np.random.default_rng(SEED)
     machines = random_machines(kin, rng)
     count = len(next(iter(machines.values())))
-    is_loop = bool(kin.mechanism.rods) and not kin.mechanism.is_platform
-    tried = (
-        _LOOP_CANDIDATES
-        if is_loop
-        else _NEAR_CANDIDATES
-        if kin.mechanism.branches and kin.mechanism.rods
-        else _CANDIDATES
-    )
-    machine = np.repeat(np.arange(count), tried)
+    machine = np.repeat(np.arange(count), _tried(kin.mechanism))
     values = {name: column[machine] for name, column in machines.items()}
     reach = _reach(kin.mechanism, values)
     parameters = np.stack([values[name] for name in closure.parameters], axis=1)
@@ -125,6 +117,13 @@ def _first_regular(closure: Closure, samples: Samples) -> Samples:
         if np.all(np.bincount(found.machine[chosen], minlength=len(wanted)) >= wanted):
             break
     return found.take(chosen)
+
+
+def _tried(mechanism: Mechanism) -> int:
+    """How many axis values of a machine are tried."""
+    if mechanism.is_platform:
+        return _NEAR_CANDIDATES if mechanism.branches else _CANDIDATES
+    return _LOOP_CANDIDATES if mechanism.rods else _CANDIDATES
 
 
 def jacobian_of(closure: Closure, samples: Samples) -> Array:

@@ -1,235 +1,29 @@
-"""Loops that turn their platform: their closure with the pose as unknown, machines of each, and poses around home.
-
-Nothing here knows a derived formula: Newton's method on the stated equations, with derivatives by complex steps, finds
-the pose from the home pose and the joints from many starts.
-"""
+"""Loops that turn their platform: machines of each, and poses around home."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
 import softkin
-import sympy as sp
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from derive.description.mechanism import ROTATION, Mechanism, Parameter, Role, Turning
-from tests.catalogue.closure import POSITION, Array, Closure, derivative
+from derive.description.mechanism import Mechanism, Parameter, Role
+from tests.catalogue.closure import Array
 from tests.catalogue.machines import TURNS, Machine
+from tests.catalogue.turning_closure import TurningClosure
 from tests.mechanisms import catalogue
 
 TURNING = tuple(m for _, m in catalogue() if m.is_platform)
-SHIFT, TURN = 0.2, 0.35
-"""The largest distance of poses from home, in reaches and radians."""
 REGULAR = 0.08
 """Indicators at a regular pose are at least this part of their largest value, det A of the one at home."""
 POOL = 1200
 """Poses that are tried; of a platform that turns about every axis half as many."""
-PASSES = 40
 CONTROLLED = 0.25
 """Of det A at home: less may be lost on the way from there."""
-CLOSED = 1e-11
-"""Of the reach: what is left of a rod's length where the loop closes."""
-STARTS = 60
-AGAIN = 12
-"""How often joints start elsewhere where a positive quantity is not."""
-STILL = 1e-15
-
-
-class TurningClosure(Closure):
-    """The closure of a loop that turns its platform, in position and rotation."""
-
-    def __init__(self, mechanism: Mechanism, parameters: Mapping[str, float]) -> None:
-        super().__init__(mechanism, parameters)
-        self._equations = [*mechanism.closure, *(r.equation / r.length for r in mechanism.rods)]
-        self._indicators = [b.signs[0] * b.indicator for b in mechanism.branches]
-        self.axes_of_turn = [2] if mechanism.task.turning is Turning.ABOUT_Z else [0, 1, 2]
-        width = len(self.task)
-        home = self._evaluate(mechanism.home, [], np.zeros((1, 0)))[0]
-        self.home_position = np.zeros(3)
-        self.home_position[self.task] = home[:width]
-        self.home_rotation = np.eye(3)
-        for axis, angle in zip(self.axes_of_turn, home[width:], strict=True):
-            self.home_rotation = _about(axis, np.array([angle]))[0] @ self.home_rotation
-        told = [f"home_{b.name}_{b.names[1]}" for b in mechanism.branches]
-        self._at_home = np.array([-1.0 if parameters.get(flag) else 1.0 for flag in told])
-        points = [*self._ends()[0], *self._ends()[1]]
-        arms = np.array(points[len(points) // 2 :])
-        self.reach = float(np.sqrt(((arms - arms.mean(axis=0)) ** 2).sum(axis=1).mean()))
-        self.reach = max(self.reach + float(np.mean(self._sizes())), 1e-9)
-        self.at_home = self._home_determinant()
-        self._mode, self.at_home = np.sign(self.at_home), abs(self.at_home)
-
-    def poses(self, axes: Array) -> tuple[Array, Array]:
-        """The pose to which Newton's method leads from home; not a number where that is none of this machine."""
-        joints = self.joints(axes)
-        positions = np.tile(self.home_position, (len(axes), 1))
-        rotations = np.tile(self.home_rotation, (len(axes), 1, 1))
-        moving = np.arange(len(axes))
-        for _ in range(PASSES):
-            state = joints[moving], positions[moving], rotations[moving]
-            step = (np.linalg.pinv(self.by_pose(*state)) @ self._stated(*state)[:, :, None])[:, :, 0]
-            self._move(state[1], state[2], -_limited(step, len(self.task), self.reach))
-            positions[moving], rotations[moving] = state[1:]
-            moving = moving[np.abs(step).max(axis=1) > STILL * self.reach]
-            if not len(moving):
-                break
-        left = np.abs(self._stated(joints, positions, rotations)).max(axis=1)
-        good = (left < CLOSED * self.reach) & (self.side(joints, positions, rotations) > 0)
-        good &= (self.positive_at(joints, positions, rotations) > 0).all(axis=1)
-        positions[~good], rotations[~good] = np.nan, np.nan
-        return positions, rotations
-
-    def joints_at(self, positions: Array, rotations: Array, rng: Generator) -> tuple[Array, NDArray[np.bool_]]:
-        """Joint values at poses, on any branch, and whether they close the loop."""
-        joints = self._newton(self._anywhere(len(positions), rng), positions, rotations)
-        for _ in range(AGAIN if self.mechanism.positive else 0):
-            negative = self.positive_at(joints, positions, rotations) <= 0
-            again = negative.astype(float) @ self._touched > 0
-            if not again.any():
-                break
-            joints = np.where(again, self._anywhere(len(positions), rng), joints)
-            joints = self._newton(joints, positions, rotations)
-        closed = np.abs(self._stated(joints, positions, rotations)).max(axis=1) < CLOSED * self.reach
-        closed &= (self.positive_at(joints, positions, rotations) > 0).all(axis=1)
-        return np.where(self.angles, (joints + np.pi) % (2 * np.pi) - np.pi, joints), closed
-
-    def _anywhere(self, count: int, rng: Generator) -> Array:
-        size = np.where(self.angles, np.pi, 3.0 * self.reach)
-        return rng.uniform(-1.0, 1.0, (count, len(size))) * size
-
-    def _newton(self, joints: Array, positions: Array, rotations: Array) -> Array:
-        joints, longest = joints.copy(), np.where(self.angles, 1.0, self.reach)
-        moving = np.arange(len(joints))
-        for _ in range(PASSES):
-            there = positions[moving], rotations[moving]
-            slopes = derivative(lambda q: self._stated(q, *there), joints[moving])  # noqa: B023 - called at once
-            step = np.linalg.pinv(slopes) @ self._stated(joints[moving], *there)[:, :, None]
-            step = np.clip(step[:, :, 0], -longest, longest)
-            joints[moving] -= step
-            moving = moving[(np.abs(step) > STILL * longest).any(axis=1)]
-            if not len(moving):
-                break
-        return joints
-
-    @cached_property
-    def _touched(self) -> Array:
-        """Which joints (columns) the positive quantities (rows) depend on."""
-        own = [j.symbol for j in self.mechanism.joints]
-        return np.array([[float(s in v.free_symbols) for s in own] for v in self.mechanism.positive])
-
-    def around_home(self, count: int, rng: Generator, size: float = 1.0) -> tuple[Array, Array]:
-        """Poses around home."""
-        twist = rng.uniform(-1.0, 1.0, (count, len(self.task) + len(self.axes_of_turn))) * size
-        twist *= [SHIFT * self.reach] * len(self.task) + [TURN] * len(self.axes_of_turn)
-        positions, rotations = np.tile(self.home_position, (count, 1)), np.tile(self.home_rotation, (count, 1, 1))
-        self._move(positions, rotations, twist)
-        return positions, rotations
-
-    def by_pose(self, joints: Array, positions: Array, rotations: Array) -> Array:
-        """A = ∂Φ/∂pose: equations by the rows of the twist."""
-
-        def moved(twist: Array) -> Array:
-            there = positions.astype(complex)
-            turned = rotations.astype(complex)
-            self._move(there, turned, twist)
-            return self._stated(joints, there, turned)
-
-        width = len(self.task) + len(self.axes_of_turn)
-        return derivative(moved, np.zeros((len(joints), width)))
-
-    def side(self, joints: Array, positions: Array, rotations: Array) -> Array:
-        """det A, positive in the assembly mode of this machine, with moments per reach."""
-        scale = self.reach ** len(self.axes_of_turn)
-        return self._mode * np.linalg.det(self.by_pose(joints, positions, rotations)) / scale
-
-    def residual(self, joints: Array, positions: Array, rotations: Array) -> Array:
-        """The residual of the closure at a pose: lengths, then what the rotation is away from one that it can have."""
-        lengths = self._stated(joints, positions, rotations)
-        if 2 not in self.task:
-            lengths = np.hstack([lengths, positions[:, 2:]])
-        return np.hstack([lengths, (rotations - self.reachable(rotations)).reshape(-1, 9)])
-
-    def equations(self, joints: Array, positions: Array, rotations: Array) -> Array:
-        """The commanded part of the closure, at the nearest rotation that the platform can have."""
-        return self._stated(joints, positions, self.reachable(rotations))
-
-    def reachable(self, rotations: Array) -> Array:
-        """The nearest rotation that the platform can have."""
-        if len(self.axes_of_turn) == 3:
-            left, _, right = np.linalg.svd(rotations)
-            return np.asarray(left @ right)
-        along, across = rotations[:, 0, 0] + rotations[:, 1, 1], rotations[:, 1, 0] - rotations[:, 0, 1]
-        return _about(2, np.arctan2(across, along))
-
-    def jacobian(self, axes: Array, positions: Array) -> Array:
-        """Rows of the task by axes, per radian for an axis in degrees, at the poses of these axes."""
-        rotations = self.poses(axes)[1]
-        by_axes = derivative(lambda a: self._stated(self.joints(a), positions, rotations), axes)
-        return -np.linalg.solve(self.by_pose(self.joints(axes), positions, rotations), by_axes) / self.units
-
-    def indicators(self, joints: Array) -> Array:
-        """The indicator of every branch at a pose, positive where its byte is 1."""
-        return self.at(self._indicators, joints, *self.poses(self.axes(joints)))
-
-    def indicators_at(self, joints: Array, positions: Array, rotations: Array) -> Array:
-        """The same at any joint values and pose."""
-        return self.at(self._indicators, joints, positions, rotations)
-
-    def positive(self, joints: Array) -> Array:
-        """The quantities of joints alone that are positive in this machine."""
-        own = {j.symbol for j in self.mechanism.joints}
-        return self.at_joints([v for v in self.mechanism.positive if v.free_symbols <= own], joints)
-
-    def positive_at(self, joints: Array, positions: Array, rotations: Array) -> Array:
-        """All quantities that are positive in this machine."""
-        return self.at(list(self.mechanism.positive), joints, positions, rotations)
-
-    def room(self, joints: Array, positions: Array) -> Array:
-        """There are no bounds."""
-        return np.ones(len(joints))
-
-    def at(self, expressions: Sequence[sp.Expr], joints: Array, positions: Array, rotations: Array) -> Array:
-        """Expressions of the description in joints and pose: a column each."""
-        symbols = [*(j.symbol for j in self.mechanism.joints), *POSITION, *ROTATION]
-        return self._evaluate(expressions, symbols, np.hstack([joints, positions, rotations.reshape(-1, 9)]))
-
-    def _stated(self, joints: Array, positions: Array, rotations: Array) -> Array:  # type: ignore[override]
-        return self.at(self._equations, joints, positions, rotations)
-
-    def _move(self, positions: Array, rotations: Array, twist: Array) -> None:
-        positions[:, self.task] += twist[:, : len(self.task)]
-        for k, axis in enumerate(self.axes_of_turn):
-            rotations[:] = _about(axis, twist[:, len(self.task) + k]) @ rotations
-
-    def _ends(self) -> tuple[Array, Array]:
-        ends = [[*r.plate, *[sp.Integer(0)] * (3 - len(r.plate))] for r in self.mechanism.rods]
-        where = np.zeros((1, len(self.mechanism.joints))), self.home_position[None], self.home_rotation[None]
-        found = self.at([e for end in ends for e in end], *where)[0].reshape(-1, 3)
-        return found, found
-
-    def _sizes(self) -> Array:
-        """The lengths of the rods at home, where they are no joints; else the distances of their ends."""
-        joints = {j.symbol for j in self.mechanism.joints}
-        sizes = []
-        where = np.zeros((1, len(joints))), self.home_position[None], self.home_rotation[None]
-        for r in self.mechanism.rods:
-            apart = sp.sqrt(sp.Add(*[(p - b) ** 2 for p, b in zip(r.plate, r.base, strict=True)]))
-            value = apart if r.length.free_symbols & joints else r.length
-            sizes.append(float(self.at([value], *where)[0, 0]))
-        return np.array(sizes)
-
-    def _home_determinant(self) -> float:
-        self._mode = 1.0
-        where = np.tile(self.home_position, (STARTS * 8, 1)), np.tile(self.home_rotation, (STARTS * 8, 1, 1))
-        joints, closed = self.joints_at(*where, np.random.default_rng(3))
-        closed &= (self.at(self._indicators, joints, *where) * self._at_home > 0).all(axis=1)
-        found = self.side(joints, *where)[closed]
-        assert len(found) and np.ptp(found) < 1e-6 * np.abs(found).max(), self.mechanism.name
-        return float(found[0])
 
 
 @dataclass(frozen=True)
@@ -365,20 +159,3 @@ def _near(parameter: Parameter, rng: Generator) -> float:
         return float(np.clip(parameter.nominal + rng.uniform(-8.0, 8.0), parameter.low, parameter.high))
     size = 0.12 * abs(parameter.nominal) if parameter.nominal else 12.0
     return float(parameter.nominal + rng.uniform(-size, size))
-
-
-def _limited(step: Array, width: int, reach: float) -> Array:
-    """A step of at most half the reach and half a radian."""
-    sizes = np.abs(step) / np.where(np.arange(step.shape[1]) < width, 0.5 * reach, 0.5)
-    return np.asarray(step / np.maximum(1.0, sizes.max(axis=1))[:, None])
-
-
-def _about(axis: int, angle: Array) -> Array:
-    """Turns about a coordinate axis."""
-    matrix = np.zeros((len(angle), 3, 3), dtype=np.asarray(angle).dtype)
-    first, second = (axis + 1) % 3, (axis + 2) % 3
-    matrix[:, axis, axis] = 1.0
-    matrix[:, first, first] = matrix[:, second, second] = np.cos(angle)
-    matrix[:, second, first] = np.sin(angle)
-    matrix[:, first, second] = -np.sin(angle)
-    return matrix

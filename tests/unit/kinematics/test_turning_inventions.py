@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning, on_plate
+from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning, assembly, on_plate
 from derive.description.validate import validate
 from derive.emit.language import Part
 from derive.emit.python import package as python
@@ -169,6 +169,9 @@ def test_a_loop_that_is_not_described_as_needed_is_refused() -> None:
     on_a_slide = replace(own.rods[0], plate=on_plate(own.joints[0], 1.0))
     for wrong, words in (
         (replace(own, rods=own.rods[:2], joints=own.joints[:2], positive=own.positive[:2]), "only 2 joints"),
+        (replace(own, offset_interface=True), "needs offset_interface=False"),
+        (replace(own, task=Task("xy", Turning.DIRECTION)), "only 3 joints"),
+        (replace(own, assembly=assembly("plate", own.joints[0], margin="x", one=1, two=-1)), "needs no assembly"),
         (replace(own, home=own.home[:2]), "needs a home pose of 3 coordinates, and has 2"),
         (replace(own, task=Task("xy", Turning.FULL)), "and there are only 3 joints"),
         (replace(own, rods=(on_a_slide, *own.rods[1:])), "which no joint moves on it"),
