@@ -76,7 +76,7 @@ BROKEN: dict[str, tuple[str, str, str]] = {
     "an under-constrained closure": (
         'Task("xyz", Turning.ABOUT_Z)',
         'Task("xyz")',
-        r"broken\.py: the closure does not determine a3, a4: .* leave 1 free to move",
+        r"broken\.py: one joint too many: the task commands 3 quantities \(x, y, z\)",
     ),
     "the same joint twice": (
         "joints=(A1, A2, A3, A4)",

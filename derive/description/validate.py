@@ -28,6 +28,7 @@ from derive.ir.constants import (
 
 _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _PARAMETER = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+_FAMILY = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 _OF_AXES = ("axis", "ref", "reference", "turn", "offset", "lower", "upper", "motor", "unlimited")
 """What programs call values of an axis: `offset_a1`."""
@@ -63,6 +64,8 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
     for name in (mechanism.name, *mechanism.aliases):
         if not _BLOCK.match(name):
             yield f"{name!r} cannot name a function block"
+    if not _FAMILY.match(mechanism.family):
+        yield f"{mechanism.family!r} cannot name a family, which is a folder of CODESYS: words joined by _"
     if not mechanism.joints and (mechanism.task.position or mechanism.task.turning is not Turning.NONE):
         yield "the mechanism has no joints"
     for kind, names in (

@@ -164,12 +164,42 @@ def _five_axes(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return q[0] + reach * ca * sb, q[1] + reach * sa * sb, q[2] + reach * cb, rotation
 
 
+def _table_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The trunnion turns the workpiece from Y to Z, the table on it from X to Y: the tool seen from there."""
+    ca, sa, cc, sc = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
+    tip = q[2] - p["tool_length"]
+    y, z = ca * q[1] + sa * tip - p["pivot_y"], ca * tip - sa * q[1] - p["pivot_z"]
+    rotation = ((cc, sc * ca, sc * sa), (-sc, cc * ca, cc * sa), (0 * sa, -sa, ca))
+    return cc * q[0] + sc * y, cc * y - sc * q[0], z, rotation
+
+
+def _head_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The head leans to +X, the table turns the workpiece from X to Y."""
+    cb, sb, cc, sc = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
+    x = q[0] + p["head_offset"] * cb - p["pivot_length"] * sb
+    z = q[2] - p["head_offset"] * sb - p["pivot_length"] * cb
+    rotation = ((cc * cb, sc, cc * sb), (-sc * cb, cc, -sc * sb), (-sb, 0 * sb, cb))
+    return cc * x + sc * q[1], cc * q[1] - sc * x, z, rotation
+
+
+def _head_head(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The fork turns the head about Z, the head leans."""
+    cc, sc, cb, sb = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
+    ahead = p["fork_offset"] + p["head_offset"] * cb - p["pivot_length"] * sb
+    z = q[2] - p["head_offset"] * sb - p["pivot_length"] * cb
+    rotation = ((cc * cb, -sc, cc * sb), (sc * cb, cc, sc * sb), (-sb, 0 * sb, cb))
+    return q[0] + cc * ahead, q[1] + sc * ahead, z, rotation
+
+
 CARTESIAN = _carriage((1, 0), (0, 1))
 H_BOT = _carriage((0.5, -0.5), (0.5, 0.5))
 H_GANTRY = _carriage((0.5, -0.5), (-0.5, -0.5))
 T_GANTRY = _carriage((0.5, 0.5), (-0.5, 0.5))
 FORMULAS: dict[str, Formula] = {
     "Kin_5Axes": _five_axes,
+    "Softkin_HeadHead_CB": _head_head,
+    "Softkin_HeadTable_BC": _head_table,
+    "Softkin_TableTable_AC": _table_table,
     "Kin_Ac6_TXTYTZRYRXRZ": _gantry_head,
     "Kin_Ac6_ThreeParallel": _three_parallel,
     "Kin_ArticulatedRobot_6DOF": _articulated,

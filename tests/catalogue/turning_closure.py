@@ -7,7 +7,7 @@ the pose from the home pose and the joints from many starts.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 import sympy as sp
@@ -15,7 +15,8 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from derive.description.mechanism import ROTATION, Mechanism, Turning
-from tests.catalogue.closure import POSITION, Array, Closure, derivative
+from derive.ir.constants import DEGREE
+from tests.catalogue.closure import POSITION, Array, Closure, Formula, derivative
 
 SHIFT, TURN = 0.2, 0.35
 """The largest distance of poses from home, in reaches and radians."""
@@ -37,7 +38,7 @@ class TurningClosure(Closure):
         self._indicators = [b.signs[0] * b.indicator for b in mechanism.branches]
         self.axes_of_turn = [2] if mechanism.task.turning is Turning.ABOUT_Z else [0, 1, 2]
         width = len(self.task)
-        home = self._evaluate(mechanism.home, [], np.zeros((1, 0)))[0]
+        home = self._values(mechanism.home, [], np.zeros((1, 0)))[0]
         self.home_position = np.zeros(3)
         self.home_position[self.task] = home[:width]
         self.home_rotation = np.eye(3)
@@ -184,7 +185,11 @@ class TurningClosure(Closure):
     def at(self, expressions: Sequence[sp.Expr], joints: Array, positions: Array, rotations: Array) -> Array:
         """Expressions of the description in joints and pose: a column each."""
         symbols = [*(j.symbol for j in self.mechanism.joints), *POSITION, *ROTATION]
-        return self._evaluate(expressions, symbols, np.hstack([joints, positions, rotations.reshape(-1, 9)]))
+        return self._values(expressions, symbols, np.hstack([joints, positions, rotations.reshape(-1, 9)]))
+
+    def _values(self, expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol], values: Array) -> Array:
+        names = (*symbols, *(p.symbol for p in self.mechanism.parameters), DEGREE)
+        return self._evaluate(_compiled(tuple(expressions), names), values)
 
     def _stated(self, joints: Array, positions: Array, rotations: Array) -> Array:  # type: ignore[override]
         return self.at(self._equations, joints, positions, rotations)
@@ -236,3 +241,10 @@ def _about(axis: int, angle: Array) -> Array:
     matrix[:, second, first] = np.sin(angle)
     matrix[:, first, second] = -np.sin(angle)
     return matrix
+
+
+@cache
+def _compiled(expressions: tuple[sp.Expr, ...], names: tuple[sp.Symbol, ...]) -> Formula:
+    """Expressions as a function of NumPy arrays."""
+    formula: Formula = sp.lambdify(names, list(expressions), modules="numpy")
+    return formula

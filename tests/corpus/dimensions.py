@@ -49,6 +49,9 @@ _HEXAGLIDE |= {f"carriage_side_{i}": -1.0 for i in (2, 3, 4, 6)}
 
 DIMENSIONS: dict[str, dict[str, float]] = {
     "Kin_5Axes": {"tool_length": 90.0},
+    "Softkin_HeadHead_CB": {"fork_offset": 25.0, "head_offset": -15.0, "pivot_length": 260.0},
+    "Softkin_HeadTable_BC": {"head_offset": 35.0, "pivot_length": 240.0},
+    "Softkin_TableTable_AC": {"pivot_y": 40.0, "pivot_z": -60.0, "tool_length": 120.0},
     "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": {
         "d1": 615.0, "a1": 100.0, "a2": 705.0, "a3": 135.0, "d4": 755.0, "j6_offset_x": 60.0, "d6": 85.0,
     },
