@@ -37,7 +37,7 @@ from derive.ir.symbols import (
     MIN_TYPE2_MARGIN,
     real,
 )
-from derive.kinematics.sampling import sample_axes, sample_machine
+from derive.kinematics.sampling import NO_POSE, possible_axes, sample_machine
 from derive.plate.legs import MARGIN
 from derive.plate.plate import platform_checks
 
@@ -77,12 +77,16 @@ def _orientation(mechanism: Mechanism, forward: Forward) -> int:
     lets, (indicator,) = named_trigonometry(mechanism, [with_fixed_names(mechanism, described)])
     program = normalise("assembly", (*forward.statements, *lets), [Output("indicator", indicator)])
     machine = sample_machine(mechanism, 31)
-    samples = {**machine, **sample_axes(mechanism, machine, _SAMPLES, 32)}
+    either = {ASSEMBLY_SIGN.name: np.asarray(1.0)}
+    samples = possible_axes(mechanism, {**machine, **either}, _SAMPLES, 32, program)
+    count = max(column.size for column in samples.values())
     found: set[int] = set()
     for side in (1.0, -1.0):
         values, status = run(program, {**samples, ASSEMBLY_SIGN.name: np.asarray(side)})
-        good = np.broadcast_to(status == Status.OK, (_SAMPLES,))
+        good = np.broadcast_to(status == Status.OK, (count,))
         found |= {int(s) for s in np.sign(side * values["indicator"][good])}
+    if not found:
+        raise DescriptionError(f"assembly {mechanism.assembly.name!r}: {NO_POSE}")
     if len(found) != 1 or 0 in found:
         raise DescriptionError(
             f"assembly {mechanism.assembly.name!r}: its indicator does not tell the two solutions apart"

@@ -36,7 +36,7 @@ from derive.kinematics.forward import (
     derivation_at_axes,
 )
 from derive.kinematics.inverse import Inverse
-from derive.kinematics.sampling import sample_axes, sample_machine
+from derive.kinematics.sampling import NO_POSE, possible_axes, sample_machine
 from derive.plate.turning import given_pose, samples_near_home
 
 _SAMPLES = 64
@@ -132,15 +132,13 @@ def _signs(
     if mechanism.is_platform:
         samples = samples_near_home(mechanism, inverse.known, inverse.signs, machine, 22)
     else:
-        samples = {**machine, **sample_axes(mechanism, machine, _SAMPLES, 22)}
-    samples.update({f"point_{c}": np.asarray(0.0) for c in "xyz"})
+        machine |= {f"point_{c}": np.asarray(0.0) for c in "xyz"}
+        samples = possible_axes(mechanism, machine, _SAMPLES, 22, program)
     count = max(v.size for v in samples.values())
     values, status = run(program, samples)
     good = np.broadcast_to(status == Status.OK, (count,))
     if not good.any():
-        raise DescriptionError(
-            "no sampled pose is possible: a quantity that must be positive never is, or the loop never closes"
-        )
+        raise DescriptionError(NO_POSE)
     rows = [np.sign(np.broadcast_to(values[n.name.name], (count,))[good]) for n in named]
     return rows[: len(determinants)], rows[len(determinants) :]
 

@@ -101,7 +101,7 @@ def build(mechanism: Mechanism) -> Kinematics:
     factors += [Factor(closed.name, closed.margin)] if closed.margin is not None else []
     statements = with_branch_signs(inverse.derivation.statements, assignments)
     at_home = joints_at_home(mechanism, statements) if mechanism.is_platform else ()
-    at_poses = _samples(mechanism, inverse, at_home)
+    at_poses = _samples(mechanism, inverse, at_home, jacobian)
     singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian, at_poses)
     forward_only = replace(forward, statements=at_axes)
     programs = [
@@ -126,10 +126,12 @@ def build(mechanism: Mechanism) -> Kinematics:
     return _finished(mechanism, programs, kept, at_home)
 
 
-def _samples(mechanism: Mechanism, inverse: Inverse, at_home: Sequence[Statement]) -> dict[str, NDArray[np.float64]]:
+def _samples(
+    mechanism: Mechanism, inverse: Inverse, at_home: Sequence[Statement], jacobian: Program
+) -> dict[str, NDArray[np.float64]]:
     """Poses at which the exponents of margins are found."""
     if not mechanism.is_platform:
-        return samples_anywhere(mechanism)
+        return samples_anywhere(mechanism, jacobian)
     samples = samples_near_home(mechanism, inverse.known, inverse.signs, sample_machine(mechanism, 11), 12)
     constants, _ = run(setup_program(mechanism, machine_parameters(mechanism), at_home=at_home), samples)
     return samples | constants

@@ -52,7 +52,7 @@ from derive.kinematics.kinematics import Margin
 from derive.kinematics.parameters import (
     has_length,
 )
-from derive.kinematics.sampling import sample_axes, sample_machine
+from derive.kinematics.sampling import possible_axes, sample_machine
 from derive.plate.plate import platform_jacobian
 
 _ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
@@ -249,10 +249,9 @@ def singularity_program(
     return program, tuple(Margin(n, e, "type 1" if e > 0 else "type 2", of_length.get(n)) for n, e in kept)
 
 
-def samples_anywhere(mechanism: Mechanism) -> dict[str, NDArray[np.float64]]:
-    """One machine, with axis values over its whole range."""
-    machine = sample_machine(mechanism, 11)
-    return {**machine, **sample_axes(mechanism, machine, 64, 12)}
+def samples_anywhere(mechanism: Mechanism, program: Program) -> dict[str, NDArray[np.float64]]:
+    """One machine, with axis values over its whole range that a program accepts some of."""
+    return possible_axes(mechanism, sample_machine(mechanism, 11), 64, 12, program)
 
 
 def _exponents(

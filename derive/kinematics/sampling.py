@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import sympy as sp
 from numpy.typing import NDArray
 
 from derive.description.mechanism import Mechanism, Role
-from derive.ir.interpret import evaluate
+from derive.ir.interpret import evaluate, run
+from derive.ir.program import Program, Status
 from derive.ir.symbols import (
     SCALE,
 )
@@ -17,6 +19,15 @@ from derive.kinematics.parameters import (
 )
 
 Samples = dict[str, NDArray[np.float64]]
+ENOUGH = 16
+"""Possible poses by which a sign or an exponent is told."""
+NO_POSE = (
+    "no sampled pose is possible: a quantity that must be positive never is, or the loop never closes; check the "
+    "nominal values of parameters and joints"
+)
+_MANY = 1024
+_SHARES = (1.0, 0.5, 0.25, 0.1)
+"""Of the ranges, in which further poses are drawn."""
 
 
 def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False) -> Samples:
@@ -35,19 +46,52 @@ def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False)
 
 
 def _reach(mechanism: Mechanism, machine: Samples) -> float:
-    """A length of the size of the machine: of one without a length that is never zero, the sum of its distances."""
+    """A length of the size of the machine: of one without a length that is never zero, the sum of its distances; of a
+    loop at least its largest coordinate that is a number or a distance.
+    """
     distances = [abs(float(machine[p.name])) for p in mechanism.parameters if p.role is Role.DISTANCE]
-    return float(machine[SCALE.name]) if has_length(mechanism) else sum(distances) or 1.0
+    size = float(machine[SCALE.name]) if has_length(mechanism) else sum(distances) or 1.0
+    if not mechanism.rods:
+        return size
+    ends = [sp.sympify(v) for rod in mechanism.rods for v in (*rod.base, *rod.plate)]
+    numbers = [abs(float(t)) for end in ends for t in sp.Add.make_args(end) if t.is_number]
+    return max(size, *distances, *numbers, 0.0)
 
 
-def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int) -> Samples:
-    """Axis values over the whole ranges of the joints, as arrays; the references are equal to the axes."""
+def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, share: float = 1.0) -> Samples:
+    """Axis values over the whole ranges of the joints, as arrays; the references are equal to the axes.
+
+    share: of the ranges, around the nominal values of the joints.
+    """
     generator = np.random.default_rng(seed)
     values: Samples = {}
     for joint in mechanism.joints:
         low, high = joint.domain or ((-180.0, 180.0) if joint.is_angle else (-1.0, 1.0))
         reach = 1.0 if joint.is_angle else _reach(mechanism, machine)
         high = min(high, 1e3 if joint.is_angle else 2.0)
-        drawn = generator.uniform(low, high, count) * reach + float(machine[joint.offset.name])
-        values[joint.axis.name] = values[joint.reference.name] = drawn
+        drawn = joint.nominal + share * (generator.uniform(low, high, count) * reach - joint.nominal)
+        values[joint.axis.name] = values[joint.reference.name] = drawn + float(machine[joint.offset.name])
     return values
+
+
+def possible_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, program: Program) -> Samples:
+    """The machine, with axis values that the program accepts some of: a loop closes at few of all that are drawn.
+
+    Where fewer than `ENOUGH` of the first are possible, further ones are drawn, ever nearer to the nominal values of
+    the joints; then only those that are possible are left.
+    """
+    first = {**machine, **sample_axes(mechanism, machine, count, seed)}
+    if _possible(program, first, count).sum() >= ENOUGH:
+        return first
+    kept: list[Samples] = []
+    for number, share in enumerate(_SHARES):
+        drawn = sample_axes(mechanism, machine, _MANY, seed + 100 + number, share)
+        good = _possible(program, {**machine, **drawn}, _MANY)
+        kept.append({name: column[good] for name, column in drawn.items()})
+    found = {name: np.concatenate([part[name] for part in kept]) for name in kept[0]}
+    return {**machine, **found} if any(column.size for column in found.values()) else first
+
+
+def _possible(program: Program, samples: Samples, count: int) -> NDArray[np.bool_]:
+    _, status = run(program, samples)
+    return np.asarray(np.broadcast_to(status == Status.OK, (count,)), dtype=bool)
