@@ -32,6 +32,8 @@ SWEEPS = (
     "catalogue/test_precision.py",
     "catalogue/hexapod/test_planted_faults.py",
     "harness/test_harness_sample.py::test_blark",
+    "unit/emit/test_hash_seeds.py",
+    "unit/kinematics/test_turning_inventions.py",
     "text/coupling/test_every_statement.py",
     "text/loops/test_branches.py",
     "text/loops/test_every_statement.py",

@@ -69,6 +69,7 @@ from derive.kinematics.forward import (
 )
 from derive.kinematics.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics.kinematics import Freedom, Kinematics, Margin
+from derive.kinematics.number_of_joints import check_joints
 from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.sampling import sample_machine
 from derive.kinematics.scan.derivations import from_joints, solve_both
@@ -83,7 +84,9 @@ from derive.solver.solve import Unsolved
 
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
-    _count(mechanism)
+    check_joints(mechanism)
+    if mechanism.is_platform:
+        check_home(mechanism)
     refuse_names_of_joints(mechanism)
     if mechanism.search is not None:
         return _scanned(mechanism)
@@ -167,33 +170,6 @@ def _scanned(mechanism: Mechanism) -> Kinematics:
         _projection_program(mechanism),
     ]
     return _finished(mechanism, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
-
-
-def _count(mechanism: Mechanism) -> None:
-    """Refuse more conditions than joints or coordinates: they cannot be met, and no later step would notice."""
-    rows, equations = jacobian_rows(mechanism), mechanism.equations
-    commanded = f"{len(rows)} quantities ({', '.join(rows)})"
-    spare = len(mechanism.solved_joints) - len(rows)
-    if spare:
-        raise DescriptionError(_wrong_number(mechanism, spare, commanded))
-    if len(equations) > len(rows):
-        raise DescriptionError(f"the closure has {len(equations)} equations, and the task commands only {commanded}")
-    if mechanism.is_platform:
-        check_home(mechanism)
-
-
-def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
-    """The sentence for a machine with other than as many joints as its task commands quantities."""
-    joints, held = mechanism.joints, mechanism.held
-    if spare < 0:
-        left = f"{len(joints)} joints" + (f", of which {len(held)} are held" if held else "")
-        return f"the task commands {commanded}, and there are only {left}"
-    number = "one joint" if spare == 1 else f"{spare} joints"
-    names = "the one that is" if spare == 1 else "those that are"
-    return (
-        f"{number} too many: the task commands {commanded}, and {len(mechanism.solved_joints)} joints are to be solved "
-        f"for; name {names} held at the reference: held=({joints[0].name},)"
-    )
 
 
 def _finished(

@@ -87,8 +87,13 @@ REFUSED = {
         "2 joints too many: the task commands 2 quantities (x, y), and 4 joints are to be solved for; name those that"
         " are held",
     ),
+    "a loop with a joint too many": (
+        arm(joints=(P1, P2, P3), chain=None, closure=(X - P1, Y - P2 - P3), branches=()),
+        "one joint too many: the task commands 2 quantities (x, y), and 3 joints are to be solved for; command more of "
+        "the pose, or leave out joints",
+    ),
     "a joint held that is none of the machine": (arm(held=(A3,)), "held names 'A3', which is no joint of this"),
-    "a joint held that the task needs": (arm(held=(A2,)), "2 joints, of which 1 are held"),
+    "a joint held that the task needs": (arm(held=(A2,)), "2 joints, of which 1 is held"),
     "a held joint of a loop": (
         arm(joints=(P1, P2), chain=None, closure=(X - P1, Y - P2), branches=(), held=(P1,)),
         "held joints need a chain",

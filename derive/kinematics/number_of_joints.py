@@ -1,0 +1,36 @@
+"""As many joints are solved for as the task commands quantities: any other number is refused, before all else."""
+
+from __future__ import annotations
+
+from derive.description.mechanism import DescriptionError, Mechanism
+from derive.kinematics.differential import jacobian_rows
+
+
+def check_joints(mechanism: Mechanism) -> None:
+    """Refuse more conditions than joints or coordinates: they cannot be met, and no later step would notice."""
+    rows, equations = jacobian_rows(mechanism), mechanism.equations
+    commanded = f"{len(rows)} quantities ({', '.join(rows)})"
+    spare = len(mechanism.solved_joints) - len(rows)
+    if spare:
+        raise DescriptionError(_wrong_number(mechanism, spare, commanded))
+    if len(equations) > len(rows):
+        raise DescriptionError(f"the closure has {len(equations)} equations, and the task commands only {commanded}")
+
+
+def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
+    """The sentence for a machine with other than as many joints as its task commands quantities."""
+    joints, held = mechanism.joints, mechanism.held
+    if spare < 0:
+        left = f"{len(joints)} joints" + (
+            f", of which {len(held)} {'is' if len(held) == 1 else 'are'} held" if held else ""
+        )
+        return f"the task commands {commanded}, and there are only {left}"
+    number = "one joint" if spare == 1 else f"{spare} joints"
+    names = "the one that is" if spare == 1 else "those that are"
+    remedy = f"name {names} held at the reference: held=({joints[0].name},)"
+    if mechanism.chain is None:  # of a closed loop every joint follows from the pose
+        remedy = "command more of the pose, or leave out joints"
+    return (
+        f"{number} too many: the task commands {commanded}, and {len(mechanism.solved_joints)} joints are to be solved "
+        f"for; {remedy}"
+    )
