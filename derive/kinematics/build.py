@@ -125,7 +125,7 @@ def build(mechanism: Mechanism) -> Kinematics:
     if mechanism.is_orientation:
         programs += coupling_programs(mechanism)
     elif mechanism.offset_interface:
-        programs += _offset_programs(mechanism, closed)
+        programs += _offset_programs(mechanism, closed, inverse.derivation.conditions)
     return _finished(mechanism, programs, kept, at_home)
 
 
@@ -253,12 +253,15 @@ def _last(
     return (*assembly_checks(mechanism, closed, statements, offset), *bound_checks(mechanism, offset))
 
 
-def _offset_programs(mechanism: Mechanism, closed: Assembled) -> list[Program]:
+def _offset_programs(mechanism: Mechanism, closed: Assembled, conditions: tuple[sp.Expr, ...]) -> list[Program]:
+    """The programs for a point off the flange; they may not need more of the machine than the pose does."""
     forward = closed.forward
     try:
         inverse = solve_offset(mechanism)
         refuse_shared_names(mechanism, (*inverse.naming, *inverse.derivation.statements))
         assignments = assign(mechanism, inverse, forward, optional_zero=bool(inverse.frozen))
+        if further := [c for c in inverse.derivation.conditions if c not in conditions]:
+            raise DescriptionError(f"{further[0]} must not vanish, which the pose does not need")
     except (Unsolved, DescriptionError) as problem:
         raise type(problem)(
             f"with offset_interface=False it could be built, but for a point off the flange {problem}"

@@ -135,7 +135,12 @@ SQUARES_WITH_LENGTHS = {
 
 PARAMETERS_DECIDE = {
     "skewed rail": _machine(
-        "Skewed", (X, Y, Z), Tx(X) * Rz(radians(LEAN)) * Ty(Y) * Rz(-radians(LEAN)) * Tz(Z), (LEAN,), Task("xyz")
+        "Skewed",
+        (X, Y, Z),
+        Tx(X) * Rz(radians(LEAN)) * Ty(Y) * Rz(-radians(LEAN)) * Tz(Z),
+        (LEAN,),
+        Task("xyz"),
+        offset_interface=True,
     ),
     "rails in a wedge": _machine(
         "Wedge",
