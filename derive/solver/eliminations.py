@@ -4,8 +4,8 @@
 * elimination: an unknown length that is linear in one equation, with a number as its coefficient, is put into the
   others;
 * squares: the sum of the squares of two equations, known parts on the right side, is free of the angle that
-  turns both (this is the law of cosines). As a last resort three are squared: free of every angle that turns all of
-  them.
+  turns both (this is the law of cosines). After them the squares that hold an unknown length are tried: of a boom
+  beside the axis that turns it. As a last resort three are squared: free of every angle that turns all of them.
 """
 
 from __future__ import annotations
