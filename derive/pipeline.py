@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -103,11 +104,8 @@ def derive_all(work: Work, profile: str | None) -> Iterator[Built]:
 
 def _load() -> None:
     """Load what deriving needs, once for all processes that are then started."""
-    import derive.emit.picture.page
-    import derive.emit.softmotion.pictures
-    import derive.kinematics.build
-    import derive.report.self_test
-    import derive.witness  # noqa: F401
+    for room in ("emit.picture.page", "emit.softmotion.pictures", "kinematics.build", "report.self_test", "witness"):
+        import_module(f"derive.{room}")
 
 
 def derive_one(mechanism: Mechanism, profile: str | None = None) -> Built:

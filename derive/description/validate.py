@@ -30,10 +30,13 @@ _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _PARAMETER = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _FAMILY = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
-_OF_AXES = ("axis", "ref", "reference", "turn", "offset", "lower", "upper", "motor", "unlimited")
+_OF_AXES = (
+    *("axis", "ref", "reference", "turn", "offset", "lower", "upper", "motor", "unlimited"),
+    *("lowest", "highest", "mid", "single", "open", "near"),
+)
 """What programs call values of an axis: `offset_a1`."""
 _OF_BRANCHES = ("sigma", "branch", "sign")
-_RESERVED = {"check_limits", "x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123")}
+_RESERVED = {"check_limits", "machine_scale", "x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123")}
 """Names that programs need for other values."""
 
 Expressions = tuple[tuple[str, sp.Basic], ...]
@@ -91,17 +94,18 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _taken(mechanism: Mechanism) -> set[str]:
-    """The names that programs of this mechanism give to values of their own."""
+    """The names that programs of this mechanism give to values of their own, without _: Structured Text joins words."""
     axes = [*(j.key for j in mechanism.joints), *(q.name for q in mechanism.limited)]
     of_axes = {f"{word}_{key}" for word in _OF_AXES for key in axes}
-    return _RESERVED | of_axes | {f"{word}_{b.name}" for word in _OF_BRANCHES for b in mechanism.branches}
+    of_branches = {f"{word}_{b.name}" for word in _OF_BRANCHES for b in mechanism.branches}
+    return {name.replace("_", "") for name in (*_RESERVED, *of_axes, *of_branches)}
 
 
 def _parameter(parameter: Parameter, taken: set[str]) -> Iterator[str]:
     name = parameter.name
     if not _PARAMETER.match(name):
         yield f"{name!r} cannot name a parameter: lower-case words joined by _"
-    if name in taken:
+    if name.replace("_", "") in taken:
         yield f"{name!r} cannot name a parameter: programs of this mechanism have another value of that name"
     if not parameter.low < parameter.high:
         yield f"parameter {name!r}: its range {_interval(parameter)} is empty"
@@ -143,6 +147,7 @@ def _held(mechanism: Mechanism) -> Iterator[str]:
     for joint in mechanism.held:
         if joint.name not in names:
             yield f"held names {joint.name!r}, which is no joint of this mechanism"
+    for joint in mechanism.held_joints:
         if joint.coupling != 0:
             yield f"joint {joint.name!r} is held and geared to other axes: hold a joint that has a motor of its own"
     if mechanism.held and mechanism.chain is None:

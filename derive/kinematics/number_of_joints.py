@@ -21,10 +21,8 @@ def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
     """The sentence for a machine with other than as many joints as its task commands quantities."""
     joints, held = mechanism.joints, mechanism.held
     if spare < 0:
-        left = f"{len(joints)} joints" + (
-            f", of which {len(held)} {'is' if len(held) == 1 else 'are'} held" if held else ""
-        )
-        return f"the task commands {commanded}, and there are only {left}"
+        left = f", of which {len(held)} {'is' if len(held) == 1 else 'are'} held" if held else ""
+        return f"the task commands {commanded}, and there are only {len(joints)} joints{left}"
     number = "one joint" if spare == 1 else f"{spare} joints"
     names = "the one that is" if spare == 1 else "those that are"
     remedy = f"name {names} held at the reference: held=({joints[0].name},)"

@@ -56,27 +56,27 @@ class Symmetry(Rewriting):
         wanted = (node for node in always & {*named, *turned} if not is_condition(node))
         candidates = sorted(wanted, key=lambda node: (first[node], node.place))
         conditions = {node.parts[0].node for node in always if node.head is Select}
-        found = [_twins(candidates, Assumed(graph, c, counted)) for c in sorted(conditions, key=lambda n: n.place)]
+        found = [_equals(candidates, Assumed(graph, c, counted)) for c in sorted(conditions, key=lambda n: n.place)]
         found.sort(key=len)  # of several conditions, the one that gives most values
-        everywhere = _twins(candidates, Assumed(graph, None, counted))
-        self._twins = {node: twin for twins in (*found, everywhere) for node, twin in twins.items()}
+        everywhere = _equals(candidates, Assumed(graph, None, counted))
+        self._equals = {node: equal for part in (*found, everywhere) for node, equal in part.items()}
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
         """The choice between what another node gives and the node."""
         own = super().rewritten(node, parts)
-        twin = self._twins.get(node)
-        if twin is None:
+        equal = self._equals.get(node)
+        if equal is None:
             return own
-        other = self(twin.other)
-        if twin.shift != 0:
-            other = self.graph.sum([other, _number(self.graph, twin.shift)])
-        if twin.condition is None:
+        other = self(equal.other)
+        if equal.shift != 0:
+            other = self.graph.sum([other, _number(self.graph, equal.shift)])
+        if equal.condition is None:
             return other
-        return self.graph.apply(Select, (self(Value(twin.condition, 1)), other, own))
+        return self.graph.apply(Select, (self(Value(equal.condition, 1)), other, own))
 
 
 @dataclass(frozen=True)
-class _Twin:
+class _Equal:
     """Where a condition holds, or everywhere, a node is another one, with a sign, and half a turn or none."""
 
     condition: Node | None
@@ -133,9 +133,9 @@ class Assumed(Rewriting):
         return super().rewritten(node, tuple(whole)), sp.Integer(0)
 
 
-def _twins(candidates: Iterable[Node], assumed: Assumed) -> dict[Node, _Twin]:
+def _equals(candidates: Iterable[Node], assumed: Assumed) -> dict[Node, _Equal]:
     """The nodes that one before them gives under an assumption."""
-    found: dict[Node, _Twin] = {}
+    found: dict[Node, _Equal] = {}
     first: dict[Node, tuple[Node, int, sp.Expr]] = {}
     condition = assumed.condition
     for node in candidates:
@@ -146,7 +146,7 @@ def _twins(candidates: Iterable[Node], assumed: Assumed) -> dict[Node, _Twin]:
         is_decided = node.head is Select and node.parts[0].node is condition
         if other is not node and not is_decided and (condition is None or value.node is not node):
             sign *= value.sign
-            found[node] = _Twin(condition, Value(other, sign), _modulo_turns(shift - sign * away))
+            found[node] = _Equal(condition, Value(other, sign), _modulo_turns(shift - sign * away))
     return found
 
 

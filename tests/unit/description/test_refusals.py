@@ -34,6 +34,12 @@ def with_parameter(name: str) -> Mechanism:
     return arm(parameters=(L1, odd), chain=Rz(A1) * Tx(L1) * Rz(A2) * Tx(odd))
 
 
+@pytest.mark.parametrize("name", ["upper_arm", "lower_arm", "axis_offset", "offset_x", "branch_pipe"])
+def test_natural_names_of_parameters_are_taken(name: str) -> None:
+    """A parameter may begin with a word of the programs, where no program of its mechanism has that name."""
+    assert build(validate(with_parameter(name))).margins[0].name == "elbow"
+
+
 def test_the_arm_itself_is_sound() -> None:
     """The description that the other tests break is accepted."""
     assert build(validate(arm())).margins[0].name == "elbow"
@@ -42,6 +48,7 @@ def test_the_arm_itself_is_sound() -> None:
 SAME = (ELBOW, branch("arm", -sin(A2), left=+1, right=-1))
 LOOP = (X - P1, Y - P2, P1 - P2)
 AGREES = "branch 'elbow': its indicator agrees with 0 steps, not one"
+GIVEN = "cannot name a parameter: programs of this mechanism have another value of that name"
 TAKEN = "has a name that the derivation itself uses"
 TWELVE = rotary("A12", "a name too many")
 
@@ -109,6 +116,15 @@ REFUSED = {
     "z moved and not commanded": (arm(chain=ARM * Tz(L1 * sin(A2))), "z is not commanded but the joints move it"),
     "a radius that is never positive": (arm(positive=(-1 - cos(A2) ** 2,)), "no sampled pose is possible"),
     "a parameter with the name of a value": (with_parameter("reach"), f"parameter 'reach' {TAKEN}"),
+    "a parameter with the name of a limit": (with_parameter("upper_a1"), f"'upper_a1' {GIVEN}"),
+    "a parameter with the name of an effective limit": (with_parameter("lowest_a1"), f"'lowest_a1' {GIVEN}"),
+    "a parameter that Structured Text spells like a limit": (with_parameter("upper_a_1"), f"'upper_a_1' {GIVEN}"),
+    "a parameter with a capital letter": (with_parameter("Link"), "'Link' cannot name a parameter: lower-case words"),
+    "a family of two words": (replace(arm(), family="two words"), "'two words' cannot name a family"),
+    "a held joint with a gear coupling": (
+        arm(joints=(A1, replace(A2, coupling=A1.motor), A3), chain=ARM * Rz(A3), held=(A2,)),
+        "joint 'A2' is held and geared to other axes",
+    ),
     "a parameter with the name of a joint": (with_parameter("a1"), f"parameter 'a1' {TAKEN}"),
     "a joint with the name of a sum": (
         arm(joints=(A1, A2, TWELVE), chain=links(A1, A2, TWELVE), task=Task("xy", FOLLOWED), parameters=(L1, L2, L3)),
