@@ -37,8 +37,8 @@ different shape it found every pose within 20 degrees of home, and 20 % of a leg
 the configuration of home. In a configuration with the other sign of the determinant at home it refuses.
 
 The assembly mode is the sign of the determinant of the rods at the home pose, and home_elbow_1_left to
-home_elbow_3_left tell how the arms stand there. Between assembly modes the platform cannot go without losing
-its rods: of the eight configurations the inverse refuses those in the other mode.
+home_elbow_3_left tell how the arms stand there. Every way into the other mode leads through a type 2
+singularity: of the eight configurations the inverse refuses those in the other mode.
 
 The frame of the platform is the tool frame: give its joints in it. Motors are given in the machine's frame.
 
