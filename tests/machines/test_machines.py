@@ -210,3 +210,26 @@ def test_parallel_slides_are_refused_when_the_machine_is_set_up(name: str, lean:
     assert refusal.value.status is Status.NOT_INITIALIZED
     controller = machine.controller()
     assert controller.initialise({**machine.robot.parameters, "lean": lean}) != OK
+
+
+def test_a_machine_with_a_held_joint_carries_an_orientation_kinematics() -> None:
+    """A coupling holds what its position kinematics holds, asks for a reference, and reaches the frame from another."""
+    robot = made("SCARA on a rail").robot
+    coupled = softkin.Coupled(robot, softkin.Tool(tool_z=-50.0))
+    axes = np.array([30.0, 20.0, 40.0, 10.0, 70.0])
+    frame, configuration = coupled.forward(axes)
+    assert coupled.HELD == robot.HELD == (0,)
+    assert np.allclose(coupled.inverse(frame, configuration, axes), axes, rtol=0.0, atol=1e-9)
+    with pytest.raises(KinematicsError, match="a reference is needed: it holds the value of X"):
+        coupled.inverse(frame, configuration)
+    elsewhere = coupled.inverse(frame, configuration, axes + np.array([50.0, 0.0, 0.0, 0.0, 0.0]))
+    assert elsewhere[0] == 80.0
+    assert np.allclose(coupled.forward(elsewhere)[0].position, frame.position, rtol=0.0, atol=1e-9)
+
+
+def test_the_limits_of_a_held_joint_refuse_the_reference() -> None:
+    """A held axis is not moved inside its limits: the pose is refused, and the refusal names the axis."""
+    robot = type(made("SCARA on a rail").robot)(**{**made("SCARA on a rail").robot.parameters, "upper_x": 50.0})
+    frame, configuration = robot.forward((30.0, 20.0, 40.0, 10.0, 70.0))
+    with pytest.raises(KinematicsError, match=r"X: above its upper limit \[u\], missing 30"):
+        robot.inverse(frame, configuration, (80.0, 20.0, 40.0, 10.0, 70.0))
