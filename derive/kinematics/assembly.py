@@ -16,10 +16,11 @@ from derive.equations.pose_at_axes import (
     Forward,
 )
 from derive.equations.trigonometry import named_trigonometry
-from derive.ir.constants import DEGREE
+from derive.ir.constants import BOUNDARY, DEGREE
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.primitives import (
+    Root,
     Select,
     angle_of_sine,
 )
@@ -35,6 +36,7 @@ from derive.ir.symbols import (
     ASSEMBLY_SIGN,
     DETERMINANT,
     MIN_TYPE2_MARGIN,
+    SCALE,
     real,
 )
 from derive.kinematics.sampling import NO_POSE, possible_axes, sample_machine
@@ -134,6 +136,24 @@ def bound_checks(mechanism: Mechanism, offset: bool) -> tuple[Statement, ...]:
         )
         reason = _beyond(b, sp.Abs(value), largest)
         checks.append(Require(sp.Le(sp.Abs(value), largest), Status.UNREACHABLE, b.meaning, reason))
+    return tuple(checks)
+
+
+def mirror_checks(mechanism: Mechanism, solved: tuple[Statement, ...]) -> tuple[Statement, ...]:
+    """The checks that lengths are positive where the description says so and the step that solved for one does not
+    see to it.
+    """
+    values = {s.name: s.value for s in solved if isinstance(s, Let)}
+    checks: list[Statement] = []
+    for joint in mechanism.joints:
+        value = values.get(joint.symbol)
+        while value in values:
+            value = values[value]
+        if joint.is_angle or joint.symbol not in mechanism.positive or value is None or isinstance(value, Root):
+            continue
+        inside = sp.Ge(joint.symbol, -BOUNDARY * SCALE)
+        reason = about(joint.name, Why.NO_POSE, -joint.symbol)
+        checks.append(Require(inside, Status.UNREACHABLE, reason=reason))
     return tuple(checks)
 
 

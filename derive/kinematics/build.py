@@ -46,7 +46,7 @@ from derive.ir.symbols import (
 )
 from derive.ir.types import Type, output_types
 from derive.ir.verify import BrokenProgram
-from derive.kinematics.assembly import Assembled, assembled, assembly_checks, bound_checks
+from derive.kinematics.assembly import Assembled, assembled, assembly_checks, bound_checks, mirror_checks
 from derive.kinematics.branch_assignment import Assignment, assign, margin_lets, with_branch_signs
 from derive.kinematics.coupling import (
     coupling_programs,
@@ -250,7 +250,8 @@ def _last(
     mechanism: Mechanism, closed: Assembled, statements: tuple[Statement, ...], *, offset: bool
 ) -> tuple[Statement, ...]:
     """The checks of a solution of the inverse, besides the closure."""
-    return (*assembly_checks(mechanism, closed, statements, offset), *bound_checks(mechanism, offset))
+    closure = (*assembly_checks(mechanism, closed, statements, offset), *bound_checks(mechanism, offset))
+    return (*mirror_checks(mechanism, statements), *closure)
 
 
 def _offset_programs(mechanism: Mechanism, closed: Assembled, conditions: tuple[sp.Expr, ...]) -> list[Program]:

@@ -1,6 +1,8 @@
 """Eliminations, in tiers: each is tried only when the previous one gives no subproblem.
 
-* difference: an unknown length that is linear in two equations is eliminated between them;
+* difference: an unknown length that is linear in two equations is eliminated between them, where the two coefficients
+  never vanish together: there the difference would be 0 = 0, a singularity that the machine does not have. The others
+  (`lossy_differences`) are tried last;
 * elimination: an unknown length that is linear in one equation, with a number as its coefficient, is put into the
   others;
 * squares: the sum of the squares of two equations, known parts on the right side, is free of the angle that
@@ -10,7 +12,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
 
@@ -26,8 +28,18 @@ _MOST_UNKNOWN = 3
 
 
 def differences(problem: Problem) -> tuple[Equation, ...]:
-    """Equations from which one unknown length has been eliminated."""
-    found: list[Equation] = []
+    """Equations from which one unknown length has been eliminated, as good as the two for all poses."""
+    return tuple(e for e, is_lossless in _differences(problem) if is_lossless)
+
+
+def lossy_differences(problem: Problem) -> tuple[Equation, ...]:
+    """Equations from which one unknown length has been eliminated; they say nothing where both coefficients
+    vanish.
+    """
+    return tuple(e for e, is_lossless in _differences(problem) if not is_lossless)
+
+
+def _differences(problem: Problem) -> Iterator[tuple[Equation, bool]]:
     for first, second in combinations(problem.equations, 2):
         for unknown in problem.lengths:
             rows = [linear_coefficients(e.expression, (unknown,)) for e in (first, second)]
@@ -38,8 +50,8 @@ def differences(problem: Problem) -> tuple[Equation, ...]:
                 continue
             expression = reduce_units(b * first.expression - a * second.expression, problem.units, problem.signs)
             label = f"{first.label} and {second.label}"
-            found.append(Equation(label, expression, first.lets + second.lets))
-    return tuple(found)
+            is_lossless = problem.determines(problem.reduce(a**2 + b**2))
+            yield Equation(label, expression, first.lets + second.lets), is_lossless
 
 
 def eliminations(problem: Problem) -> tuple[Equation, ...]:

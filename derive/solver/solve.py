@@ -15,13 +15,20 @@ from derive.equations.problem import Binding, Conditioning, Equation, Problem, S
 from derive.equations.rotations import conditions, rotations
 from derive.ir.program import Statement
 from derive.solver.derivation_record import DerivationRecord
-from derive.solver.eliminations import differences, eliminations, squares, squares_of_three, squares_with_lengths
+from derive.solver.eliminations import (
+    differences,
+    eliminations,
+    lossy_differences,
+    squares,
+    squares_of_three,
+    squares_with_lengths,
+)
 from derive.solver.feasible_arc import within_reach
 from derive.solver.folds import beyond_folds
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from derive.solver.positive_steps import known_signs, where_roots_meet, with_known_signs
 from derive.solver.subproblems.affine import affine
-from derive.solver.subproblems.affine_system import affine_pair, affine_triple
+from derive.solver.subproblems.affine_system import affine_along, affine_pair, affine_triple
 from derive.solver.subproblems.pair import pair
 from derive.solver.subproblems.polar import polar
 from derive.solver.subproblems.quadratic import quadratic
@@ -44,13 +51,20 @@ def _stated(problem: Problem) -> tuple[Equation, ...]:
     return problem.equations + rotations(problem)
 
 
+def _between_positions(problem: Problem) -> tuple[Equation, ...]:
+    """The differences of the positions seen in a known frame."""
+    return differences(replace(problem, equations=positions(problem)))
+
+
 TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (
     _stated,
     differences,
     eliminations,
     positions,
+    _between_positions,
     squares,
     squares_with_lengths,
+    lossy_differences,
 )
 Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 
@@ -148,6 +162,10 @@ def _next(
     raise Unsolved(unsolved(problem))
 
 
+def _along_a_direction(problem: Problem) -> list[Binding]:
+    return [b for equations in (_stated, positions) for b in affine_along(problem, equations(problem))]
+
+
 def _three_lengths(problem: Problem) -> list[Binding]:
     return [b for equations in (_stated, positions) for b in affine_triple(problem, equations(problem))]
 
@@ -166,7 +184,7 @@ def _three_squares(problem: Problem) -> list[Binding]:
     return _candidates(problem, squares_of_three(problem))
 
 
-_LAST = (_three_lengths, _by_condition, _three_squares)
+_LAST = (_along_a_direction, _three_lengths, _by_condition, _three_squares)
 
 
 def _candidates(problem: Problem, equations: tuple[Equation, ...], wanted: sp.Symbol | None = None) -> list[Binding]:

@@ -255,7 +255,31 @@ OTHERS = {
     ),
 }
 
+_ARM_AND_TELESCOPE = (
+    (A1, A2, R),
+    Rz(A1) * Tx(L1) * Rz(A2) * Tx(R),
+    (L1,),
+    Task("xy", Turning.ABOUT_Z),
+    (branch("arm", cos(A2), ahead=+1, behind=-1),),
+)
+ALONG_A_DIRECTION = {
+    "telescope in front of an arm": _machine("ArmTelescope", *_ARM_AND_TELESCOPE, positive=(R,)),
+    "telescope in front of an arm that may turn inside out": _machine("ArmTelescopeBoth", *_ARM_AND_TELESCOPE),
+    "telescope that a tilting arm points": _machine(
+        "PointingTelescope",
+        (A1, Y, A2, A3, R),
+        Tz(HEIGHT) * Rz(A1) * Ty(Y) * Ry(A2) * Tz(L2) * Ry(A3) * Tz(R),
+        (HEIGHT, L2),
+        DIRECTION,
+        (
+            branch("tilt", sin(A2 + A3), positive=+1, negative=-1),
+            branch("arm", cos(A3), ahead=+1, behind=-1),
+        ),
+    ),
+}
+
 MACHINES: Mapping[str, Mechanism] = {
+    **ALONG_A_DIRECTION,
     **THREE_LENGTHS,
     **SQUARES_WITH_LENGTHS,
     **PARAMETERS_DECIDE,

@@ -3,6 +3,10 @@
 One root, by Cramer's rule. Determinant det M. There is no degenerate case: equations whose determinant can vanish are
 not taken. A single coefficient may vanish: a table turned by 90 degrees exchanges its axes. Where det M is made of
 parameters alone, the machine is refused for which it vanishes: two of its slides are parallel.
+
+Along a direction:  k₁ v + c₁ = 0 and k₂ v + c₂ = 0 with k₁² + k₂² never zero, for one unknown length v: a slide along
+a direction that is known. One root, v = -(k₁ c₁ + k₂ c₂) / (k₁² + k₂²); the steps before have seen to it that the
+equations agree.
 """
 
 from __future__ import annotations
@@ -28,6 +32,25 @@ def affine_pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[B
 def affine_triple(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
     """Every three lengths that three equations determine together."""
     return _systems(problem, equations, 3)
+
+
+def affine_along(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every length that two or three equations determine together and none of them alone: along a known direction."""
+    for count in _NAMES:
+        for some in combinations(equations, count):
+            unknowns = problem.unknowns_of(sp.Tuple(*(e.expression for e in some)))
+            if len(unknowns) != 1 or unknowns[0] not in problem.lengths:
+                continue
+            rows = [row for e in some if (row := linear_coefficients(e.expression, unknowns)) is not None]
+            direction = [row[0][0] for row in rows]
+            if len(rows) != count or any(k == 0 or problem.determines(k) for k in direction):
+                continue
+            size = problem.reduce(sum(k**2 for k in direction))
+            if problem.determines(size):
+                value = problem.tidy(-sum(k * row[1] for k, row in zip(direction, rows, strict=True)) / size)
+                note = f"{unknowns[0].name} from the {_listed([e.label for e in some])} equations, along its direction"
+                statements = (*(let for e in some for let in e.lets), Let(unknowns[0], value, note))
+                yield Binding("affine along", unknowns, statements, conditions=problem.conditions(size))
 
 
 def _systems(problem: Problem, equations: tuple[Equation, ...], count: int) -> Iterator[Binding]:

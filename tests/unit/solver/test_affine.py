@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 import sympy as sp
 from hypothesis import given
@@ -12,9 +13,12 @@ from derive.ir.program import (
     Status,
 )
 from derive.ir.symbols import (
+    cosine,
     real,
+    sine,
 )
 from derive.solver.subproblems.affine import affine
+from derive.solver.subproblems.affine_system import affine_along
 from tests.unit.solver.execution import ANYTHING, LENGTHS, NUMBERS, all_finite, answer, answers, at, execute, problem
 
 V, W, U = (real(n) for n in "vwu")
@@ -82,3 +86,31 @@ def test_total(k: float, b: float, c: float) -> None:
     """The statements give finite numbers for any finite input."""
     values, _ = execute(answer(affine, MANY_TERMS).statements, {K: k, B: b, C: c})
     assert all_finite(values)
+
+
+def test_along_a_direction() -> None:
+    """A length along a known direction needs both equations: a direction along one axis is no exception."""
+    turned = problem(sp.cos(U) * V - B, sp.sin(U) * V - C, lengths=(V,), known=(U,))
+    binding = answer(affine_along, turned)
+    assert binding.unknowns == (V,) and binding.determinant is None
+    for angle in (0.0, 0.5, np.pi / 2, -2.0):
+        named = {cosine(U): np.cos(angle), sine(U): np.sin(angle)}
+        values, status = execute(binding.statements, {**named, B: 3 * np.cos(angle), C: 3 * np.sin(angle)})
+        assert status is Status.OK
+        assert abs(values["v"] - 3) <= 1e-15 * 4
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        (2 * V - B, sp.sin(U) * V - C),
+        (sp.cos(U) * V - B, B * V - C),
+        (sp.cos(U) * V - W, sp.sin(U) * V - C),
+        (sp.cos(U) * V**2 - B, sp.sin(U) * V - C),
+        (sp.cos(U) * V - B, sp.Integer(3) * C),
+    ],
+    ids=("one alone", "no known size", "another unknown", "a square", "no unknown"),
+)
+def test_not_along_a_direction(first: sp.Expr, second: sp.Expr) -> None:
+    """What one equation gives, or no combination of them, is left to other rules."""
+    assert answers(affine_along, problem(first, second, lengths=(V, W), known=(U,))) == []

@@ -96,6 +96,9 @@ CASES = {
     ),
     "rail and arm": Case(plane((L1, A1), (L2, HEADING), x=P), (A1,), (P,), rules=("trigonometric", "affine")),
     "oblique rail and arm": Case(plane((P, sp.pi / 6), (L1, A1)), (A1,), (P,), rules=("trigonometric", "affine")),
+    "arm and telescope with a known direction": Case(
+        plane((L1, A1), (P, HEADING)), (A1,), (P,), rules=("trigonometric", "affine along")
+    ),
     "telescope": Case(plane((P, A1), (L1, HEADING)), (A1,), (P,), rules=("polar",)),
     "2R whose elbow bends one way": Case(
         plane((L1, A1), (L2, A1 + A2)), (A1, A2), positive=(sp.sin(A2),), rules=("trigonometric", "pair"), slots=1
