@@ -44,6 +44,7 @@ from derive.description.joints import (
 )
 from derive.description.quantity import Quantity
 from derive.geometry.frames import Chain
+from derive.geometry.half_turns import with_half_turns_last
 from derive.ir.symbols import (
     COORDINATE_NAMES,
     ROTATION_ENTRIES,
@@ -233,6 +234,8 @@ class Mechanism:
         object.__setattr__(self, "positive", tuple(sp.sympify(v) for v in self.positive))
         object.__setattr__(self, "closure", tuple(sp.sympify(v) for v in self.closure))
         object.__setattr__(self, "home", tuple(sp.sympify(v) for v in self.home))
+        if self.chain is not None:
+            object.__setattr__(self, "chain", with_half_turns_last(self.chain))
         held = {joint.name for joint in self.held}  # the reference has the turn of a held joint: it needs no byte
         joints = (replace(j, multi_turn=False) if j.name in held else j for j in self.joints)
         object.__setattr__(self, "joints", tuple(joints))

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from sympy import Integer, cos, pi, sin
 
-from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
+from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz, denavit_hartenberg
 from derive.mechanism import (
     Branch,
     Joint,
@@ -278,7 +278,27 @@ ALONG_A_DIRECTION = {
     ),
 }
 
+HALF_TURNS = {
+    "SCARA below a ceiling": _machine(
+        "CeilingScara",
+        (A1, A2, Z, A4),
+        Tz(HEIGHT) * Rx(pi) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(Z) * Rz(A4) * Tx(L3),
+        (HEIGHT, L1, L2, L3),
+        TURNED,
+        (ELBOW,),
+    ),
+    "SCARA by its table": _machine(
+        "TableOfScara",
+        (A1, A2, Z, A4),
+        denavit_hartenberg((A1, HEIGHT, L1, 0), (A2, 0, L2, pi), (0, Z, 0, 0), (A4, L4, 0, 0)),
+        (HEIGHT, L1, L2, L4),
+        TURNED,
+        (ELBOW,),
+    ),
+}
+
 MACHINES: Mapping[str, Mechanism] = {
+    **HALF_TURNS,
     **ALONG_A_DIRECTION,
     **THREE_LENGTHS,
     **SQUARES_WITH_LENGTHS,

@@ -16,6 +16,8 @@ from tests.text.controller import OK
 
 EVERY = pytest.mark.parametrize("name", MACHINES)
 EXPECTED = {
+    "SCARA below a ceiling": 2,
+    "SCARA by its table": 2,
     "telescope in front of an arm": 2,
     "telescope in front of an arm that may turn inside out": 2,
     "telescope that a tilting arm points": 4,

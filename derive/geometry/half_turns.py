@@ -1,0 +1,46 @@
+"""Fixed half turns of a chain that turns about z alone: they stand at its end, as flips of the flange.
+
+A ceiling SCARA begins with Rx(pi), a table of Denavit and Hartenberg has a twist of pi before the quill, a tool that
+points down ends in Rx(pi). Rx(pi) Rz(a) = Rz(-a) Rx(pi): each is the same chain with a half turn behind its joints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import sympy as sp
+
+from derive.geometry.frames import Chain, Factor, Motion
+
+
+def with_half_turns_last(chain: Chain) -> Chain:
+    """The chain with its fixed half turns about x and y as flips at its end; where other turns than those about z would
+    be left, the chain itself.
+    """
+    signs = [1, 1, 1]
+    moved: list[Factor] = []
+    for factor in chain.factors:
+        if _is_half_turn(factor):
+            signs = [s if axis == factor.axis else -s for axis, s in enumerate(signs)]
+        elif factor.motion is Motion.FLIP:
+            moved.append(factor)
+        else:
+            moved.append(Factor(factor.motion, factor.axis, signs[factor.axis] * factor.amount))
+    if not any(map(_is_half_turn, chain.factors)) or any(f.motion is Motion.TURN and f.axis != 2 for f in moved):
+        return chain
+    joints, flips = ([f for f in moved if (f.motion is Motion.FLIP) is is_flip] for is_flip in (False, True))
+    return Chain((*joints, *_FIXED[tuple(signs)], *flips))
+
+
+_FIXED: Mapping[tuple[int, ...], tuple[Factor, ...]] = {
+    (1, 1, 1): (),
+    (1, -1, -1): (Factor(Motion.FLIP, 0, sp.Integer(1)),),
+    (-1, 1, -1): (Factor(Motion.FLIP, 1, sp.Integer(1)),),
+    (-1, -1, 1): (Factor(Motion.TURN, 2, sp.pi),),
+}
+"""The diagonal of a rotation by half turns, and what stands for it at the end of a chain."""
+
+
+def _is_half_turn(factor: Factor) -> bool:
+    turns = factor.amount / sp.pi
+    return factor.motion is Motion.TURN and factor.axis != 2 and bool(turns.is_integer) and bool(turns.is_odd)
