@@ -58,6 +58,7 @@ class Why(Enum):
     OUT_OF_REACH = "{}: out of reach"
     CANNOT_REACH = "{} cannot reach"
     TOO_SHORT = "{}: its effective length is too short"
+    ACROSS = "{}: its slide points across the way that it has to go"
     WITHOUT_LENGTH = "{}: without length it has no direction"
     BEYOND_BASE_CONE = "{}: its joint on the base bends beyond its cone"
     BEYOND_PLATE_CONE = "{}: its joint on the plate bends beyond its cone"

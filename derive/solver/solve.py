@@ -28,7 +28,7 @@ from derive.solver.folds import beyond_folds
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from derive.solver.positive_steps import known_signs, where_roots_meet, with_known_signs
 from derive.solver.subproblems.affine import affine
-from derive.solver.subproblems.affine_system import affine_along, affine_pair, affine_triple
+from derive.solver.subproblems.affine_system import affine_across, affine_along, affine_pair, affine_triple
 from derive.solver.subproblems.pair import pair
 from derive.solver.subproblems.polar import polar
 from derive.solver.subproblems.quadratic import quadratic
@@ -180,11 +180,15 @@ def _lengths(problem: Problem, equations: tuple[Equation, ...]) -> list[Binding]
     return [b for rule in (affine, affine_pair, affine_triple) for b in rule(problem, equations)]
 
 
+def _across(problem: Problem) -> list[Binding]:
+    return [b for equations in (_stated, positions) for b in affine_across(problem, equations(problem))]
+
+
 def _three_squares(problem: Problem) -> list[Binding]:
     return _candidates(problem, squares_of_three(problem))
 
 
-_LAST = (_along_a_direction, _three_lengths, _by_condition, _three_squares)
+_LAST = (_along_a_direction, _three_lengths, _by_condition, _three_squares, _across)
 
 
 def _candidates(problem: Problem, equations: tuple[Equation, ...], wanted: sp.Symbol | None = None) -> list[Binding]:

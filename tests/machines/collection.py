@@ -297,7 +297,22 @@ HALF_TURNS = {
     ),
 }
 
+ACROSS = {
+    "ram that a head may lay flat": _machine(
+        "RamHead",
+        (X, Y, A, R, C),
+        Tx(X) * Ty(Y) * Rz(C) * Tx(PIVOT_X) * Rx(A) * Ty(PIVOT_Y) * Tz(-R) * Tz(-L4),
+        (PIVOT_X, PIVOT_Y, L4),
+        DIRECTION,
+        _tilt(A),
+    ),
+    "slide that turns on a slide": _machine(
+        "TurningSlide", (Y, C, X), Ty(Y) * Rz(C) * Tx(X) * Ty(BESIDE), (BESIDE,), Task("xy", Turning.ABOUT_Z)
+    ),
+}
+
 MACHINES: Mapping[str, Mechanism] = {
+    **ACROSS,
     **HALF_TURNS,
     **ALONG_A_DIRECTION,
     **THREE_LENGTHS,

@@ -7,6 +7,11 @@ parameters alone, the machine is refused for which it vanishes: two of its slide
 Along a direction:  k₁ v + c₁ = 0 and k₂ v + c₂ = 0 with k₁² + k₂² never zero, for one unknown length v: a slide along
 a direction that is known. One root, v = -(k₁ c₁ + k₂ c₂) / (k₁² + k₂²); the steps before have seen to it that the
 equations agree.
+
+Across:  one or two equations whose determinant can vanish, and is made of the directions of slides alone: a ram that a
+head may lay flat. There a slide points across its way, or two are parallel, and one of them is free (degenerate case):
+the values nearest to the reference that satisfy the equations, v = r + M' (e - M r) / |M|^2, where the equations agree.
+The determinant is the conditioning. Taken only where nothing else is left.
 """
 
 from __future__ import annotations
@@ -17,8 +22,13 @@ from itertools import combinations
 import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
-from derive.equations.problem import Binding, Equation, Problem
-from derive.ir.program import Let
+from derive.equations.problem import Binding, Conditioning, Equation, Problem
+from derive.ir.constants import FREE_ANGLE
+from derive.ir.primitives import Select
+from derive.ir.program import Let, Require, Statement, Status
+from derive.ir.reason import Why, about_joint
+from derive.ir.symbols import ROTATION_ENTRIES, cosine, real, sine
+from derive.solver.subproblems.naming import Naming
 
 _NAMES = {2: "pair", 3: "triple"}
 _WORDS = {2: "linear in both", 3: "linear in all three"}
@@ -64,6 +74,53 @@ def _systems(problem: Problem, equations: tuple[Equation, ...], count: int) -> I
                 yield binding
 
 
+def affine_across(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """The lengths of a system whose determinant can vanish, and is made of directions alone."""
+    for count in (1, 2):
+        for some in combinations(equations, count):
+            unknowns = problem.unknowns_of(sp.Tuple(*(e.expression for e in some)))
+            rows = [row for e in some if (row := linear_coefficients(e.expression, unknowns)) is not None]
+            if len(unknowns) == len(rows) == count and set(unknowns) <= {*problem.lengths}:
+                matrix, rest = sp.Matrix([row[0] for row in rows]), sp.Matrix([row[1] for row in rows])
+                value = problem.reduce(matrix.det(method="berkowitz"))
+                directions = {f(a) for a in problem.units for f in (cosine, sine)} | {*ROTATION_ENTRIES}
+                if value != 0 and value.free_symbols <= directions:
+                    statements = _or_free(problem, some, unknowns, matrix, rest)
+                    conditioning = Conditioning(unknowns[-1], value, sp.Integer(1))
+                    yield Binding("affine across", unknowns, statements, conditioning=conditioning)
+
+
+def _or_free(
+    problem: Problem,
+    equations: tuple[Equation, ...],
+    unknowns: tuple[sp.Symbol, ...],
+    matrix: sp.Matrix,
+    rest: sp.Matrix,
+) -> tuple[Statement, ...]:
+    """Cramer's rule, and the values nearest to the reference where the determinant vanishes."""
+    last = unknowns[-1]
+    naming = Naming(problem, tuple(let for e in equations for let in e.lets))
+    right = [naming.named(-c, f"{e.label}_of_{last.name}") for c, e in zip(rest, equations, strict=True)]
+    across, divisor = real(f"direction_of_{last.name}"), real(f"divisor_{last.name}")
+    points = sp.Gt(sp.Abs(across), FREE_ANGLE)
+    references = sp.Matrix([problem.references[u] for u in unknowns])
+    apart = sp.Matrix(right) - matrix * references
+    size = matrix.norm() ** 2 if matrix.rows == 2 else sp.Integer(1)
+    nearest = references + (matrix.T * apart / size if matrix.rows == 2 else sp.zeros(1, 1))
+    solved = _adjugate(problem, matrix) * sp.Matrix(right) / divisor
+    note = f"{_listed([str(u) for u in unknowns])} from the {_listed([e.label for e in equations])} equations"
+    lets = [Let(u, Select(points, s, n)) for u, s, n in zip(unknowns, solved, nearest, strict=True)]
+    left = matrix * sp.Matrix(unknowns) - sp.Matrix(right)
+    agree = sp.And(*(sp.Le(sp.Abs(value), FREE_ANGLE * problem.scale) for value in left))
+    return (
+        *naming.lets,
+        Let(across, problem.tidy(matrix.det(method="berkowitz")), f"{note}: how far from across"),
+        Let(divisor, Select(points, across, sp.Integer(1))),
+        *lets,
+        Require(sp.Or(points, agree), Status.UNREACHABLE, reason=about_joint(last, Why.ACROSS)),
+    )
+
+
 def _solve(problem: Problem, equations: tuple[Equation, ...], unknowns: tuple[sp.Symbol, ...]) -> Binding | None:
     rows = [linear_coefficients(e.expression, unknowns) for e in equations]
     if any(row is None for row in rows):
@@ -89,4 +146,6 @@ def _adjugate(problem: Problem, matrix: sp.Matrix) -> sp.Matrix:
 
 
 def _listed(names: list[str]) -> str:
+    if len(names) == 1:
+        return names[0]
     return f"{', '.join(names[:-1])} and {names[-1]}"

@@ -60,7 +60,7 @@ def problem(
         lengths=tuple(lengths),
         equations=tuple(equations),
         units=units,
-        references={a: reference(a) for a in units},
+        references={a: reference(a) for a in (*units, *lengths)},
         scale=SCALE,
         signs=tuple(signs),
         positive=tuple(polynomial(e, units, signs) for e in positive),

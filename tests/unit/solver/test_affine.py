@@ -18,8 +18,20 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.solver.subproblems.affine import affine
-from derive.solver.subproblems.affine_system import affine_along
-from tests.unit.solver.execution import ANYTHING, LENGTHS, NUMBERS, all_finite, answer, answers, at, execute, problem
+from derive.solver.subproblems.affine_system import affine_across, affine_along
+from tests.unit.solver.execution import (
+    ANYTHING,
+    LENGTHS,
+    NUMBERS,
+    SCALE,
+    all_finite,
+    answer,
+    answers,
+    at,
+    execute,
+    problem,
+    reference,
+)
 
 V, W, U = (real(n) for n in "vwu")
 B, C = real("b"), real("c")
@@ -114,3 +126,23 @@ def test_along_a_direction() -> None:
 def test_not_along_a_direction(first: sp.Expr, second: sp.Expr) -> None:
     """What one equation gives, or no combination of them, is left to other rules."""
     assert answers(affine_along, problem(first, second, lengths=(V, W), known=(U,))) == []
+
+
+@pytest.mark.parametrize("angle", [0.3, -2.0, np.pi / 2], ids=str)
+def test_across_a_direction(angle: float) -> None:
+    """Slides whose directions may become parallel; where they are, the values nearest to the reference."""
+    given_problem = problem(sp.cos(U) * V - B, sp.sin(U) * V + W - C, lengths=(V, W), known=(U,))
+    binding = next(b for b in answers(affine_across, given_problem) if set(b.unknowns) == {V, W})
+    assert binding.conditioning is not None and binding.conditioning.value == cosine(U)
+    known = {cosine(U): np.cos(angle), sine(U): np.sin(angle), reference(V): 3.0, reference(W): 4.0, SCALE: 1.0}
+    values, status = execute(binding.statements, {**known, B: 3 * np.cos(angle), C: 3 * np.sin(angle) + 5})
+    assert status is Status.OK
+    along, across = (values["v"], values["w"]) if angle != np.pi / 2 else (values["v"] - 0.5, values["w"] + 0.5)
+    assert max(abs(along - 3), abs(across - 5)) <= 1e-14
+    _, status = execute(binding.statements, {**known, B: 3 * np.cos(angle) + 0.1, C: 0.0})
+    assert status is (Status.UNREACHABLE if angle == np.pi / 2 else Status.OK)
+
+
+def test_directions_alone_may_vanish() -> None:
+    """A coefficient with a length in it is left to other rules: it has no scale to be compared with."""
+    assert answers(affine_across, problem((B + 2) * V - C, lengths=(V,))) == []

@@ -119,6 +119,9 @@ CASES = {
         (A1, A2, A3),
         rules=("pair", "trigonometric", "pair", "sum"),
     ),
+    "rails that can be parallel": Case(
+        plane((P, HEADING), x=Q), (), (P, Q), rules=("affine across", "affine"), slots=1
+    ),
     "belts": Case({"x": 2 * P - 3 * Q, "y": K * P + L1 * Q}, (), (P, Q), rules=("affine pair",), slots=1),
     "spherical": Case(
         {"x": P * sp.cos(A2) * sp.cos(A1), "y": P * sp.cos(A2) * sp.sin(A1), "z": P * sp.sin(A2)},
@@ -170,7 +173,7 @@ def solutions(case: Case, derivation: Derivation, given: Mapping[str, np.ndarray
     outputs = [Output(f"o{k}", n) for k, n in enumerate(names)]
     program = normalise("solution", derivation.statements, outputs)
     heading = {"cos_heading": np.cos(given["heading"]), "sin_heading": np.sin(given["heading"])}
-    free = {reference(a).name: np.zeros(COUNT) for a in case.angles}
+    free = {reference(a).name: np.zeros(COUNT) for a in (*case.angles, *case.lengths)}
     found = []
     for signs in product((1.0, -1.0), repeat=len(derivation.determinants)):
         sigma = {s.sigma.name: np.asarray(v) for s, v in zip(derivation.determinants, signs, strict=True)}
@@ -231,7 +234,6 @@ UNSOLVED = {
     ),
     "no more equations than one": (Case(plane((L1, A1)), (A1, A2)), "the closure does not determine a2"),
     "a factor that can vanish": (Case({"x": TOOL_X * P}, (), (P,)), "no subproblem determines p"),
-    "rails that can be parallel": (Case(plane((P, HEADING), x=Q), (), (P, Q)), "no subproblem determines p, q"),
     "three links, no turn": (
         Case(plane((L1, A1), (L2, A1 + A2), (K, A1 + A2 + A3)), (A1, A2, A3)),
         "the closure does not determine a1, a2, a3: 3 unknowns in 2 equations (first, second) leave 1 free to move",
