@@ -170,13 +170,18 @@ def chooses_by_lengths(mechanism: Mechanism) -> bool:
 
 
 def machine_scale(mechanism: Mechanism) -> sp.Expr:
-    """The sum of the lengths of the description, given as parameters or as numbers; one unit of length where there is
-    none.
+    """The sum of the lengths of the description, given as parameters or as numbers; where there is none, one unit of
+    length and all distances, which may be zero.
     """
-    parameters = machine_parameters(mechanism)
-    own = [p for p in parameters if p.role in _LENGTHS or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)]
-    lengths = (*(sp.Abs(p.symbol) for p in own), *_numbers(mechanism))
-    return sp.Add(*lengths) if has_length(mechanism) else sp.Integer(1)
+    if not has_length(mechanism):
+        own = [p for p in mechanism.parameters if p.role is Role.DISTANCE]
+        return sp.Add(sp.Integer(1), *(sp.Abs(p.symbol) for p in own))
+    own = [
+        p
+        for p in machine_parameters(mechanism)
+        if p.role in _LENGTHS or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)
+    ]
+    return sp.Add(*(sp.Abs(p.symbol) for p in own), *_numbers(mechanism))
 
 
 def has_length(mechanism: Mechanism) -> bool:

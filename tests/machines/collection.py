@@ -311,7 +311,30 @@ ACROSS = {
     ),
 }
 
+DISTANCES_ALONE = {
+    "slide on a rocker": _machine(
+        "RockerSlide",
+        (A1, A2, Y),
+        Rx(A1) * Ry(A2) * Tx(PIVOT_X) * Tz(BESIDE) * Ty(Y),
+        (PIVOT_X, BESIDE),
+        Task("xyz"),
+        (
+            branch("rocker", BESIDE * cos(A2) - PIVOT_X * sin(A2), ahead=+1, behind=-1),
+            branch("slide", Y, left=+1, right=-1),
+        ),
+    ),
+    "slide on a swivel": _machine(
+        "SwivelSlide",
+        (A1, Y),
+        Rz(A1) * Tx(PIVOT_X) * Ty(Y),
+        (PIVOT_X,),
+        Task("xy"),
+        (branch("slide", Y, left=+1, right=-1),),
+    ),
+}
+
 MACHINES: Mapping[str, Mechanism] = {
+    **DISTANCES_ALONE,
     **ACROSS,
     **HALF_TURNS,
     **ALONG_A_DIRECTION,

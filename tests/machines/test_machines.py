@@ -16,6 +16,8 @@ from tests.text.controller import OK
 
 EVERY = pytest.mark.parametrize("name", MACHINES)
 EXPECTED = {
+    "slide on a rocker": 4,
+    "slide on a swivel": 2,
     "ram that a head may lay flat": 2,
     "slide that turns on a slide": 1,
     "SCARA below a ceiling": 2,
