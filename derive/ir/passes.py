@@ -38,6 +38,8 @@ from derive.ir.program import (
 )
 from derive.ir.reason import Unit
 from derive.ir.symbols import (
+    POSITION,
+    ROTATION_ENTRIES,
     called,
     symbols_of,
 )
@@ -218,7 +220,8 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
     A program that others call comes before them.
     """
     known = set(constants)
-    names_taken = Names(known | {name.name for p in programs for name in _varying(p, known)})
+    commanded = {s.name for s in (*POSITION, *ROTATION_ENTRIES)}  # languages spell these as parts of a pose
+    names_taken = Names(known | commanded | {name.name for p in programs for name in _varying(p, known)})
     by_value: dict[sp.Expr, sp.Symbol] = {}
     hoisted: list[Let] = []
     lowered: dict[str, Program] = {}
@@ -234,7 +237,8 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
                 body.append(replace(s, value=value))
                 continue
             if value not in by_value:
-                name = names_taken.fresh(s.name.name, s.name)
+                proposal = f"fixed_{s.name.name}" if s.name.name in commanded else s.name.name
+                name = names_taken.fresh(proposal, s.name)
                 known.add(name.name)
                 by_value[value] = name
                 hoisted.append(replace(s, name=name, value=value))

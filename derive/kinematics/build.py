@@ -24,7 +24,6 @@ from derive.equations.pose_at_axes import (
 )
 from derive.equations.problem import Conditioning
 from derive.equations.windows import windows
-from derive.geometry.frames import Motion
 from derive.geometry.pose import pose_of
 from derive.ir.interpret import run
 from derive.ir.passes import hoist, normalise
@@ -311,10 +310,23 @@ def _freedom(mechanism: Mechanism) -> Freedom:
     if mechanism.chain is None:
         return Freedom.ONE if mechanism.is_platform else Freedom.ZERO
     joints = {j.symbol for j in mechanism.joints}
-    turns = [t for t in pose_of(mechanism.chain).turns if t.motion is Motion.TURN]  # opposite ones have merged
-    if not any(t.amount.free_symbols & joints for t in turns):
-        return Freedom.ZERO
-    return Freedom.THREE if len({t.axis for t in turns}) > 1 else Freedom.ONE
+    turns = [t for t in pose_of(mechanism.chain).turns if t.amount.free_symbols & joints]  # opposite ones have merged
+    return Freedom.THREE if len(turns) > 1 else Freedom.ONE if turns else Freedom.ZERO
+
+
+def _one_turn(mechanism: Mechanism) -> tuple[sp.Matrix, sp.Matrix]:
+    """The axis about which the flange turns, in the frame of the machine, and its rotation where the turn is zero."""
+    assert mechanism.chain is not None
+    if mechanism.task.turning is Turning.ABOUT_Z:
+        heading_of(mechanism.chain)  # refuses a chain whose rotation is not one turn about z
+    joints = {j.symbol for j in mechanism.joints}
+    axis, zero = sp.Matrix([0, 0, 1]), sp.eye(3)
+    for turn in pose_of(mechanism.chain).turns:
+        if turn.amount.free_symbols & joints:
+            axis = zero[:, turn.axis]
+        else:
+            zero = zero * turn.matrix()[:3, :3]
+    return axis, zero
 
 
 def _image_program(mechanism: Mechanism) -> Program:
@@ -324,8 +336,7 @@ def _image_program(mechanism: Mechanism) -> Program:
     if mechanism.chain is not None and _freedom(mechanism) is not Freedom.THREE:
         zero = sp.Matrix(pose_of(mechanism.chain).rotation)
         if _freedom(mechanism) is Freedom.ONE:
-            heading_of(mechanism.chain)  # refuses a chain whose rotation is not one turn about z
-            zero = sp.Matrix(flange_rotation(mechanism.chain))
+            axis, zero = _one_turn(mechanism)
     moving = zero.T * axis
     outputs = [Output(f"zero_{r.name}", v) for r, v in zip(ROTATION_ENTRIES, zero, strict=True)]
     outputs += [Output(f"rot_{c}", v) for c, v in zip("xyz", axis, strict=True)]

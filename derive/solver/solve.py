@@ -56,6 +56,12 @@ def _between_positions(problem: Problem) -> tuple[Equation, ...]:
     return differences(replace(problem, equations=positions(problem)))
 
 
+def _squares_of_positions(problem: Problem) -> tuple[Equation, ...]:
+    """The sums of squares of the positions seen in a known frame."""
+    seen = replace(problem, equations=positions(problem))
+    return squares(seen) + squares_with_lengths(seen)
+
+
 TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (
     _stated,
     differences,
@@ -64,6 +70,7 @@ TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (
     _between_positions,
     squares,
     squares_with_lengths,
+    _squares_of_positions,
     lossy_differences,
 )
 Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
@@ -145,6 +152,8 @@ def _next(
         if binding is not None:
             return problem, binding, sums
     found = _best(candidate for tier in TIERS for candidate in [_candidates(problem, tier(problem))])
+    if found is not None and found.determinant is not None:
+        found = _one_root(problem, found)
     if found is not None and not found.yields_to_a_sum:
         return problem, found, sums
     for total in candidate_sums(problem, arguments):
@@ -160,6 +169,12 @@ def _next(
     if found is not None:
         return problem, found, sums
     raise Unsolved(unsolved(problem))
+
+
+def _one_root(problem: Problem, found: Binding) -> Binding:
+    """The one root that the positions seen in a known frame give, where a stated equation alone has two."""
+    seen = _best([_candidates(problem, positions(problem))])
+    return seen if seen is not None and seen.determinant is None and seen.unknowns == found.unknowns else found
 
 
 def _along_a_direction(problem: Problem) -> list[Binding]:

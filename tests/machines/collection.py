@@ -333,7 +333,31 @@ DISTANCES_ALONE = {
     ),
 }
 
+SEEN_FROM_A_KNOWN_FRAME = {
+    "telescope on a rocker that points the tool": _machine(
+        "RockerTelescope",
+        (A1, A2, Y, R, A5),
+        Rz(A1) * Ry(-A2) * Ty(Y) * Tz(L1) * Tx(R) * Ry(A5),
+        (L1,),
+        DIRECTION,
+        (branch("tilt", sin(A5 - A2), positive=+1, negative=-1), branch("telescope", R, ahead=+1, behind=-1)),
+    ),
+}
+
+TURNS_ABOUT_Y = {
+    "boom on a carriage": _machine(
+        "CarriageBoom",
+        (X, Y, A1),
+        Tx(X) * Ty(Y) * Tz(HEIGHT) * Rz(radians(LEAN)) * Ry(-A1) * Tx(L1) * Ry(pi / 2),
+        (HEIGHT, LEAN, L1),
+        Task("xyz"),
+        (branch("boom", cos(A1), forward=+1, backward=-1),),
+    ),
+}
+
 MACHINES: Mapping[str, Mechanism] = {
+    **SEEN_FROM_A_KNOWN_FRAME,
+    **TURNS_ABOUT_Y,
     **DISTANCES_ALONE,
     **ACROSS,
     **HALF_TURNS,

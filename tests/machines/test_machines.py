@@ -16,6 +16,8 @@ from tests.text.controller import OK
 
 EVERY = pytest.mark.parametrize("name", MACHINES)
 EXPECTED = {
+    "telescope on a rocker that points the tool": 4,
+    "boom on a carriage": 2,
     "slide on a rocker": 4,
     "slide on a swivel": 2,
     "ram that a head may lay flat": 2,
@@ -242,3 +244,17 @@ def test_the_limits_of_a_held_joint_refuse_the_reference() -> None:
     frame, configuration = robot.forward((30.0, 20.0, 40.0, 10.0, 70.0))
     with pytest.raises(KinematicsError, match=r"X: above its upper limit \[u\], missing 30"):
         robot.inverse(frame, configuration, (80.0, 20.0, 40.0, 10.0, 70.0))
+
+
+def test_a_flange_that_turns_about_another_axis_than_z() -> None:
+    """The image of its orientations: one of them, and the axis of its turn in both frames, at any axis values."""
+    machine = made("boom on a carriage")
+    image = machine.robot.orientation_image()
+    lean = np.radians(machine.robot.parameters["lean"])
+    assert image.freedom == "one"
+    assert np.allclose(image.base_axis, (-np.sin(lean), np.cos(lean), 0.0), rtol=0.0, atol=1e-15)
+    for row in grid(machine)[::40]:
+        rotation = np.array(machine.robot.forward(row)[0].rotation)
+        assert np.allclose(rotation @ image.flange_axis, image.base_axis, rtol=0.0, atol=1e-14)
+    zero = np.array(image.rotation)
+    assert np.allclose(zero @ image.flange_axis, image.base_axis, rtol=0.0, atol=1e-15)
