@@ -97,12 +97,13 @@ def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> S
 
 
 def _split(factors: Sequence[Factor], target: Target, unknowns: Unknowns) -> tuple[Equation, ...]:
-    """The equations seen from behind the first joint, if more of them have one unknown than those
-    seen from the base.
+    """The equations seen from behind the first joints, up to the first that turns, if more of them have one unknown
+    than those seen from the base.
     """
-    first = next(i for i, f in enumerate(factors) if f.amount.free_symbols & {*unknowns.angles, *unknowns.lengths})
-    whole, behind = _equations(factors, -1, target, unknowns), _equations(factors, first, target, unknowns)
-    return behind if _alone(behind, unknowns) > _alone(whole, unknowns) else whole
+    moving = [i for i, f in enumerate(factors) if f.amount.free_symbols & {*unknowns.angles, *unknowns.lengths}]
+    turning = next((k for k, i in enumerate(moving) if factors[i].motion is Motion.TURN), 0)
+    seen = [_equations(factors, first, target, unknowns) for first in (-1, *moving[: turning + 1])]
+    return max(seen, key=lambda equations: _alone(equations, unknowns))  # max keeps the first of equals
 
 
 def _alone(equations: Sequence[Equation], unknowns: Unknowns) -> int:

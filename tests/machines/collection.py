@@ -334,6 +334,17 @@ DISTANCES_ALONE = {
 }
 
 SEEN_FROM_A_KNOWN_FRAME = {
+    "arm beside the rail that it turns about": _machine(
+        "ShoulderRail",
+        (X, A1, A2),
+        Tx(X) * Rx(A1) * Ty(L1) * Rz(A2) * Tz(BESIDE) * Tx(L2),
+        (L1, BESIDE, L2),
+        Task("xyz"),
+        (
+            branch("shoulder", L1 + L2 * sin(A2), front=+1, back=-1),
+            branch("elbow", cos(A2), ahead=+1, behind=-1),
+        ),
+    ),
     "telescope on a rocker that points the tool": _machine(
         "RockerTelescope",
         (A1, A2, Y, R, A5),

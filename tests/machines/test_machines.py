@@ -16,6 +16,7 @@ from tests.text.controller import OK
 
 EVERY = pytest.mark.parametrize("name", MACHINES)
 EXPECTED = {
+    "arm beside the rail that it turns about": 4,
     "telescope on a rocker that points the tool": 4,
     "boom on a carriage": 2,
     "slide on a rocker": 4,
