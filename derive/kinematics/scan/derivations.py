@@ -18,11 +18,13 @@ from derive.description.mechanism import (
     Mechanism,
 )
 from derive.equations.axes import axis_lets, reference_value
+from derive.equations.closure import fixed_lets
 from derive.equations.pose_at_axes import (
     Forward,
 )
 from derive.geometry.frames import Chain
 from derive.ir.passes import normalise, renamed
+from derive.ir.primitives import Select
 from derive.ir.program import (
     Let,
     Output,
@@ -48,6 +50,7 @@ from derive.kinematics.forward import (
     pose_at_axes,
 )
 from derive.kinematics.inverse import Inverse, of_angle, solve_at, solve_pose
+from derive.kinematics.scan.guards import conditions_of, guards_of, room_of
 from derive.kinematics.scan.programs import (
     Trial,
     trial_of,
@@ -63,7 +66,8 @@ class Scanned:
 
     mechanism: Mechanism
     forward: Forward
-    closed: Inverse
+    closed: Inverse | None
+    """None where no parameter leads to a closed form."""
     closed_branches: tuple[Assignment, ...]
     trial: Inverse
     trial_branches: tuple[Assignment, ...]
@@ -75,21 +79,33 @@ def solve_both(mechanism: Mechanism) -> Scanned:
     """Solve the closure without the parameter that needs a scan, and with the scanned joint known."""
     assert mechanism.search is not None
     forward = pose_at_axes(mechanism)
-    simple = without_search(mechanism)
-    closed = solve_pose(simple)
+    closed, closed_branches = _in_closed_form(mechanism)
     trial = solve_at(mechanism, mechanism.search.joint)
     if (left := len(trial.derivation.residuals)) != 1:
         raise DescriptionError(f"with {mechanism.search.joint.name} known, {left} conditions are left, not one")
-    guards = [s.condition for s in trial.derivation.statements if isinstance(s, Require)]
-    if len(guards) > 1 or not all(isinstance(g, sp.Ge) or isinstance(g.args[0], sp.Abs) for g in guards):
-        raise DescriptionError(f"a trial along {mechanism.search.joint.name} may be out of reach in one step only")
-    found, asked = steps_and_rest(mechanism, trial, forward)
-    return Scanned(mechanism, forward, closed, assign(simple, closed, pose_at_axes(simple)), trial, found, asked)
+    if guards_of(trial.derivation) is None:
+        raise DescriptionError(
+            f"a trial along {mechanism.search.joint.name} may be out of reach in its two-root steps only"
+        )
+    found, asked, unnamed = steps_and_rest(mechanism, trial, forward)
+    if unnamed:
+        names = ", ".join(s.step.name for s in unnamed)
+        raise DescriptionError(f"no branch names the two solutions for {names}")
+    return Scanned(mechanism, forward, closed, closed_branches, trial, found, asked)
+
+
+def _in_closed_form(mechanism: Mechanism) -> tuple[Inverse | None, tuple[Assignment, ...]]:
+    """The closed form of the mechanism with its parameter zero, and its branches."""
+    if mechanism.search is None or mechanism.search.where is None:
+        return None, ()
+    simple = without_search(mechanism)
+    closed = solve_pose(simple)
+    return closed, assign(simple, closed, pose_at_axes(simple))
 
 
 def without_search(mechanism: Mechanism) -> Mechanism:
     """The mechanism with its parameter zero, which has a closed form."""
-    assert mechanism.search is not None and mechanism.chain is not None
+    assert mechanism.search is not None and mechanism.search.where is not None and mechanism.chain is not None
     gone = {mechanism.search.where.symbol: sp.Integer(0)}
     factors = (replace(f, amount=f.amount.xreplace(gone)) for f in mechanism.chain.factors)
     branches = tuple(replace(b, indicator=b.indicator.subs(gone)) for b in mechanism.branches if not b.is_crossing)
@@ -97,11 +113,17 @@ def without_search(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, chain=chain, branches=branches, search=None)
 
 
-def searched_flag(mechanism: Mechanism) -> Let:
-    """The flag that the parameter is not zero."""
-    assert mechanism.search is not None
-    is_given = sp.Gt(sp.Abs(mechanism.search.where.symbol), 0)
-    return Let(SEARCHED, is_given, f"whether to scan {mechanism.search.joint.name} for a root")
+def searched_flag(both: Scanned) -> tuple[Let, ...]:
+    """The flag that the parameter is not zero; none where there is no closed form."""
+    search = both.mechanism.search
+    if search is None or search.where is None:
+        return ()
+    return (Let(SEARCHED, sp.Gt(sp.Abs(search.where.symbol), 0), f"whether to scan {search.joint.name} for a root"),)
+
+
+def naming_of(both: Scanned) -> tuple[Statement, ...]:
+    """The statements in front of the derivation."""
+    return both.trial.naming if both.closed is None else both.closed.naming
 
 
 def from_joints(mechanism: Mechanism) -> Program:
@@ -118,15 +140,46 @@ def trial_on_branch(both: Scanned) -> Trial:
     joint = mechanism.search.joint.symbol
     own = (Let(cosine(joint), sp.cos(TRIED)), Let(sine(joint), sp.sin(TRIED)))
     solved = with_branch_signs(both.trial.derivation.statements, both.trial_branches)
-    signs = {a.sigma: wanted(a.branch) * (SIDE if a.determinant.reach is not None else 1) for a in both.trial_branches}
     residual = real("residual")
     left = Let(residual, both.trial.derivation.residuals[0])
-    statements = with_goal(named_apart((*own, *both.trial.closure.lets, *solved, left), "tried"))
+    folds, signs = _sides(both, solved)
+    statements = with_goal(
+        named_apart((*fixed_lets(mechanism), *own, *both.trial.closure.lets, *folds, *solved, left), "tried")
+    )
     statements = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
     angles = [m.angle for m in both.trial.derivation.conditionings]
     joints = {j.symbol: j for j in mechanism.joints}
     trial = trial_of(statements, real("residual_tried"), [(a, reference_value(joints[a])) for a in angles])
     return replace(trial, angles=tuple(real(f"{a.name}_tried") for a in angles))
+
+
+def _sides(both: Scanned, solved: tuple[Statement, ...]) -> tuple[tuple[Let, ...], dict[sp.Symbol, sp.Expr]]:
+    """The signs of the steps, by those that are wanted and the side of the trial, and the statements that they read.
+
+    The side is that of the step which is nearest to the end of its reach with the wanted signs.
+    """
+    guards = guards_of(both.trial.derivation) or ()
+    signs = {a.sigma: wanted(a.branch) for a in both.trial_branches}
+    steps = {a.determinant.step: a for a in both.trial_branches}
+    if len(guards) < 2:
+        return (), signs | {steps[g.step].sigma: wanted(steps[g.step].branch) * SIDE for g in guards}
+    last = max(k for k, s in enumerate(solved) if isinstance(s, Require))
+    before = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in named_apart(solved[: last + 1], "wanted"))
+    rooms = [
+        Let(real(f"room_of_{g.step.name}"), room_of(c)) for g, c in zip(guards, conditions_of(before), strict=True)
+    ]
+    lets = [*(s for s in before if isinstance(s, Let)), *rooms]
+    for guard, room in zip(guards, rooms, strict=True):
+        is_nearest = flag(f"nearest_is_{guard.step.name}")
+        lets.append(Let(is_nearest, sp.And(*[sp.Le(room.name, r.name) for r in rooms if r is not room])))
+        folding = steps[guard.step]
+        signs[folding.sigma] = wanted(folding.branch) * Select(_tried(is_nearest), SIDE, sp.Integer(1))
+    return tuple(lets), signs
+
+
+def _tried(name: sp.Symbol) -> sp.Symbol:
+    """The name in a trial."""
+    return called(f"{name.name}_tried", name)
 
 
 def sigma(branch: Branch) -> sp.Symbol:

@@ -18,7 +18,7 @@ import sympy as sp
 
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let, Statement
-from derive.ir.symbols import real
+from derive.ir.symbols import is_condition, real
 
 _ZERO = sp.Integer(0)
 
@@ -33,7 +33,7 @@ def with_slopes(statements: Sequence[Statement], variable: sp.Symbol) -> tuple[S
     slopes: dict[sp.Symbol, sp.Expr] = {variable: sp.Integer(1)}
     found: list[Statement] = []
     for s in statements:
-        if not isinstance(s, Let):
+        if not isinstance(s, Let) or is_condition(s.value):
             found.append(s)
             continue
         changed = _slope(s.value, slopes, s.name)
