@@ -25,6 +25,7 @@ from derive.kinematics.scan.guards import guards_of
 from derive.kinematics.scan.named_steps import with_named_steps
 from derive.kinematics.shared_names import refuse_shared_names
 from derive.solver.solve import Undetermined, Unsolved
+from derive.solver.unsolved import searched_in_vain
 
 
 @dataclass(frozen=True)
@@ -50,10 +51,10 @@ def with_search(mechanism: Mechanism) -> Mechanism:
         solve_pose(mechanism)
     except Undetermined:
         raise
-    except Unsolved:
+    except Unsolved as problem:
         found = min(_candidates(mechanism), key=lambda c: c.rank, default=None)  # the first of equals: deterministic
         if found is None:
-            raise
+            raise Unsolved(searched_in_vain(str(problem))) from None
         return _searched(mechanism, found)
     return mechanism
 

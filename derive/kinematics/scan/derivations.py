@@ -56,6 +56,7 @@ from derive.kinematics.scan.programs import (
     trial_of,
     with_goal,
 )
+from derive.solver.solve import Derivation
 
 SEARCHED = flag("searched")
 
@@ -147,10 +148,16 @@ def trial_on_branch(both: Scanned) -> Trial:
         named_apart((*fixed_lets(mechanism), *own, *both.trial.closure.lets, *folds, *solved, left), "tried")
     )
     statements = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
-    angles = [m.angle for m in both.trial.derivation.conditionings]
+    angles = _turning_fast(both.trial.derivation)
     joints = {j.symbol: j for j in mechanism.joints}
     trial = trial_of(statements, real("residual_tried"), [(a, reference_value(joints[a])) for a in angles])
     return replace(trial, angles=tuple(real(f"{a.name}_tried") for a in angles))
+
+
+def _turning_fast(derivation: Derivation) -> list[sp.Symbol]:
+    """The angles that may be free, or turn fast: also those of steps beside a point, which may be near its axis."""
+    angles = [m.angle for m in derivation.conditionings]
+    return angles + [d.step for d in derivation.determinants if d.legs is not None and d.step not in angles]
 
 
 def _sides(both: Scanned, solved: tuple[Statement, ...]) -> tuple[tuple[Let, ...], dict[sp.Symbol, sp.Expr]]:
