@@ -73,10 +73,11 @@ from derive.kinematics.number_of_joints import check_joints
 from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.sampling import sample_machine
 from derive.kinematics.scan.choice import with_search
-from derive.kinematics.scan.derivations import from_joints, solve_both
+from derive.kinematics.scan.derivations import from_joints, solve_both, trial_on_branch
 from derive.kinematics.scan.inverse import branch_statements, search_given
 from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements
-from derive.kinematics.shared_names import refuse_names_of_joints, refuse_shared_names
+from derive.kinematics.scan.programs import names_of_search
+from derive.kinematics.shared_names import refuse_names, refuse_names_of_joints, refuse_shared_names
 from derive.lowering.lower import lowered
 from derive.plate.plate import check_home
 from derive.plate.turning import forward_from_given, joints_at_home, samples_near_home
@@ -154,6 +155,7 @@ def _scanned(mechanism: Mechanism) -> Kinematics:
     determinant is the margin.
     """
     both = solve_both(mechanism)
+    refuse_names(mechanism, names_of_search(mechanism, trial_on_branch(both)))
     statements, margins = margin_statements(both)
     determinant, scaled = determinant_margin(both)
     margin = Let(real(f"margin_{DETERMINANT.name}"), scaled)

@@ -77,7 +77,8 @@ def margin_statements(both: Scanned) -> tuple[tuple[Statement, ...], tuple[Let, 
     lets, indicators = _indicators(both)
     statements += [let for let in lets if let.name not in own]
     for b, value in zip(both.asked, indicators, strict=True):
-        margins[b.name]["tried"] = value / SCALE
+        has_no_unit = both.closed is None and not _is_length(mechanism, b)
+        margins.setdefault(b.name, {})["tried"] = value if has_no_unit else value / SCALE
     determinant, scaled = determinant_margin(both)
     statements += determinant
     found = [

@@ -7,7 +7,7 @@ whether they lie on the wanted branch. `find_root` finds the root that is neares
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -17,11 +17,12 @@ from derive.equations.named_pose import named_pose
 from derive.ir.constants import BOUNDARY, DAMPED, IMPROVEMENTS, MET, NEARLY
 from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, Root, Select
-from derive.ir.program import FindRoot, Iterate, Let, Output, Program, Solve, Statement, Status, rewritten
+from derive.ir.program import FindRoot, Iterate, Let, Output, Program, Solve, Statement, Status, binds, rewritten
 from derive.ir.symbols import (
     COORDINATE_NAMES,
     FREED,
     FREED_ANGLE,
+    PLACE,
     ROTATION_ENTRIES,
     SCALE,
     TRIED,
@@ -234,6 +235,15 @@ def _roots_named(statements: Sequence[Let]) -> list[Let]:
         found += [Let(name, root) for root, name in names.items()]
         found.append(replace(s, value=s.value.xreplace(names)))
     return found
+
+
+def names_of_search(mechanism: Mechanism, trial: Trial) -> Iterator[sp.Symbol]:
+    """The names that the programs of a search bind, or that are their arguments."""
+    yield from (*PLACE, *GOAL.values(), START, LOOKED_FOR, FOUND, flag(FITS))
+    yield from (real(n) for n in ("value", "guard", "remainder", "slope", "room", "room_slope", "error"))
+    yield from (s.name for s in trial.statements)
+    loop, _ = _newton(mechanism, [_ZERO] * len(mechanism.joints))
+    yield from (name for s in loop.step for name in binds(s))
 
 
 def with_goal(statements: Sequence[Statement]) -> tuple[Statement, ...]:
