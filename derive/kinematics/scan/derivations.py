@@ -7,7 +7,7 @@ the root that was found.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -56,6 +56,7 @@ from derive.kinematics.scan.programs import (
     trial_of,
     with_goal,
 )
+from derive.kinematics.scan.slopes import slope_name, with_slopes
 from derive.solver.solve import Derivation
 
 SEARCHED = flag("searched")
@@ -143,10 +144,8 @@ def trial_on_branch(both: Scanned) -> Trial:
     solved = with_branch_signs(both.trial.derivation.statements, both.trial_branches)
     residual = real("residual")
     left = Let(residual, both.trial.derivation.residuals[0])
-    folds, signs = _sides(both, solved)
-    statements = with_goal(
-        named_apart((*fixed_lets(mechanism), *own, *both.trial.closure.lets, *folds, *solved, left), "tried")
-    )
+    first, signs = _sides(both, (*fixed_lets(mechanism), *own, *both.trial.closure.lets), solved)
+    statements = with_goal(named_apart((*first, *solved, left), "tried"))
     statements = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
     angles = _turning_fast(both.trial.derivation)
     joints = {j.symbol: j for j in mechanism.joints}
@@ -160,28 +159,36 @@ def _turning_fast(derivation: Derivation) -> list[sp.Symbol]:
     return angles + [d.step for d in derivation.determinants if d.legs is not None and d.step not in angles]
 
 
-def _sides(both: Scanned, solved: tuple[Statement, ...]) -> tuple[tuple[Let, ...], dict[sp.Symbol, sp.Expr]]:
+def _sides(
+    both: Scanned, first: Sequence[Let], solved: Sequence[Statement]
+) -> tuple[tuple[Statement, ...], dict[sp.Symbol, sp.Expr]]:
     """The signs of the steps, by those that are wanted and the side of the trial, and the statements that they read.
 
-    The side is that of the step which is nearest to the end of its reach with the wanted signs.
+    The side is that of the step which, with the wanted signs, comes first to the end of its reach.
     """
     guards = guards_of(both.trial.derivation) or ()
     signs = {a.sigma: wanted(a.branch) for a in both.trial_branches}
     steps = {a.determinant.step: a for a in both.trial_branches}
     if len(guards) < 2:
-        return (), signs | {steps[g.step].sigma: wanted(steps[g.step].branch) * SIDE for g in guards}
-    last = max(k for k, s in enumerate(solved) if isinstance(s, Require))
-    before = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in named_apart(solved[: last + 1], "wanted"))
-    rooms = [
-        Let(real(f"room_of_{g.step.name}"), room_of(c)) for g, c in zip(guards, conditions_of(before), strict=True)
-    ]
-    lets = [*(s for s in before if isinstance(s, Let)), *rooms]
+        return tuple(first), signs | {steps[g.step].sigma: wanted(steps[g.step].branch) * SIDE for g in guards}
+    rooms = [real(f"room_of_{g.step.name}") for g in guards]
+    statements = list(_with_rooms(first, [rewritten(s, lambda e: e.xreplace(signs)) for s in solved], rooms))
+    bound = {s.name for s in statements if isinstance(s, Let)}
+    rates = {r: sp.Abs(slope_name(r)) if slope_name(r) in bound else sp.Integer(0) for r in rooms}
     for guard, room in zip(guards, rooms, strict=True):
-        is_nearest = flag(f"nearest_is_{guard.step.name}")
-        lets.append(Let(is_nearest, sp.And(*[sp.Le(room.name, r.name) for r in rooms if r is not room])))
+        is_first, others = flag(f"first_is_{guard.step.name}"), [r for r in rooms if r != room]
+        statements.append(Let(is_first, sp.And(*[sp.Le(room * rates[r], r * rates[room]) for r in others])))
         folding = steps[guard.step]
-        signs[folding.sigma] = wanted(folding.branch) * Select(_tried(is_nearest), SIDE, sp.Integer(1))
-    return tuple(lets), signs
+        signs[folding.sigma] = wanted(folding.branch) * Select(_tried(is_first), SIDE, sp.Integer(1))
+    return tuple(statements), signs
+
+
+def _with_rooms(first: Sequence[Let], solved: Sequence[Statement], rooms: Sequence[sp.Symbol]) -> Iterator[Statement]:
+    """The statements up to the last guard, and the rooms of all guards, with their slopes."""
+    last = max(k for k, s in enumerate(solved) if isinstance(s, Require))
+    before = named_apart(solved[: last + 1], "wanted")
+    lets = [Let(name, room_of(c)) for name, c in zip(rooms, conditions_of(before), strict=True)]
+    yield from with_slopes([*first, *(s for s in before if isinstance(s, Let)), *lets], TRIED)
 
 
 def _tried(name: sp.Symbol) -> sp.Symbol:
