@@ -75,8 +75,8 @@ Answers = Iterator[tuple[tuple[int, ...], Sequence[float] | None]]
 
 
 def answers(machine: Made, frame: softkin.Frame, axes: list[float]) -> Answers:
-    """The answer on every branch. A search sorts what it finds for all branches by the signs at the root, which a double
-    root has not; a call for one branch does not.
+    """The answer on every branch. A search sorts what it finds for all branches by the signs at the root, and a double
+    root has none; a call for one branch does not.
     """
     for solution in machine.robot.inverse_all(frame, axes):
         found = solution.axes
