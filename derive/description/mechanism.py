@@ -121,10 +121,11 @@ class Vendor(Enum):
 
 @dataclass(frozen=True)
 class Search:
-    """A joint that is scanned for roots where no subproblem determines it, because a parameter is not zero."""
+    """A joint that is scanned for roots where no subproblem determines it."""
 
     joint: Joint
-    where: Parameter
+    where: Parameter | None = None
+    """The parameter without which the closure has a closed form; None where it has none for any machine."""
 
 
 @dataclass(frozen=True)

@@ -73,9 +73,12 @@ def drawing_of(kinematics: Kinematics) -> Drawing:
 
 
 def _without_search(kinematics: Kinematics, machine: Machine) -> Machine:
-    """The machine with a closed form, without the branch of a root scan, which a picture cannot show."""
+    """The machine with a closed form, if there is one, without the branch of a root scan, which a picture cannot
+    show."""
     search = kinematics.mechanism.search
-    return machine if search is None else nominal_machine(kinematics, **{search.where.name: 0.0})
+    return (
+        machine if search is None or search.where is None else nominal_machine(kinematics, **{search.where.name: 0.0})
+    )
 
 
 def scene_at(machine: Machine, pose: Pose) -> Scene:

@@ -76,9 +76,20 @@ def assign(
     optional_zero: compare on a machine without its optional lengths. The steps of the offset problem correspond to the
     branches of the machine only where the point is the flange itself.
     """
+    found, unnamed = _assigned(mechanism, inverse, forward, optional_zero)
+    if unnamed:
+        names = ", ".join(s.step.name for s in unnamed)
+        raise DescriptionError(f"no branch names the two solutions for {names}")
+    return found
+
+
+def _assigned(
+    mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool
+) -> tuple[tuple[Assignment, ...], tuple[StepDeterminant, ...]]:
+    """The step of every branch, and the steps that no branch names."""
     determinants = inverse.derivation.determinants
     if not determinants and not mechanism.branches:
-        return ()
+        return (), ()
     signs, indicators = _signs(mechanism, inverse, forward, optional_zero)
     found: list[Assignment] = []
     for branch, indicator in zip(mechanism.branches, indicators, strict=True):
@@ -91,18 +102,15 @@ def assign(
         if first is not None:
             raise DescriptionError(f"branches {first!r} and {branch.name!r} name the same two solutions")
         found.append(Assignment(branch, *steps[0]))
-    unnamed = [s for s in determinants if s not in [a.determinant for a in found]]
-    if unnamed:
-        names = ", ".join(s.step.name for s in unnamed)
-        raise DescriptionError(f"no branch names the two solutions for {names}")
-    return tuple(found)
+    unnamed = tuple(s for s in determinants if s not in [a.determinant for a in found])
+    return tuple(found), unnamed
 
 
 def steps_and_rest(
     mechanism: Mechanism, inverse: Inverse, forward: Forward
-) -> tuple[tuple[Assignment, ...], tuple[Branch, ...]]:
-    """The assignments of the branches that a step decides, and the branches that no step decides. Every step needs a
-    branch.
+) -> tuple[tuple[Assignment, ...], tuple[Branch, ...], tuple[StepDeterminant, ...]]:
+    """The assignments of the branches that a step decides, the branches that no step decides, and the steps that no
+    branch names.
     """
     branches = tuple(b for b in mechanism.branches if not b.is_crossing)
     named = replace(mechanism, branches=branches)
@@ -112,8 +120,8 @@ def steps_and_rest(
         for b, row in zip(branches, indicators, strict=True)
         if any(np.all(o * s == row) for s in signs for o in (1, -1))
     )
-    found = assign(replace(mechanism, branches=decided), inverse, forward)
-    return found, tuple(b for b in branches if b not in decided)
+    found, unnamed = _assigned(replace(mechanism, branches=decided), inverse, forward, False)
+    return found, tuple(b for b in branches if b not in decided), unnamed
 
 
 def _signs(

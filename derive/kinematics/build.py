@@ -71,10 +71,12 @@ from derive.kinematics.kinematics import Freedom, Kinematics, Margin
 from derive.kinematics.number_of_joints import check_joints
 from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.sampling import sample_machine
-from derive.kinematics.scan.derivations import from_joints, solve_both
+from derive.kinematics.scan.choice import with_search
+from derive.kinematics.scan.derivations import from_joints, solve_both, trial_on_branch
 from derive.kinematics.scan.inverse import branch_statements, search_given
 from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements
-from derive.kinematics.shared_names import refuse_names_of_joints, refuse_shared_names
+from derive.kinematics.scan.programs import names_of_search
+from derive.kinematics.shared_names import refuse_names, refuse_names_of_joints, refuse_shared_names
 from derive.lowering.lower import lowered
 from derive.plate.plate import check_home
 from derive.plate.turning import forward_from_given, joints_at_home, samples_near_home
@@ -87,6 +89,7 @@ def build(mechanism: Mechanism) -> Kinematics:
     if mechanism.is_platform:
         check_home(mechanism)
     refuse_names_of_joints(mechanism)
+    mechanism = with_search(mechanism)
     if mechanism.search is not None:
         return _scanned(mechanism)
     closed = assembled(mechanism, pose_at_axes(mechanism))
@@ -147,17 +150,18 @@ def _forward_from(mechanism: Mechanism, inverse: Inverse, margins: tuple[Let, ..
 
 
 def _scanned(mechanism: Mechanism) -> Kinematics:
-    """The programs of a chain without a closed form for one parameter: one joint is scanned, the determinant is the
-    margin.
+    """The programs of a chain without a closed form, or with one where a parameter is zero: one joint is scanned, the
+    determinant is the margin.
     """
     both = solve_both(mechanism)
+    refuse_names(mechanism, names_of_search(mechanism, trial_on_branch(both)))
     statements, margins = margin_statements(both)
     determinant, scaled = determinant_margin(both)
     margin = Let(real(f"margin_{DETERMINANT.name}"), scaled)
     programs = [
         forward_program(mechanism, replace(both.forward, statements=statements), margins),
         orientation_program(both.forward),
-        inverse_program("branch", mechanism, both.closed, branch_statements(both)),
+        inverse_program("branch", mechanism, both.closed or both.trial, branch_statements(both)),
         search_given(both),
         from_joints(mechanism),
         limits_program(mechanism),
@@ -168,7 +172,8 @@ def _scanned(mechanism: Mechanism) -> Kinematics:
         _image_program(mechanism),
         _projection_program(mechanism),
     ]
-    return _finished(mechanism, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
+    finished = _finished(mechanism, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
+    return replace(finished, tried_branches=len(both.trial_branches))
 
 
 def _finished(

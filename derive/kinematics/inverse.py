@@ -99,7 +99,8 @@ def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:
     """Solve the closure of a commanded pose for all joints but one that is known. The equations need not agree."""
     closure = closure_at(mechanism, known)
     moving = tuple(j for j in mechanism.joints if j != known)
-    return Inverse(closure, _solve(mechanism, closure, moving, is_overdetermined=True), closure.lets, moving)
+    naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *closure.lets)
+    return Inverse(closure, _solve(mechanism, closure, moving, is_overdetermined=True), naming, moving)
 
 
 def solve_offset(mechanism: Mechanism) -> Inverse:

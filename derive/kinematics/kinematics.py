@@ -136,6 +136,9 @@ class Kinematics:
     forward_from: Program | None = None
     search_given: Program | None = None
     from_joints: Program | None = None
+    tried_branches: int = 0
+    """With a root scan: how many of the first branches are signs of the steps of a trial; the others tell roots
+    apart."""
     twist: Program | None = None
     compatible: Program | None = None
     end_point_shift: Program | None = None

@@ -13,15 +13,16 @@ from derive.ir.symbols import cosine, sine
 
 def refuse_shared_names(mechanism: Mechanism, statements: Iterable[Statement]) -> None:
     """Refuse a parameter named like a value of the derivation."""
-    _refuse(mechanism, (s.name for s in statements if isinstance(s, Let)))
+    refuse_names(mechanism, (s.name for s in statements if isinstance(s, Let)))
 
 
 def refuse_names_of_joints(mechanism: Mechanism) -> None:
     """Refuse a parameter named like a joint, its sine or its cosine, before anything is derived from them."""
-    _refuse(mechanism, (name for j in mechanism.joints for name in (j.symbol, sine(j.symbol), cosine(j.symbol))))
+    refuse_names(mechanism, (name for j in mechanism.joints for name in (j.symbol, sine(j.symbol), cosine(j.symbol))))
 
 
-def _refuse(mechanism: Mechanism, names: Iterable[sp.Symbol]) -> None:
+def refuse_names(mechanism: Mechanism, names: Iterable[sp.Symbol]) -> None:
+    """Refuse a parameter with one of these names."""
     parameters = {_key(p.name): p.name for p in mechanism.parameters}
     for name in names:
         if own := parameters.get(_key(name.name)):

@@ -80,6 +80,10 @@ class Unsolved(Exception):
     """No subproblem fits what is left; the message tells the unknowns, the equations, and what would help."""
 
 
+class Undetermined(Unsolved):
+    """The equations do not hold all unknowns: no rule and no search finds what nothing determines."""
+
+
 @dataclass(frozen=True)
 class Derivation:
     """The solution as statements, with the determinants of its two-root steps, and the conditioning of every step
@@ -107,7 +111,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     stands outside sines and cosines. Raises `Unsolved` where no rule applies.
     """
     if (reason := undetermined(problem)) is not None:
-        raise Unsolved(reason)
+        raise Undetermined(reason)
     record = DerivationRecord()
     sums: tuple[Sum, ...] = ()
     rules: list[str] = []

@@ -20,6 +20,7 @@ _SEED = 33
 _STEP = 1e-5
 _NOTHING = 1e-6
 """A derivative, or a part of a motion, below this is rounding: columns and rows are scaled to one."""
+_ONE_KNOWN = ", or if one of these joints were known"
 _WRITTEN = 120
 """Letters of an equation that is written out; of a longer one the number of terms is told."""
 
@@ -49,6 +50,11 @@ def unsolved(problem: Problem) -> str:
     )
 
 
+def searched_in_vain(message: str) -> str:
+    """What to say of a chain where every joint was tried as known, too."""
+    return message.replace(_ONE_KNOWN, "; with any one of these joints known the others are not solved either", 1)
+
+
 def _more(unknowns: Sequence[sp.Symbol], free: int) -> str:
     """What would determine all of them."""
     if any(u in POSITION for u in unknowns):
@@ -60,10 +66,7 @@ def _more(unknowns: Sequence[sp.Symbol], free: int) -> str:
 def _help(problem: Problem) -> str:
     """What would make it solvable."""
     if problem.turns:
-        return (
-            "it would help if the axes of three neighbouring joints met in one point or were parallel, or if one of "
-            "these joints were known"
-        )
+        return "it would help if the axes of three neighbouring joints met in one point or were parallel" + _ONE_KNOWN
     return (
         "it would help if one equation had one of them alone, or if two equations were the coordinates of a point that "
         "one of them turns"

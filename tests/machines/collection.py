@@ -23,6 +23,7 @@ from derive.mechanism import (
     radians,
     rotary,
 )
+from tests.machines.searched_machines import SEARCHED
 
 X, Y, Z, R = (linear(name, f"slide {name}") for name in ("X", "Y", "Z", "R"))
 A, B, C, A1, A2, A3, A4, A5, A6, E1 = (
@@ -379,4 +380,5 @@ MACHINES: Mapping[str, Mechanism] = {
     **HELD,
     **ONE_ROOT,
     **OTHERS,
+    **SEARCHED,
 }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import product
 
 import numpy as np
@@ -46,10 +48,13 @@ EXPECTED = {
     "numbers for lengths": 2,
     "flange that turns against two axes": 4,
     "palletizer with both motors at the base": 4,
+    "arm whose wrist goes sideways": 8,
+    "arm in metres with a bent wrist and a shoulder beside its axis": 8,
 }
 """The largest number of solutions, as a search of the closure from many starts finds them."""
 MOST = 300
 _CLOSED, _SAME, _NEAR_SINGULAR = 1e-9, 1e-7, 1e-3
+_DOUBLE, _NEAR_DOUBLE = 1e-6, 1e-3
 
 
 def grid(machine: Made) -> Array:
@@ -71,6 +76,38 @@ def is_own(machine: Made, axes: Array) -> NDArray[np.bool_]:
 def margins(machine: Made, axes: list[float]) -> list[float]:
     """The singularity margins at axis values."""
     return list(machine.robot.singularity(axes).margins.values())
+
+
+def is_searched(machine: Made) -> bool:
+    """Whether its inverse is a search."""
+    return hasattr(machine.robot, "SIDES")
+
+
+Answers = Iterator[tuple[tuple[int, ...], Sequence[float] | None]]
+
+
+def answers(machine: Made, frame: softkin.Frame, axes: list[float]) -> Answers:
+    """The answer on every branch. A search sorts what it finds for all branches by the signs at the root, and a double
+    root has none; a call for one branch does not.
+    """
+    for solution in machine.robot.inverse_all(frame, axes):
+        found = solution.axes
+        if is_searched(machine):
+            with suppress(KinematicsError):
+                found = None
+                found = machine.robot.inverse(frame, solution.configuration, axes)
+        yield solution.configuration, found
+
+
+def are_same(machine: Made, one: Array, other: Array, frame: softkin.Frame) -> bool:
+    """Whether two answers are one solution. Where a search finds a double root, half of its digits are rounding: there
+    both have to close."""
+    if np.allclose(one, other, rtol=0.0, atol=_SAME * machine.reach):
+        return True
+    is_double = is_searched(machine) and min(np.abs(margins(machine, other.tolist()))) < _DOUBLE
+    pose = np.array([frame.position]), np.array([frame.rotation])
+    closes = all(machine.error(axes[None], *pose).max() <= _CLOSED for axes in (one, other))
+    return is_double and closes and bool(np.abs(one - other).max() <= _NEAR_DOUBLE)
 
 
 @EVERY
@@ -117,7 +154,7 @@ def test_both_languages_say_the_same(name: str) -> None:
         assert len(machine.mechanism.joints) > 6
         return
     controller, robot = machine.controller(), machine.robot
-    chosen = grid(machine)[::5]
+    chosen = grid(machine)[:: 20 if is_searched(machine) else 5]
     for axes in chosen.tolist():
         status, answer = controller.forward(axes)
         if status != OK:
@@ -129,11 +166,11 @@ def test_both_languages_say_the_same(name: str) -> None:
         assert np.allclose(position, frame.position, rtol=0.0, atol=1e-9 * machine.reach)
         assert np.allclose(rows, frame.rotation, rtol=0.0, atol=1e-12)
         assert data[: len(robot.CONFIGURATION)] == tuple(byte % 256 for byte in configuration)
-        for solution in robot.inverse_all(frame, axes):
-            status, found = controller.inverse(frame.position, frame.rotation, solution.configuration, axes)
-            assert (status == OK) == (solution.axes is not None)
-            if solution.axes is not None:
-                assert np.allclose(found[: len(axes)], solution.axes, rtol=0.0, atol=_SAME * machine.reach)
+        for configuration, own in answers(machine, frame, axes):
+            status, found = controller.inverse(frame.position, frame.rotation, configuration, axes)
+            assert (status == OK) == (own is not None)
+            if own is not None:
+                assert are_same(machine, np.array(found[: len(axes)]), np.array(own), frame)
 
 
 @EVERY

@@ -258,7 +258,8 @@ def _constants_read(kin: Kinematics, programs: Iterable[Method], lean: Unrolled 
     """The constants that a program or the text around the programs reads."""
     found = {name for method in programs for name in constants_of(method)} | set(lean.constants if lean else ())
     found |= {TIE_OF_LENGTHS.name} if chooses_by_lengths(kin.mechanism) else set()
-    return found | ({"searched"} if kin.mechanism.search is not None else set())
+    search = kin.mechanism.search
+    return found | ({"searched"} if search is not None and search.where is not None else set())
 
 
 def _every_root(found: Sequence[Method]) -> list[str]:

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import sympy as sp
+
 from derive.emit.st.contract import Parameter, Signature
 from derive.emit.st.expression import literal
 from derive.emit.st.layout import packed
@@ -65,6 +67,8 @@ class SearchText:
     finish_call: str
     success: str
     nothing: str
+    may_be_left_out: bool
+    """Whether some machines need no scan."""
 
 
 def search_in(program: Program) -> FindRoot | None:
@@ -108,6 +112,7 @@ def search_text(search: FindRoot) -> SearchText:
         finish_call=_call(search.finish, _arguments(search, search.finish, root), found),
         success=f"{targets[0]} := TRUE;",
         nothing="\n".join([f"{targets[0]} := FALSE;", *(f"{t} := 0.0;" for t in targets[1:])]),
+        may_be_left_out=search.wanted != sp.true,
     )
 
 

@@ -7,7 +7,7 @@ the root that was found.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -18,11 +18,13 @@ from derive.description.mechanism import (
     Mechanism,
 )
 from derive.equations.axes import axis_lets, reference_value
+from derive.equations.closure import fixed_lets
 from derive.equations.pose_at_axes import (
     Forward,
 )
 from derive.geometry.frames import Chain
 from derive.ir.passes import normalise, renamed
+from derive.ir.primitives import Select
 from derive.ir.program import (
     Let,
     Output,
@@ -48,11 +50,14 @@ from derive.kinematics.forward import (
     pose_at_axes,
 )
 from derive.kinematics.inverse import Inverse, of_angle, solve_at, solve_pose
+from derive.kinematics.scan.guards import conditions_of, guards_of, room_of
 from derive.kinematics.scan.programs import (
     Trial,
     trial_of,
     with_goal,
 )
+from derive.kinematics.scan.slopes import slope_name, with_slopes
+from derive.solver.solve import Derivation
 
 SEARCHED = flag("searched")
 
@@ -63,7 +68,8 @@ class Scanned:
 
     mechanism: Mechanism
     forward: Forward
-    closed: Inverse
+    closed: Inverse | None
+    """None where no parameter leads to a closed form."""
     closed_branches: tuple[Assignment, ...]
     trial: Inverse
     trial_branches: tuple[Assignment, ...]
@@ -75,21 +81,33 @@ def solve_both(mechanism: Mechanism) -> Scanned:
     """Solve the closure without the parameter that needs a scan, and with the scanned joint known."""
     assert mechanism.search is not None
     forward = pose_at_axes(mechanism)
-    simple = without_search(mechanism)
-    closed = solve_pose(simple)
+    closed, closed_branches = _in_closed_form(mechanism)
     trial = solve_at(mechanism, mechanism.search.joint)
     if (left := len(trial.derivation.residuals)) != 1:
         raise DescriptionError(f"with {mechanism.search.joint.name} known, {left} conditions are left, not one")
-    guards = [s.condition for s in trial.derivation.statements if isinstance(s, Require)]
-    if len(guards) > 1 or not all(isinstance(g, sp.Ge) or isinstance(g.args[0], sp.Abs) for g in guards):
-        raise DescriptionError(f"a trial along {mechanism.search.joint.name} may be out of reach in one step only")
-    found, asked = steps_and_rest(mechanism, trial, forward)
-    return Scanned(mechanism, forward, closed, assign(simple, closed, pose_at_axes(simple)), trial, found, asked)
+    if guards_of(trial.derivation) is None:
+        raise DescriptionError(
+            f"a trial along {mechanism.search.joint.name} may be out of reach in its two-root steps only"
+        )
+    found, asked, unnamed = steps_and_rest(mechanism, trial, forward)
+    if unnamed:
+        names = ", ".join(s.step.name for s in unnamed)
+        raise DescriptionError(f"no branch names the two solutions for {names}")
+    return Scanned(mechanism, forward, closed, closed_branches, trial, found, asked)
+
+
+def _in_closed_form(mechanism: Mechanism) -> tuple[Inverse | None, tuple[Assignment, ...]]:
+    """The closed form of the mechanism with its parameter zero, and its branches."""
+    if mechanism.search is None or mechanism.search.where is None:
+        return None, ()
+    simple = without_search(mechanism)
+    closed = solve_pose(simple)
+    return closed, assign(simple, closed, pose_at_axes(simple))
 
 
 def without_search(mechanism: Mechanism) -> Mechanism:
     """The mechanism with its parameter zero, which has a closed form."""
-    assert mechanism.search is not None and mechanism.chain is not None
+    assert mechanism.search is not None and mechanism.search.where is not None and mechanism.chain is not None
     gone = {mechanism.search.where.symbol: sp.Integer(0)}
     factors = (replace(f, amount=f.amount.xreplace(gone)) for f in mechanism.chain.factors)
     branches = tuple(replace(b, indicator=b.indicator.subs(gone)) for b in mechanism.branches if not b.is_crossing)
@@ -97,11 +115,17 @@ def without_search(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, chain=chain, branches=branches, search=None)
 
 
-def searched_flag(mechanism: Mechanism) -> Let:
-    """The flag that the parameter is not zero."""
-    assert mechanism.search is not None
-    is_given = sp.Gt(sp.Abs(mechanism.search.where.symbol), 0)
-    return Let(SEARCHED, is_given, f"whether to scan {mechanism.search.joint.name} for a root")
+def searched_flag(both: Scanned) -> tuple[Let, ...]:
+    """The flag that the parameter is not zero; none where there is no closed form."""
+    search = both.mechanism.search
+    if search is None or search.where is None:
+        return ()
+    return (Let(SEARCHED, sp.Gt(sp.Abs(search.where.symbol), 0), f"whether to scan {search.joint.name} for a root"),)
+
+
+def naming_of(both: Scanned) -> tuple[Statement, ...]:
+    """The statements in front of the derivation."""
+    return both.trial.naming if both.closed is None else both.closed.naming
 
 
 def from_joints(mechanism: Mechanism) -> Program:
@@ -118,15 +142,58 @@ def trial_on_branch(both: Scanned) -> Trial:
     joint = mechanism.search.joint.symbol
     own = (Let(cosine(joint), sp.cos(TRIED)), Let(sine(joint), sp.sin(TRIED)))
     solved = with_branch_signs(both.trial.derivation.statements, both.trial_branches)
-    signs = {a.sigma: wanted(a.branch) * (SIDE if a.determinant.reach is not None else 1) for a in both.trial_branches}
     residual = real("residual")
     left = Let(residual, both.trial.derivation.residuals[0])
-    statements = with_goal(named_apart((*own, *both.trial.closure.lets, *solved, left), "tried"))
+    first, signs = _sides(both, (*fixed_lets(mechanism), *own, *both.trial.closure.lets), solved)
+    statements = with_goal(named_apart((*first, *solved, left), "tried"))
     statements = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
-    angles = [m.angle for m in both.trial.derivation.conditionings]
+    angles = _turning_fast(both.trial.derivation)
     joints = {j.symbol: j for j in mechanism.joints}
     trial = trial_of(statements, real("residual_tried"), [(a, reference_value(joints[a])) for a in angles])
     return replace(trial, angles=tuple(real(f"{a.name}_tried") for a in angles))
+
+
+def _turning_fast(derivation: Derivation) -> list[sp.Symbol]:
+    """The angles that may be free, or turn fast: also those of steps beside a point, which may be near its axis."""
+    angles = [m.angle for m in derivation.conditionings]
+    return angles + [d.step for d in derivation.determinants if d.legs is not None and d.step not in angles]
+
+
+def _sides(
+    both: Scanned, first: Sequence[Let], solved: Sequence[Statement]
+) -> tuple[tuple[Statement, ...], dict[sp.Symbol, sp.Expr]]:
+    """The signs of the steps, by those that are wanted and the side of the trial, and the statements that they read.
+
+    The side is that of the step which, with the wanted signs, comes first to the end of its reach.
+    """
+    guards = guards_of(both.trial.derivation) or ()
+    signs = {a.sigma: wanted(a.branch) for a in both.trial_branches}
+    steps = {a.determinant.step: a for a in both.trial_branches}
+    if len(guards) < 2:
+        return tuple(first), signs | {steps[g.step].sigma: wanted(steps[g.step].branch) * SIDE for g in guards}
+    rooms = [real(f"room_of_{g.step.name}") for g in guards]
+    statements = list(_with_rooms(first, [rewritten(s, lambda e: e.xreplace(signs)) for s in solved], rooms))
+    bound = {s.name for s in statements if isinstance(s, Let)}
+    rates = {r: sp.Abs(slope_name(r)) if slope_name(r) in bound else sp.Integer(0) for r in rooms}
+    for guard, room in zip(guards, rooms, strict=True):
+        is_first, others = flag(f"first_is_{guard.step.name}"), [r for r in rooms if r != room]
+        statements.append(Let(is_first, sp.And(*[sp.Le(room * rates[r], r * rates[room]) for r in others])))
+        folding = steps[guard.step]
+        signs[folding.sigma] = wanted(folding.branch) * Select(_tried(is_first), SIDE, sp.Integer(1))
+    return tuple(statements), signs
+
+
+def _with_rooms(first: Sequence[Let], solved: Sequence[Statement], rooms: Sequence[sp.Symbol]) -> Iterator[Statement]:
+    """The statements up to the last guard, and the rooms of all guards, with their slopes."""
+    last = max(k for k, s in enumerate(solved) if isinstance(s, Require))
+    before = named_apart(solved[: last + 1], "wanted")
+    lets = [Let(name, room_of(c)) for name, c in zip(rooms, conditions_of(before), strict=True)]
+    yield from with_slopes([*first, *(s for s in before if isinstance(s, Let)), *lets], TRIED)
+
+
+def _tried(name: sp.Symbol) -> sp.Symbol:
+    """The name in a trial."""
+    return called(f"{name.name}_tried", name)
 
 
 def sigma(branch: Branch) -> sp.Symbol:

@@ -34,10 +34,12 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.kinematics.branch_assignment import with_branch_signs
+from derive.kinematics.inverse import Inverse
 from derive.kinematics.scan.derivations import (
     SEARCHED,
     Scanned,
     named_apart,
+    naming_of,
     searched_flag,
     sigma,
     trial_on_branch,
@@ -59,25 +61,28 @@ def branch_statements(both: Scanned) -> tuple[Statement, ...]:
     """The inverse of one branch, up to the axis values of every joint."""
     mechanism = both.mechanism
     assert mechanism.search is not None
-    crossing = next(b for b in mechanism.branches if b.is_crossing)
-    solved = with_branch_signs(both.closed.derivation.statements, both.closed_branches)
-    closed = named_apart(_only(solved, SEARCHED), "closed")
     program = search_of(both)
-    arguments = _arguments(both, program)
     names = (FOUND, *(real(f"found_{j.symbol.name}") for j in mechanism.joints))
+    call = Call(program, _arguments(both, program), names, f"root scan along {mechanism.search.joint.name}")
     no_root = about_joint(mechanism.search.joint.symbol, Why.NO_ROOT)
+    if both.closed is None:
+        return (call, Require(FOUND, Status.UNREACHABLE, reason=no_root), *_chosen(both))
     return (
-        searched_flag(mechanism),
-        *closed,
-        Require(
-            sp.Or(SEARCHED, sp.Gt(sigma(crossing), 0)),
-            Status.UNREACHABLE,
-            reason=about_machine(Why.FIRST_CROSSING_ONLY),
-        ),
-        Call(program, arguments, names, f"root scan along {mechanism.search.joint.name}"),
+        *searched_flag(both),
+        *_closed(both, both.closed),
+        call,
         Require(sp.Or(sp.Not(SEARCHED), FOUND), Status.UNREACHABLE, reason=no_root),
         *_chosen(both),
     )
+
+
+def _closed(both: Scanned, closed: Inverse) -> tuple[Statement, ...]:
+    """The closed form, which has the first crossing alone."""
+    crossing = next(b for b in both.mechanism.branches if b.is_crossing)
+    solved = with_branch_signs(closed.derivation.statements, both.closed_branches)
+    is_first = sp.Or(SEARCHED, sp.Gt(sigma(crossing), 0))
+    only = Require(is_first, Status.UNREACHABLE, reason=about_machine(Why.FIRST_CROSSING_ONLY))
+    return (*named_apart(_only(solved, SEARCHED), "closed"), only)
 
 
 def _arguments(both: Scanned, program: Program) -> tuple[tuple[sp.Symbol, sp.Expr], ...]:
@@ -95,7 +100,7 @@ def search_given(both: Scanned) -> Program:
     """The arguments of the scan for all roots of a pose."""
     arguments = _arguments(both, search_of(both))
     read = [*(real(c) for c in COORDINATE_NAMES), *ROTATION_ENTRIES, *(j.reference for j in both.mechanism.joints)]
-    statements = (*finite(read), *both.closed.naming, searched_flag(both.mechanism))
+    statements = (*finite(read), *naming_of(both), *searched_flag(both))
     return normalise("search_given", statements, [Output(name.name, value) for name, value in arguments])
 
 
@@ -112,6 +117,9 @@ def _chosen(both: Scanned) -> Iterable[Let]:
     """The angle of every joint, from the scan or in closed form."""
     for joint in both.mechanism.joints:
         name = joint.symbol.name
+        if both.closed is None:
+            yield Let(joint.symbol, real(f"found_{name}"))
+            continue
         closed = Atan2(real(f"{sine(joint.symbol).name}_closed"), real(f"{cosine(joint.symbol).name}_closed"))
         yield Let(joint.symbol, Select(SEARCHED, real(f"found_{name}"), closed))
 

@@ -7,6 +7,8 @@ derived for it.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
@@ -43,10 +45,12 @@ from derive.ir.symbols import (
     real,
     sine,
 )
+from derive.kinematics.branch_assignment import Assignment
 from derive.kinematics.differential import jacobian_entries
 from derive.kinematics.forward import (
     derivation_at_axes,
 )
+from derive.kinematics.inverse import Inverse
 from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.kinematics.scan.derivations import SEARCHED, Scanned, named_apart, searched_flag, trial_on_branch, wanted
 from derive.kinematics.scan.programs import (
@@ -60,13 +64,10 @@ _SAMPLES = 64
 def margin_statements(both: Scanned) -> tuple[tuple[Statement, ...], tuple[Let, ...]]:
     """The statements at given axis values, and `branch_<name>` of every branch."""
     mechanism = both.mechanism
-    statements: list[Statement] = [searched_flag(mechanism), *both.forward.statements]
+    statements: list[Statement] = [*searched_flag(both), *both.forward.statements]
     own = {name for s in both.forward.statements for name in binds(s)}
     margins: dict[str, dict[str, sp.Expr]] = {}
-    for word, inverse, assignments in (
-        ("closed", both.closed, both.closed_branches),
-        ("tried", both.trial, both.trial_branches),
-    ):
+    for word, inverse, assignments in _solved(both):
         values = [Let(real(f"margin_{a.branch.name}"), a.margin(mechanism)) for a in assignments]
         at_axes = derivation_at_axes(mechanism, inverse, both.forward)
         apart = named_apart((*at_axes, *values), word, own)
@@ -76,14 +77,27 @@ def margin_statements(both: Scanned) -> tuple[tuple[Statement, ...], tuple[Let, 
     lets, indicators = _indicators(both)
     statements += [let for let in lets if let.name not in own]
     for b, value in zip(both.asked, indicators, strict=True):
-        margins[b.name]["tried"] = value / SCALE
+        has_no_unit = both.closed is None and not _is_length(mechanism, b)
+        margins.setdefault(b.name, {})["tried"] = value if has_no_unit else value / SCALE
     determinant, scaled = determinant_margin(both)
     statements += determinant
     found = [
-        Let(real(f"branch_{name}"), Select(SEARCHED, both_values["tried"], both_values["closed"]))
+        Let(real(f"branch_{name}"), _on_either(both, both_values["tried"], both_values.get("closed")))
         for name, both_values in margins.items()
     ]
     return tuple(statements), (*found, _crossing_margin(both, scaled, margins))
+
+
+def _solved(both: Scanned) -> Iterator[tuple[str, Inverse, tuple[Assignment, ...]]]:
+    """The derivations, each with the word that its names end in, and with its branches."""
+    if both.closed is not None:
+        yield "closed", both.closed, both.closed_branches
+    yield "tried", both.trial, both.trial_branches
+
+
+def _on_either(both: Scanned, tried: sp.Expr, closed: sp.Expr | None) -> sp.Expr:
+    """The value where the joint is searched, and that of the closed form where it is not."""
+    return tried if both.closed is None or closed is None else Select(SEARCHED, tried, closed)
 
 
 def _indicators(both: Scanned) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
@@ -99,7 +113,7 @@ def _crossing_margin(both: Scanned, determinant: sp.Expr, margins: dict[str, dic
     slope = _orientation(both) * determinant
     for a in both.trial_branches:
         slope = slope * Select(sp.Ge(margins[a.branch.name]["tried"], 0), sp.Integer(1), sp.Integer(-1))
-    return Let(real(f"branch_{crossing.name}"), Select(SEARCHED, slope, sp.Integer(1)))
+    return Let(real(f"branch_{crossing.name}"), _on_either(both, slope, sp.Integer(1)))
 
 
 def determinant_margin(both: Scanned) -> tuple[tuple[Statement, ...], sp.Expr]:
@@ -117,6 +131,8 @@ def determinant_margin(both: Scanned) -> tuple[tuple[Statement, ...], sp.Expr]:
 
 
 def _determinant_scale(both: Scanned) -> sp.Expr:
+    if both.closed is None:
+        return sp.Integer(1)
     scale = sp.Mul(*[a.determinant.scale for a in both.closed_branches])
     lengths = {s.name: s.value for s in both.closed.derivation.statements if isinstance(s, Let)}
     scale = scale.xreplace({name: lengths[name] for name in scale.free_symbols & lengths.keys()})

@@ -7,7 +7,7 @@ whether they lie on the wanted branch. `find_root` finds the root that is neares
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -17,11 +17,12 @@ from derive.equations.named_pose import named_pose
 from derive.ir.constants import BOUNDARY, DAMPED, IMPROVEMENTS, MET, NEARLY
 from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, Root, Select
-from derive.ir.program import FindRoot, Iterate, Let, Output, Program, Require, Solve, Statement, Status, rewritten
+from derive.ir.program import FindRoot, Iterate, Let, Output, Program, Solve, Statement, Status, binds, rewritten
 from derive.ir.symbols import (
     COORDINATE_NAMES,
     FREED,
     FREED_ANGLE,
+    PLACE,
     ROTATION_ENTRIES,
     SCALE,
     TRIED,
@@ -32,6 +33,7 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.kinematics.differential import jacobian_entries
+from derive.kinematics.scan.guards import conditions_of, least, room_of
 from derive.kinematics.scan.slopes import slope_name, with_slopes
 
 START = real("start")
@@ -82,13 +84,15 @@ def try_program(trial: Trial) -> Program:
 
 def find_program(mechanism: Mechanism, trial: Program, finish: Program, arguments: Sequence[sp.Symbol]) -> Program:
     """The program that finds the root on the wanted branch that is nearest to the start."""
+    search = mechanism.search
+    assert search is not None
     names = (FOUND, *(real(o.name) for o in finish.outputs[1:]))
-    note = f"root scan along {mechanism.search.joint.name if mechanism.search else ''}"
-    found = FindRoot(trial, finish, START, LOOKED_FOR, names, tuple(arguments), note)
+    note = f"root scan along {search.joint.name}"
+    is_always = search.where is None
+    found = FindRoot(trial, finish, START, sp.true if is_always else LOOKED_FOR, names, tuple(arguments), note)
     program = normalise("find_root", (found,), [Output(n.name, n) for n in names])
-    return replace(
-        program, summary="The joints at the root that is nearest to the start; zeros where the machine needs no scan"
-    )
+    otherwise = "there is none" if is_always else "the machine needs no scan"
+    return replace(program, summary=f"The joints at the root that is nearest to the start; zeros where {otherwise}")
 
 
 def finish_program(mechanism: Mechanism, trial: Trial, wanted: Sequence[sp.Expr], determinant: sp.Symbol) -> Program:
@@ -186,21 +190,9 @@ def _errors() -> list[sp.Expr]:
     return [*places, *((turn[i, j] - turn[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0)))]
 
 
-def _slack(condition: sp.Basic) -> sp.Expr:
-    """By how much a condition holds, without a unit: 1 - c^2 of a cosine c whose size is at most 1; of a radicand, by
-    how much it is above its bound, divided by the scale of which the bound is `BOUNDARY`.
-    """
-    if isinstance(condition, sp.Le):
-        (cosine_value,) = condition.lhs.args
-        return 1 + BOUNDARY - cosine_value**2
-    radicand, bound = condition.args
-    return radicand / (-bound / BOUNDARY).as_coeff_Mul()[1] + BOUNDARY
-
-
 def trial_of(statements: Sequence[Statement], value: sp.Expr, angles: Sequence[tuple[sp.Symbol, sp.Symbol]]) -> Trial:
     """A trial from solved statements. angles: those that may be free, each with its value where it is."""
-    guards = [s.condition for s in statements if isinstance(s, Require)]
-    guard = _slack(guards[0]) if guards else sp.Integer(1)
+    rooms, guard = _rooms(conditions_of(statements))
     found: list[Let] = []
     choices: dict[sp.Expr, sp.Expr] = {}
     conditions: dict[sp.Expr, sp.Basic] = {}
@@ -216,7 +208,16 @@ def trial_of(statements: Sequence[Statement], value: sp.Expr, angles: Sequence[t
     for s in statements:
         if isinstance(s, Let):
             found.append(replace(s, value=_freed(s.value, choices, conditions)))
-    return Trial(tuple(found), value, guard, tuple(a for a, _ in angles))
+    return Trial((*found, *rooms), value, guard, tuple(a for a, _ in angles))
+
+
+def _rooms(conditions: Sequence[sp.Basic]) -> tuple[list[Let], sp.Expr]:
+    """The statements that bind by how much every condition holds, where there are several, and the least of these."""
+    rooms = [room_of(c) for c in conditions]
+    if len(rooms) < 2:
+        return [], rooms[0] if rooms else sp.Integer(1)
+    lets = [Let(real(f"room_{k}"), room) for k, room in enumerate(rooms, 1)]
+    return lets, least([let.name for let in lets])
 
 
 def _freed(value: sp.Expr, choices: dict[sp.Expr, sp.Expr], conditions: dict[sp.Expr, sp.Basic]) -> sp.Expr:
@@ -234,6 +235,15 @@ def _roots_named(statements: Sequence[Let]) -> list[Let]:
         found += [Let(name, root) for root, name in names.items()]
         found.append(replace(s, value=s.value.xreplace(names)))
     return found
+
+
+def names_of_search(mechanism: Mechanism, trial: Trial) -> Iterator[sp.Symbol]:
+    """The names that the programs of a search bind, or that are their arguments."""
+    yield from (*PLACE, *GOAL.values(), START, LOOKED_FOR, FOUND, flag(FITS))
+    yield from (real(n) for n in ("value", "guard", "remainder", "slope", "room", "room_slope", "error"))
+    yield from (s.name for s in trial.statements)
+    loop, _ = _newton(mechanism, [_ZERO] * len(mechanism.joints))
+    yield from (name for s in loop.step for name in binds(s))
 
 
 def with_goal(statements: Sequence[Statement]) -> tuple[Statement, ...]:

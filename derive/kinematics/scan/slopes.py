@@ -18,7 +18,7 @@ import sympy as sp
 
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let, Statement
-from derive.ir.symbols import real
+from derive.ir.symbols import is_condition, real
 
 _ZERO = sp.Integer(0)
 
@@ -29,11 +29,14 @@ def slope_name(name: sp.Symbol) -> sp.Symbol:
 
 
 def with_slopes(statements: Sequence[Statement], variable: sp.Symbol) -> tuple[Statement, ...]:
-    """The statements, each followed by its slope where that is not zero."""
-    slopes: dict[sp.Symbol, sp.Expr] = {variable: sp.Integer(1)}
+    """The statements, each followed by its slope where that is not zero; slopes that are bound already stay."""
+    bound = {s.name for s in statements if isinstance(s, Let)}
+    known = {name: slope_name(name) for name in bound if slope_name(name) in bound}
+    given = {*known.values()}
+    slopes: dict[sp.Symbol, sp.Expr] = {variable: sp.Integer(1), **known}
     found: list[Statement] = []
     for s in statements:
-        if not isinstance(s, Let):
+        if not isinstance(s, Let) or is_condition(s.value) or s.name in known or s.name in given:
             found.append(s)
             continue
         changed = _slope(s.value, slopes, s.name)

@@ -77,6 +77,11 @@ class Cells:
         """The joint at s."""
         return np.asarray(self.base + self.scale * np.where(self.curved, s * s, s))
 
+    def extent(self) -> Reals:
+        """The way of the joint from one end to the other, also where it turns back in between."""
+        way = np.where(self.curved, np.abs(self.low) + np.abs(self.high), 1.0)
+        return np.asarray(np.abs(self.scale) * (self.high - self.low) * way)
+
     def side(self, s: Reals) -> Rows:
         """The side at s."""
         return np.where(self.curved & (s < 0.0), -1, 1)
@@ -123,7 +128,8 @@ def look(cells: Cells) -> Verdicts:
     (f, df, g, dg), (f1, df1, g1, dg1) = (e[:, :DIRECTIONS].T for e in (cells.first, cells.last))
     turned = turned_over(cells)
     fast = turned.min(axis=1, initial=1.0) < TURNED
-    wide = np.abs(cells.joint(cells.high) - cells.joint(cells.low)) > NARROW
+    seam = cells.curved & (cells.low >= -2.0 * SEAM) & (cells.high <= 2.0 * SEAM)
+    wide = (cells.extent() > NARROW) & ~seam
     jumps = fast & ~wide & ((g >= -GAP) | (g1 >= -GAP))
     slow = ~fast
     returns = slow & (width > FLAT) & ~cells.curved & _hides_roots(g, dg, g1, dg1, width)
@@ -133,7 +139,6 @@ def look(cells: Cells) -> Verdicts:
     changes = f * f1 <= 0.0
     doubtful = seen & _hides_roots(f, df, f1, df1, width)
     small = np.minimum(np.abs(f), np.abs(f1)) <= TOUCHED
-    seam = cells.curved & (cells.low >= -2.0 * SEAM) & (cells.high <= 2.0 * SEAM)
     again = doubtful & ~small & (width > FINEST) & ~seam
     touches = doubtful & (small | seam) & ~changes
     holds = seen & changes & ~again

@@ -177,9 +177,10 @@ class _Search:
         width = high - low
         f, df, g, dg = first[:4]
         f1, df1, g1, dg1 = last[:4]
+        seam = curved and -2.0 * SEAM <= low and high <= 2.0 * SEAM
         if _turned(first, last) < TURNED:
-            joints = [self.place(base, scale, curved, s)[0] for s in (low, high)]
-            if abs(joints[1] - joints[0]) > NARROW:
+            way = abs(low) + abs(high) if curved else 1.0
+            if abs(scale) * width * way > NARROW and not seam:
                 return self.halves(cell, low + ASIDE * width)
             if g >= -GAP or g1 >= -GAP:
                 self.jump(cell)
@@ -193,7 +194,6 @@ class _Search:
         changes = f * f1 <= 0.0
         doubtful = _hides_roots(f, df, f1, df1, width)
         small = min(abs(f), abs(f1)) <= TOUCHED
-        seam = curved and -2.0 * SEAM <= low and high <= 2.0 * SEAM
         if doubtful and width > FINEST and not small and not seam:
             s = low + self.where(depth, f, df, f1, df1, width)
             return self.halves(cell, (SEAM if high > 1.5 * SEAM else -SEAM) if curved and abs(s) < SEAM else s)

@@ -195,3 +195,24 @@ def test_both_searches_offer_the_same() -> None:
         circle = np.linspace(0.0, 2 * np.pi, 200 * CELLS, endpoint=False) + 0.1
         signs = np.sign(value(circle))
         assert len(roots_of([(t, 1.0, 0.0) for t in one], value)) == np.count_nonzero(signs != np.roll(signs, -1))
+
+
+@BOTH
+@pytest.mark.parametrize("start", (-2.0, 0.3, 0.31, 0.35, 1.7))
+@pytest.mark.parametrize("root", (0.02, 0.06, 0.1))
+def test_a_direction_that_turns_around_an_end(
+    search: Callable[[Trial, float], list[tuple[float, float, float]]], start: float, root: float
+) -> None:
+    """Both ends of a cell around an end of the reach are at one joint: directions turn on the way there and back."""
+    centre, half = 1.0, 0.7
+
+    def trial(t: Array, side: Array, freed: Array, angle: Array) -> tuple[Array, ...]:
+        guard, rate = np.cos(t - centre) - np.cos(half), -np.sin(t - centre)
+        ahead = side * np.sqrt(np.maximum(guard, 0.0))
+        slope = np.where(guard > 0.0, rate / np.where(guard > 0.0, 2.0 * ahead, 1.0), 0.0)
+        return ahead - root, slope, guard, rate, np.cos(6.0 * ahead), np.sin(6.0 * ahead)
+
+    away = np.arccos(np.cos(half) + root**2)
+    wanted = [t for t, side, _ in search(trial, start) if side > 0]
+    for expected in (centre - away, centre + away):
+        assert any(abs(np.exp(1j * t) - np.exp(1j * expected)) < 1e-9 for t in wanted)

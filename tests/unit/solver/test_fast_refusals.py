@@ -35,10 +35,9 @@ L = LENGTHS
 TWISTS = (pi / 3, pi / 4, pi / 6, pi / 3, pi / 4, pi / 6)
 
 _SHOULDER_AND_ARM = Rz(A1) * Tz(L[0]) * Ry(A2) * Tz(L[1]) * Ry(A3) * Txyz(L[3], 0, L[2])
-_HELP = (
-    "it would help if the axes of three neighbouring joints met in one point or were parallel, or if one of these "
-    "joints were known"
-)
+_HELP = "it would help if the axes of three neighbouring joints met in one point or were parallel"
+_KNOWN = f"{_HELP}, or if one of these joints were known"
+_SEARCHED = f"{_HELP}; with any one of these joints known the others are not solved either"
 _TOO_MANY = (
     "one joint too many: the task commands 6 quantities (x, y, z, turn x, turn y, turn z), and 7 joints are to be "
     "solved for; name the one that is held at the reference: held="
@@ -65,22 +64,14 @@ def chain_symbols(chain: Chain) -> set[sp.Symbol]:
 
 
 REFUSED = {
-    "wrist axes that miss each other sideways": (
-        arm(_SHOULDER_AND_ARM * Rx(A4) * Ty(L[4]) * Ry(A5) * Tx(L[5]) * Rx(A6), JOINTS[:6]),
-        "no subproblem determines q1, q2, q3, q4, q5, q6: 6 unknowns in 3 equations (x, y, z) and the commanded "
-        f"rotation; {_HELP}; equations left:\n    x: 9 terms in q1, q2, q3, q4\n",
-    ),
-    "a shoulder off its axis, and a wrist that misses": (
-        arm(Tx(L[6]) * _SHOULDER_AND_ARM * Rx(A4) * Tz(L[4]) * Ry(A5) * Tx(L[5]) * Rx(A6), JOINTS[:6]),
-        f"6 unknowns in 3 equations (x, y, z) and the commanded rotation; {_HELP}",
-    ),
     "six axes at any angles": (
         arm(denavit_hartenberg(*zip(JOINTS[:6], L[:6], L[6:12], TWISTS, strict=True)), JOINTS[:6]),
-        f"6 unknowns in 3 equations (x, y, z) and the commanded rotation; {_HELP}; equations left:\n    x: 89 terms in",
+        f"6 unknowns in 3 equations (x, y, z) and the commanded rotation; {_SEARCHED}; equations left:\n"
+        "    x: 89 terms in",
     ),
     "five axes with offsets everywhere": (
         arm(_SHOULDER_AND_ARM * Rx(A4) * Ty(L[4]) * Ry(A5) * Tx(L[5]), JOINTS[:5], Turning.DIRECTION),
-        f"5 unknowns in 3 equations (x, y, z) and the commanded direction; {_HELP}",
+        f"5 unknowns in 3 equations (x, y, z) and the commanded direction; {_KNOWN}",
     ),
     "seven axes": (
         arm(Rz(A1) * Ry(A2) * Rz(A3) * Tz(L[0]) * Ry(A4) * Rz(A5) * Tz(L[1]) * Ry(A6) * Rz(A7) * Tz(L[2]), JOINTS),

@@ -1,0 +1,114 @@
+"""The choice of the joint that is searched, where no subproblem solves a chain.
+
+With one joint known the others are solved, and one equation is left: the residual of a trial along this joint. Every
+rotary joint is tried in turn. The positions are solved before the rotation, so the equations of the positions may hold
+no more unknown joints than there are equations: where they do, nothing is derived. Of several joints that would do,
+the one is taken whose trial has the fewest branches, then the fewest places where it may be out of reach, then the
+fewest operations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.description.mechanism import Branch, Joint, Mechanism, Search, Turning, crossing
+from derive.equations.closure import closure_at
+from derive.equations.conditions import with_conditions
+from derive.ir.program import Let
+from derive.ir.symbols import cosine, names_in, sine
+from derive.kinematics.forward import pose_at_axes
+from derive.kinematics.inverse import Inverse, solve_at, solve_pose
+from derive.kinematics.scan.guards import guards_of
+from derive.kinematics.scan.named_steps import with_named_steps
+from derive.kinematics.shared_names import refuse_shared_names
+from derive.solver.solve import Undetermined, Unsolved
+from derive.solver.unsolved import searched_in_vain
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    joint: Joint
+    trial: Inverse
+
+    @property
+    def rank(self) -> tuple[int, int, int]:
+        """Smaller is better."""
+        derivation = self.trial.derivation
+        size = sum(int(sp.count_ops(s.value)) for s in derivation.statements if isinstance(s, Let))
+        return (len(derivation.determinants), len(guards_of(derivation) or ()), size)
+
+
+def with_search(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with the joint that is searched, if its closure has no closed form. Raises `Unsolved` where no
+    joint would do.
+    """
+    if mechanism.search is not None or not _may_be_searched(mechanism):
+        return mechanism
+    try:
+        solve_pose(mechanism)
+    except Undetermined:
+        raise
+    except Unsolved as problem:
+        found = min(_candidates(mechanism), key=lambda c: c.rank, default=None)  # the first of equals: deterministic
+        if found is None:
+            raise Unsolved(searched_in_vain(str(problem))) from None
+        return _searched(mechanism, found)
+    return mechanism
+
+
+def _may_be_searched(mechanism: Mechanism) -> bool:
+    """Whether the pose of the whole flange is commanded, and no joint is held."""
+    full = mechanism.task.turning is Turning.FULL and mechanism.task.position == "xyz"
+    return mechanism.chain is not None and full and not mechanism.held
+
+
+def _candidates(mechanism: Mechanism) -> Iterator[_Candidate]:
+    for joint in mechanism.joints:
+        if not joint.is_angle or not _may_be_solved(mechanism, joint):
+            continue
+        try:
+            trial = solve_at(mechanism, joint)
+        except Unsolved:
+            continue
+        if len(trial.derivation.residuals) == 1 and guards_of(trial.derivation) is not None:
+            yield _Candidate(joint, trial)
+
+
+def _may_be_solved(mechanism: Mechanism, known: Joint) -> bool:
+    """Whether, with one joint known, the equations of the positions hold no more unknown joints than there are
+    equations.
+    """
+    unknown = [j for j in mechanism.joints if j != known]
+    read = [names_in(e.expression) for e in closure_at(mechanism, known).equations]
+    present = [j for j in unknown if any(names & {j.symbol, cosine(j.symbol), sine(j.symbol)} for names in read)]
+    return len(present) <= len(read)
+
+
+def _searched(mechanism: Mechanism, found: _Candidate) -> Mechanism:
+    """The mechanism with its search; its last branch is the sign of the slope at a root."""
+    forward, trial = pose_at_axes(mechanism), found.trial
+    refuse_shared_names(mechanism, (*forward.statements, *trial.naming, *trial.derivation.statements))
+    own = tuple(b for b in mechanism.branches if b.is_crossing)
+    others = tuple(b for b in mechanism.branches if not b.is_crossing)
+    last = own or (crossing("crossing", rising=+1, falling=-1),)
+    chosen = replace(mechanism, branches=(*others, *last), search=Search(found.joint))
+    named = with_named_steps(chosen, trial, forward)
+    noted = replace(named, notes=(*mechanism.notes, *_notes(named, found.joint, others)))
+    return with_conditions(noted, trial.derivation.conditions)
+
+
+def _notes(mechanism: Mechanism, joint: Joint, stated: Collection[Branch]) -> Iterator[str]:
+    """What to know about the search, and about the branches that the description does not state."""
+    (last,) = (b for b in mechanism.branches if b.is_crossing)
+    yield (
+        f"No closed form is known: with {joint.name} known the other joints are solved, and one equation is left. The "
+        f"inverse looks for its roots along {joint.name}, all around the circle. The byte {last.name} tells whether "
+        f"the residual rises or falls with {joint.name} at the root; of the roots of one branch the answer is the one "
+        f"whose {joint.name} is nearest to the reference."
+    )
+    for b in mechanism.branches:
+        if b not in stated and not b.is_crossing:
+            yield f"The byte {b.name} is the sign of {b.indicator}: 1 where it is {b.names[0]}, 2 where {b.names[1]}."

@@ -1,0 +1,77 @@
+"""Arms without a closed form: the compiler finds the joint that is searched."""
+
+from __future__ import annotations
+
+from sympy import cos, sin
+
+from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz
+from derive.mechanism import (
+    Mechanism,
+    Task,
+    Turning,
+    Vendor,
+    angle,
+    branch,
+    distance,
+    length,
+    radians,
+    rotary,
+)
+
+A1, A2, A3, A4, A5, A6 = (rotary(f"A{k}", f"turn A{k}") for k in range(1, 7))
+UPPER, FORE = length("link_a", "upper arm", nominal=540.0), length("link_b", "forearm", nominal=540.0)
+SIDE = distance("sideways", "axis A4 to axis A5, sideways", nominal=150.0)
+FLANGE = length("link_c", "wrist to flange", nominal=160.0)
+BASE = distance("shoulder_y", "axis A1 to the arm, sideways", nominal=0.03)
+M_UPPER, M_FORE = length("link_a", "upper arm", nominal=0.41), length("link_b", "forearm", nominal=0.31)
+M_ELBOW = distance("between", "elbow of the wrist", nominal=0.085)
+M_FLANGE = length("link_c", "wrist to flange", nominal=0.2)
+LEAN = angle("lean", "lean of the axes of the wrist against each other", nominal=60.0, low=40.0, high=80.0)
+
+
+def _arm(name: str, chain: object, parameters: tuple[object, ...], branches: tuple[object, ...] = ()) -> Mechanism:
+    return Mechanism(
+        name=f"Kin_{name}",
+        vendor=Vendor.TEXTBOOK,
+        family="articulated",
+        source="the tests",
+        summary="An arm whose wrist axes miss each other.",
+        joints=(A1, A2, A3, A4, A5, A6),
+        parameters=parameters,  # type: ignore[arg-type]
+        chain=chain,  # type: ignore[arg-type]
+        task=Task("xyz", Turning.FULL),
+        branches=branches,  # type: ignore[arg-type]
+        offset_interface=False,
+    )
+
+
+SEARCHED = {
+    "arm whose wrist goes sideways": _arm(
+        "Sideways",
+        Rz(A1) * Ry(A2) * Tz(UPPER) * Ry(A3) * Tx(FORE) * Rx(A4) * Ty(SIDE) * Ry(A5) * Rx(A6) * Tx(FLANGE),
+        (UPPER, FORE, SIDE, FLANGE),
+    ),
+    "arm in metres with a bent wrist and a shoulder beside its axis": _arm(
+        "Bent",
+        Rz(A1)
+        * Ty(BASE)
+        * Ry(A2)
+        * Tz(M_UPPER)
+        * Ry(A3)
+        * Tx(M_FORE)
+        * Rx(A4)
+        * Rz(radians(LEAN))
+        * Rx(A5)
+        * Tx(M_ELBOW)
+        * Rz(-radians(LEAN))
+        * Rx(A6)
+        * Tx(M_FLANGE),
+        (BASE, M_UPPER, M_FORE, M_ELBOW, M_FLANGE, LEAN),
+        (
+            branch("shoulder", M_UPPER * sin(A2) + M_FORE * cos(A2 + A3), front=+1, back=-1),
+            branch("wrist", sin(A5), positive=+1, negative=-1),
+            branch("elbow", cos(A3), up=+1, down=-1),
+        ),
+    ),
+}
+"""One without any branch stated, one with a branch that no step of the trial decides."""

@@ -1,0 +1,88 @@
+"""The joint that is searched where no subproblem solves a chain, and the branches of its trial."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from sympy import cos, sin
+
+from derive.description.mechanism import DescriptionError, Mechanism, Parameter, Task, Turning, branch, length
+from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
+from derive.kinematics.build import build
+from derive.kinematics.scan.choice import with_search
+from derive.solver.solve import Undetermined
+from tests.unit.kinematics.inventions import invention
+from tests.unit.solver.test_fast_refusals import JOINTS, LENGTHS, L
+
+A1, A2, A3, A4, A5, A6 = JOINTS[:6]
+ARM = Rz(A1) * Ry(A2) * Tz(L[1]) * Ry(A3) * Tx(L[2]) * Rx(A4)
+SIDEWAYS = ARM * Ty(L[3]) * Ry(A5) * Rx(A6) * Tx(L[4])
+
+
+def arm(chain: Chain, *branches: object, parameters: tuple[Parameter, ...] = LENGTHS) -> Mechanism:
+    read = {s for factor in chain.factors for s in factor.amount.free_symbols}
+    return invention(
+        lambda p, q: (p["l1"], p["l1"], p["l1"]),
+        parameters=tuple(p for p in parameters if p.symbol in read),
+        joints=JOINTS[:6],
+        chain=chain,
+        task=Task("xyz", Turning.FULL),
+        branches=branches,
+        offset_interface=False,
+    ).mechanism
+
+
+def chosen(mechanism: Mechanism) -> str | None:
+    """The name of the joint that is searched."""
+    search = with_search(mechanism).search
+    return None if search is None else search.joint.name
+
+
+@pytest.mark.parametrize(
+    ("chain", "joint"),
+    [
+        (SIDEWAYS, "A6"),
+        (ARM * Ry(A5) * Tz(L[3]) * Rx(A6) * Tx(L[4]), "A6"),
+        (ARM * Ry(A5) * Rx(A6) * Tx(L[4]), None),
+        (Rz(A6) * Tx(L[4]) * Rx(A5) * Tz(L[3]) * Rz(A4) * Tx(L[2]) * Ry(A3) * Tz(L[1]) * Ry(A2) * Rz(A1), "A6"),
+    ],
+)  # fmt: skip
+def test_the_joint(chain: Chain, joint: str | None) -> None:
+    """Of the arm that stands on its flange the first joint, for the same reason."""
+    assert chosen(arm(chain)) == joint
+
+
+def test_steps_that_no_branch_names_get_one() -> None:
+    """Their indicators are those of the arm: how far the wrist is in front of A1, and which way the elbow bends."""
+    shoulder, elbow, last = with_search(arm(SIDEWAYS)).branches
+    assert (shoulder.name, elbow.name, last.name) == ("side_q1", "side_q3", "crossing")
+    q2, q3, l1, l2 = A2.symbol, A3.symbol, L[1].symbol, L[2].symbol
+    assert (shoulder.indicator - l1 * sin(q2) - l2 * cos(q2 + q3)).expand(trig=True) == 0
+    assert elbow.indicator == -cos(q3)
+    assert last.is_crossing
+
+
+def test_branches_that_are_stated_stay() -> None:
+    """Those of a step stand first; one that no step decides is read off the root; the crossing comes last."""
+    wrist, elbow = branch("wrist", sin(A5), up=+1, down=-1), branch("elbow", cos(A3), up=+1, down=-1)
+    found = with_search(arm(SIDEWAYS, wrist, elbow))
+    assert [b.name for b in found.branches] == ["elbow", "side_q1", "wrist", "crossing"]
+    assert found.branches[0] == elbow
+    assert any("looks for its roots along A6" in note for note in found.notes)
+
+
+def test_nothing_is_searched_that_nothing_determines() -> None:
+    """Two joints about one axis: no search finds their parts of the sum."""
+    with pytest.raises(Undetermined, match="the closure does not determine"):
+        with_search(
+            arm(Rz(A1) * Rz(A2) * Tz(L[1]) * Ry(A3) * Tx(L[2]) * Rx(A4) * Ty(L[3]) * Ry(A5) * Rx(A6) * Tx(L[4]))
+        )
+
+
+@pytest.mark.parametrize("name", ["side", "goal_x", "residual_tried", "rate_1_1"])
+def test_a_parameter_named_like_a_value_of_the_search_is_refused(name: str) -> None:
+    strange = replace(length(name, "offset of the wrist", nominal=150.0))
+    chain = ARM * Ty(strange) * Ry(A5) * Rx(A6) * Tx(L[4])
+    with pytest.raises(DescriptionError, match=f"parameter '{name}' has a name that the derivation itself uses"):
+        build(arm(chain, parameters=(*LENGTHS, strange)))
