@@ -10,6 +10,7 @@ from itertools import combinations
 import sympy as sp
 
 from derive.algebra.angle_sums import name_of
+from derive.description.amounts import wrong_amounts
 from derive.description.mechanism import (
     ROTATION,
     DescriptionError,
@@ -58,6 +59,7 @@ def _problems(mechanism: Mechanism) -> Iterator[str]:
         yield from _joint(mechanism, joint)
     yield from _held(mechanism)
     yield from _periods(mechanism)
+    yield from wrong_amounts(mechanism)
     yield from _shape(mechanism)
     yield from _symbols(mechanism)
     yield from _constraints(mechanism)

@@ -89,6 +89,17 @@ def fixed_names(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
     return (*(p.symbol for p in mechanism.parameters), *(let.name for let in fixed_lets(mechanism)))
 
 
+def fixed_numbers(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
+    """The values of the names that stand for numbers of the chain, and of the sines and cosines of such."""
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for p in (p for p in mechanism.parameters if p.fixed is not None):
+        found[p.symbol] = sp.Float(p.nominal)
+        if p.role is Role.ANGLE:
+            radians = sp.Float(p.nominal) * sp.pi / 180
+            found |= {sine(p.symbol): sp.sin(radians).evalf(), cosine(p.symbol): sp.cos(radians).evalf()}
+    return found
+
+
 def fixed_squares(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
     """The squares of these roots, by their names."""
     parameters = tuple(p.symbol for p in mechanism.parameters)

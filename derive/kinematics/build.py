@@ -14,6 +14,7 @@ from derive.description.mechanism import (
     Mechanism,
     Turning,
 )
+from derive.description.numbers import almost_right_angles, with_named_numbers
 from derive.equations.axes import finite
 from derive.equations.choices import with_choices
 from derive.equations.closure import flange_rotation, heading_of
@@ -84,6 +85,15 @@ from derive.solver.solve import Unsolved
 
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
+    try:
+        return _built(with_named_numbers(mechanism))
+    except (Unsolved, DescriptionError) as problem:
+        if told := almost_right_angles(mechanism):
+            raise type(problem)(f"{problem}; {told}") from None
+        raise
+
+
+def _built(mechanism: Mechanism) -> Kinematics:
     check_joints(mechanism)
     if mechanism.is_platform:
         check_home(mechanism)

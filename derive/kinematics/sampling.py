@@ -41,8 +41,14 @@ def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False)
         if optional_zero and parameter.role is Role.DISTANCE:
             value = 0.0
         values[parameter.name] = np.asarray(value)
+    values |= fixed_values(mechanism)
     values[SCALE.name] = np.asarray(evaluate(machine_scale(mechanism), values), dtype=float)
     return values
+
+
+def fixed_values(mechanism: Mechanism) -> Samples:
+    """The numbers of a chain that have names."""
+    return {p.name: np.asarray(p.nominal) for p in mechanism.parameters if p.fixed is not None}
 
 
 def _reach(mechanism: Mechanism, machine: Samples) -> float:

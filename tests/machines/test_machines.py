@@ -10,6 +10,7 @@ import softkin
 from numpy.typing import NDArray
 from softkin import KinematicsError, Status
 
+from tests.machines import angle_machines
 from tests.machines.collection import HELD, MACHINES, PARAMETERS_DECIDE
 from tests.machines.made import Array, Made, made
 from tests.text.controller import OK
@@ -34,6 +35,7 @@ EXPECTED = {
     "numbers for lengths": 2,
     "flange that turns against two axes": 4,
     "palletizer with both motors at the base": 4,
+    **angle_machines.EXPECTED,
 }
 """The largest number of solutions, as a search of the closure from many starts finds them."""
 MOST = 300
