@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
@@ -51,17 +53,22 @@ def fixed_values(mechanism: Mechanism) -> Samples:
     return {p.name: np.asarray(p.nominal) for p in mechanism.parameters if p.fixed is not None}
 
 
-def _reach(mechanism: Mechanism, machine: Samples) -> float:
+def size_of(mechanism: Mechanism, machine: Mapping[str, NDArray[np.float64]]) -> float:
     """A length of the size of the machine: of one without a length that is never zero, the sum of its distances; of a
     loop at least its largest coordinate that is a number or a distance.
     """
-    distances = [abs(float(machine[p.name])) for p in mechanism.parameters if p.role is Role.DISTANCE]
-    size = float(machine[SCALE.name]) if has_length(mechanism) else sum(distances) or 1.0
+    distances = [abs(_first(machine[p.name])) for p in mechanism.parameters if p.role is Role.DISTANCE]
+    size = _first(machine[SCALE.name]) if has_length(mechanism) else sum(distances) or 1.0
     if not mechanism.rods:
         return size
     ends = [sp.sympify(v) for rod in mechanism.rods for v in (*rod.base, *rod.plate)]
     numbers = [abs(float(t)) for end in ends for t in sp.Add.make_args(end) if t.is_number]
     return max(size, *distances, *numbers, 0.0)
+
+
+def _first(values: NDArray[np.float64]) -> float:
+    """The value of the first of some equal machines."""
+    return float(np.ravel(values)[0])
 
 
 def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, share: float = 1.0) -> Samples:
@@ -73,7 +80,7 @@ def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, s
     values: Samples = {}
     for joint in mechanism.joints:
         low, high = joint.domain or ((-180.0, 180.0) if joint.is_angle else (-1.0, 1.0))
-        reach = 1.0 if joint.is_angle else _reach(mechanism, machine)
+        reach = 1.0 if joint.is_angle else size_of(mechanism, machine)
         high = min(high, 1e3 if joint.is_angle else 2.0)
         drawn = joint.nominal + share * (generator.uniform(low, high, count) * reach - joint.nominal)
         values[joint.axis.name] = values[joint.reference.name] = drawn + float(machine[joint.offset.name])
