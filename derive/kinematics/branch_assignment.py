@@ -36,8 +36,9 @@ from derive.kinematics.forward import (
     derivation_at_axes,
 )
 from derive.kinematics.inverse import Inverse
-from derive.kinematics.sampling import NO_POSE, possible_axes, sample_machine
-from derive.plate.turning import given_pose, samples_near_home
+from derive.kinematics.no_pose import near_home, why_no_pose
+from derive.kinematics.sampling import possible_axes, sample_machine
+from derive.plate.turning import given_pose
 
 _SAMPLES = 64
 
@@ -130,7 +131,7 @@ def _signs(
     program = normalise("signs", statements, [Output(n.name.name, n.name) for n in named])
     machine = sample_machine(mechanism, 21, optional_zero)
     if mechanism.is_platform:
-        samples = samples_near_home(mechanism, inverse.known, inverse.signs, machine, 22)
+        samples = near_home(mechanism, inverse.known, inverse.signs, machine, 22)
     else:
         machine |= {f"point_{c}": np.asarray(0.0) for c in "xyz"}
         samples = possible_axes(mechanism, machine, _SAMPLES, 22, program)
@@ -138,7 +139,7 @@ def _signs(
     values, status = run(program, samples)
     good = np.broadcast_to(status == Status.OK, (count,))
     if not good.any():
-        raise DescriptionError(NO_POSE)
+        raise DescriptionError(why_no_pose(mechanism))
     rows = [np.sign(np.broadcast_to(values[n.name.name], (count,))[good]) for n in named]
     return rows[: len(determinants)], rows[len(determinants) :]
 

@@ -23,10 +23,6 @@ from derive.kinematics.parameters import (
 Samples = dict[str, NDArray[np.float64]]
 ENOUGH = 16
 """Possible poses by which a sign or an exponent is told."""
-NO_POSE = (
-    "no sampled pose is possible: a quantity that must be positive never is, or the loop never closes; check the "
-    "nominal values of parameters and joints"
-)
 _MANY = 1024
 _SHARES = (1.0, 0.5, 0.25, 0.1)
 """Of the ranges, in which further poses are drawn."""
@@ -46,6 +42,19 @@ def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False)
     values |= fixed_values(mechanism)
     values[SCALE.name] = np.asarray(evaluate(machine_scale(mechanism), values), dtype=float)
     return values
+
+
+def machine_at(mechanism: Mechanism) -> Samples:
+    """The nominal machine: its parameters, and its characteristic length."""
+    values = {p.name: np.asarray(p.nominal) for p in machine_parameters(mechanism)} | fixed_values(mechanism)
+    if mechanism.is_platform:  # its length follows from its home pose: nothing here divides by it
+        return {**values, SCALE.name: np.asarray(_coordinates(mechanism, values))}
+    return {**values, SCALE.name: np.asarray(evaluate(machine_scale(mechanism), values), dtype=float)}
+
+
+def _coordinates(mechanism: Mechanism, values: Samples) -> float:
+    """The largest dimension that is a length."""
+    return max([abs(float(values[p.name])) for p in mechanism.parameters if p.unit == "u"], default=1.0) or 1.0
 
 
 def fixed_values(mechanism: Mechanism) -> Samples:

@@ -19,6 +19,7 @@ from derive.ir.symbols import (
     SCALE,
 )
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.no_pose import why_no_pose
 from derive.plate.plate import home_flag
 from derive.witness.closure import LEAST_MARGIN, POSE, Closure
 from derive.witness.disagreement import Disagreement
@@ -113,6 +114,8 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
     inside = _inside(kin.mechanism, closure, samples)
     if refused := np.flatnonzero(inside & (status != Status.OK) & (kin.mechanism.chain is not None)).tolist():
         raise Disagreement(f"forward kinematics refuses a possible pose: {describe(kin, samples, refused[0])}")
+    if not inside.any():
+        raise Disagreement(why_no_pose(kin.mechanism))
     samples = samples.take(inside & np.asarray(status == Status.OK, dtype=bool))
     chosen = _first_regular(closure, samples)
     possible = len(
