@@ -9,16 +9,15 @@ import sympy as sp
 from derive.description.mechanism import Mechanism, Role
 from derive.description.numbers import number_in
 from derive.description.turns import in_radians
-from derive.geometry.frames import Factor, Motion
+from derive.geometry.frames import LETTERS, Factor, Motion
 from derive.ir.constants import DEGREE
 
-_LETTERS = {Motion.TURN: "R", Motion.SHIFT: "T", Motion.FLIP: "flip_"}
 _LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
 
 
 def written(factor: Factor) -> str:
     """A factor as a description has it: `Rz(a1 + pi/4)`."""
-    return f"{_LETTERS[factor.motion]}{'xyz'[factor.axis]}({sp.sstr(factor.amount, full_prec=False)})"
+    return f"{LETTERS[factor.motion]}{'xyz'[factor.axis]}({sp.sstr(factor.amount, full_prec=False)})"
 
 
 def wrong_amounts(mechanism: Mechanism) -> Iterator[str]:
@@ -28,8 +27,23 @@ def wrong_amounts(mechanism: Mechanism) -> Iterator[str]:
             yield f"{written(factor)} of the chain is given what is true or false: it needs an angle or a length"
         elif factor.amount.has(sp.nan, sp.oo, -sp.oo, sp.zoo, sp.I):
             yield f"{written(factor)} of the chain holds what is no number"
+        elif (strange := _strange(mechanism, factor.amount)) is not None:
+            yield f"{written(factor)} of the chain holds {strange}: it is made of +, -, *, powers, sines and cosines"
         elif factor.motion is Motion.TURN:
             yield from _wrong_turn(mechanism, factor)
+
+
+def _strange(mechanism: Mechanism, amount: sp.Expr) -> sp.Basic | None:
+    """A part of an amount that no equation can have: a root of a joint, or a function other than sine and cosine."""
+    joints = {j.symbol for j in mechanism.joints}
+    for part in sp.preorder_traversal(amount):
+        if isinstance(part, sp.Pow) and part.free_symbols & joints and not part.exp.is_nonnegative:
+            return part
+        if isinstance(part, sp.Pow) and part.free_symbols & joints and not part.exp.is_Integer:
+            return part
+        if isinstance(part, sp.Function) and not isinstance(part, sp.sin | sp.cos):
+            return part
+    return None
 
 
 def _wrong_turn(mechanism: Mechanism, factor: Factor) -> Iterator[str]:

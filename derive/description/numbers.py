@@ -17,6 +17,7 @@ from derive.description.turns import NamedAngle, NamedAngles, almost_right, as_r
 from derive.geometry.frames import Chain, Factor, Motion
 from derive.ir.constants import DEGREE
 from derive.ir.names import Names
+from derive.ir.symbols import cosine, sine
 
 _AXES = "xyz"
 
@@ -131,3 +132,14 @@ def _fixed(name: str, role: Role, symbol: sp.Symbol, value: sp.Expr) -> Paramete
     unit, nominal = ("deg", in_radians(value * DEGREE) * 180 / float(sp.pi)) if is_angle else ("u", value)
     meaning = f"{'angle' if is_angle else 'length'} that the chain states as a number{', in degrees' * is_angle}"
     return Parameter(symbol, name, role, meaning, unit, -1e9, 1e9, False, None, float(nominal), value)
+
+
+def fixed_numbers(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
+    """The values of the names that stand for numbers of the chain, and of the sines and cosines of such."""
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for p in (p for p in mechanism.parameters if p.fixed is not None):
+        found[p.symbol] = sp.Float(p.nominal)
+        if p.role is Role.ANGLE:
+            radians = sp.Float(p.nominal) * sp.pi / 180
+            found |= {sine(p.symbol): sp.sin(radians).evalf(), cosine(p.symbol): sp.cos(radians).evalf()}
+    return found

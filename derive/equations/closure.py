@@ -89,17 +89,6 @@ def fixed_names(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
     return (*(p.symbol for p in mechanism.parameters), *(let.name for let in fixed_lets(mechanism)))
 
 
-def fixed_numbers(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
-    """The values of the names that stand for numbers of the chain, and of the sines and cosines of such."""
-    found: dict[sp.Symbol, sp.Expr] = {}
-    for p in (p for p in mechanism.parameters if p.fixed is not None):
-        found[p.symbol] = sp.Float(p.nominal)
-        if p.role is Role.ANGLE:
-            radians = sp.Float(p.nominal) * sp.pi / 180
-            found |= {sine(p.symbol): sp.sin(radians).evalf(), cosine(p.symbol): sp.cos(radians).evalf()}
-    return found
-
-
 def fixed_squares(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
     """The squares of these roots, by their names."""
     parameters = tuple(p.symbol for p in mechanism.parameters)
@@ -221,7 +210,11 @@ def heading_of(chain: Chain) -> sp.Expr:
     joints, _ = flange_flips(chain)
     turns = pose_of(joints).turns
     if len(turns) != 1 or turns[0].axis != 2:
-        raise DescriptionError("the chain must turn the flange about z alone: its rotation is not one turn about z")
+        about = f"it turns about {', '.join('xyz'[t.axis] for t in turns)}" if turns else "it does not turn at all"
+        raise DescriptionError(
+            f"the chain must turn the flange about z alone: its rotation is not one turn about z, {about}; command the "
+            "whole rotation, or a direction, or turn the flange back"
+        )
     return turns[0].amount
 
 

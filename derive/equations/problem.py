@@ -227,7 +227,8 @@ class Problem:
         """
         if all(factor in self.positive for factor in sp.Mul.make_args(value)):
             return True
-        ratios = [cancelled(value / quantity).xreplace({DEGREE: sp.pi / 180}) for quantity in self.positive]
+        known = {**self.numbers, DEGREE: sp.pi / 180}
+        ratios = [cancelled(value / quantity).xreplace(known) for quantity in self.positive]
         return any(ratio.is_number and ratio.is_positive for ratio in ratios)
 
     def with_equations(self, equations: tuple[Equation, ...]) -> Problem:

@@ -87,7 +87,10 @@ def assign(
             (s, o) for s, row in zip(determinants, signs, strict=True) for o in (1, -1) if np.all(o * row == indicator)
         ]
         if len(steps) != 1:
-            raise DescriptionError(f"branch {branch.name!r}: its indicator agrees with {len(steps)} steps, not one")
+            raise DescriptionError(
+                f"branch {branch.name!r}: its indicator agrees with {len(steps)} steps, not one: its sign must change "
+                f"where two solutions meet, {_met(determinants)}"
+            )
         first = next((a.branch.name for a in found if a.determinant == steps[0][0]), None)
         if first is not None:
             raise DescriptionError(f"branches {first!r} and {branch.name!r} name the same two solutions")
@@ -95,8 +98,18 @@ def assign(
     unnamed = [s for s in determinants if s not in [a.determinant for a in found]]
     if unnamed:
         names = ", ".join(s.step.name for s in unnamed)
-        raise DescriptionError(f"no branch names the two solutions for {names}")
+        raise DescriptionError(
+            f"no branch names the two solutions for {names}: state one for each, by a quantity whose sign tells them "
+            "apart, or exclude one by a quantity in positive="
+        )
     return tuple(found)
+
+
+def _met(determinants: Sequence[StepDeterminant]) -> str:
+    """For which unknowns there are two solutions."""
+    if not determinants:
+        return "and this machine has one solution alone"
+    return f"those for {', '.join(s.step.name for s in determinants)}"
 
 
 def steps_and_rest(

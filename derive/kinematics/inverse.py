@@ -13,6 +13,7 @@ from derive.description.mechanism import (
     Mechanism,
     Turning,
 )
+from derive.description.numbers import fixed_numbers
 from derive.equations.axes import axis_lets, finite, frozen_lets, plain_angle, reference_lets, reference_value
 from derive.equations.closure import (
     FLANGE,
@@ -21,7 +22,6 @@ from derive.equations.closure import (
     closure_at,
     fixed_lets,
     fixed_names,
-    fixed_numbers,
     fixed_squares,
     flange_rotation,
     offset_closure,
