@@ -48,6 +48,9 @@ from derive.description.mechanism import (
     sign,
     signed_length,
 )
+from derive.ir.constants import (
+    DEGREE,
+)
 from derive.ir.symbols import (
     COORDINATE_NAMES,
     ROTATION_ENTRIES,
@@ -55,6 +58,7 @@ from derive.ir.symbols import (
 
 __all__ = [
     "COORDINATE_NAMES",
+    "DEGREE",
     "ROTATION",
     "ROTATION_ENTRIES",
     "TURN",

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.description.errors import DescriptionError
+from derive.description.kinds import expression
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,9 @@ class Assembly:
 def branch(name: str, indicator: object, *, margin: str | None = None, **names: int) -> Branch:
     """A branch by its indicator: `branch("elbow", sin(A2), right=+1, left=-1)`; the first name is byte 1."""
     first, second = _two_names(f"branch {name!r}", names)
-    return Branch(name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin or name)
+    return Branch(
+        name, expression(f"branch {name!r}", indicator), (first[0], second[0]), (first[1], second[1]), margin or name
+    )
 
 
 def crossing(name: str, **names: int) -> Branch:
@@ -69,7 +72,12 @@ def assembly(name: str, indicator: object, *, margin: str, handedness: object = 
     """
     first, second = _two_names(f"assembly {name!r}", names)
     return Assembly(
-        name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin, sp.sympify(handedness)
+        name,
+        expression(f"assembly {name!r}", indicator),
+        (first[0], second[0]),
+        (first[1], second[1]),
+        margin,
+        sp.sympify(handedness),
     )
 
 

@@ -51,7 +51,8 @@ class Parameter(Quantity):
     default: float | None
     nominal: float
     """A value for drawings and tests."""
-    is_public: bool = True
+    fixed: sp.Expr | None = None
+    """The value of a number that stands in a chain: it has a name, and no user gives it."""
 
     @property
     def has_vendor_range(self) -> bool:

@@ -42,6 +42,7 @@ from derive.description.joints import (
     linear,
     rotary,
 )
+from derive.description.kinds import each, expressions, one
 from derive.description.quantity import Quantity
 from derive.geometry.frames import Chain
 from derive.geometry.half_turns import with_half_turns_last
@@ -188,6 +189,22 @@ class Task:
     position: str
     turning: Turning = Turning.NONE
 
+    def __post_init__(self) -> None:
+        one("the turning of the task", self.turning, Turning, 'Task("xyz", Turning.ABOUT_Z)')
+
+
+_SEVERAL: dict[str, tuple[type, str]] = {
+    "joints": (Joint, "(A1, A2)"),
+    "parameters": (Parameter, "(LINK, OTHER)"),
+    "rods": (Rod, "(rod(...), rod(...))"),
+    "bars": (Rod, "(rod(...), rod(...))"),
+    "bounds": (Bound, "(bound(...),)"),
+    "branches": (Branch, "(branch(...),)"),
+    "held": (Joint, "(E1,)"),
+    "limited": (Limited, "(limited(...),)"),
+    "constraints": (Constraint, "(Constraint(...),)"),
+}
+
 
 @dataclass(frozen=True)
 class Mechanism:
@@ -232,9 +249,14 @@ class Mechanism:
     """Sentences for the user's documentation: definitions of our own, and properties to know."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "positive", tuple(sp.sympify(v) for v in self.positive))
-        object.__setattr__(self, "closure", tuple(sp.sympify(v) for v in self.closure))
-        object.__setattr__(self, "home", tuple(sp.sympify(v) for v in self.home))
+        one("vendor", self.vendor, Vendor, "vendor=Vendor.TEXTBOOK")
+        one("task", self.task, Task, 'task=Task("xyz", Turning.ABOUT_Z)')
+        if self.chain is not None:
+            one("chain", self.chain, Chain, "chain=Rz(A1) * Tx(link), a product of turns and shifts")
+        for what, (kind, example) in _SEVERAL.items():
+            object.__setattr__(self, what, each(what, getattr(self, what), kind, example))
+        for what in ("positive", "closure", "home"):
+            object.__setattr__(self, what, expressions(what, getattr(self, what)))
         if self.chain is not None:
             object.__setattr__(self, "chain", with_half_turns_last(self.chain))
         held = {joint.name for joint in self.held}  # the reference has the turn of a held joint: it needs no byte

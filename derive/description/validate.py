@@ -10,6 +10,8 @@ from itertools import combinations
 import sympy as sp
 
 from derive.algebra.angle_sums import name_of
+from derive.description.amounts import wrong_amounts
+from derive.description.kinds import number
 from derive.description.mechanism import (
     ROTATION,
     DescriptionError,
@@ -58,6 +60,7 @@ def _problems(mechanism: Mechanism) -> Iterator[str]:
         yield from _joint(mechanism, joint)
     yield from _held(mechanism)
     yield from _periods(mechanism)
+    yield from wrong_amounts(mechanism)
     yield from _shape(mechanism)
     yield from _symbols(mechanism)
     yield from _constraints(mechanism)
@@ -110,6 +113,8 @@ def _parameter(parameter: Parameter, taken: set[str]) -> Iterator[str]:
     if not parameter.low < parameter.high:
         yield f"parameter {name!r}: its range {_interval(parameter)} is empty"
     for word, value in (("nominal value", parameter.nominal), ("default", parameter.default)):
+        if (value is not None or word == "nominal value") and (strange := number(f"its {word}", value)) is not None:
+            yield f"parameter {name!r}: {strange}"
         if value is not None and not _contains(parameter, value):
             yield f"parameter {name!r}: its {word} {value:g} is outside its range {_interval(parameter)}"
 

@@ -71,7 +71,7 @@ class _Builder:
         """A bar between its ends. It must have the length that the description states."""
         start, end = vector_at(bar.base, self.values), vector_at(bar.plate, self.values)
         stated, drawn = float(evaluate(bar.length, self.values)), float(np.linalg.norm(end - start))
-        if abs(stated - drawn) > _EXACT * (1.0 + abs(stated)):
+        if abs(stated - drawn) > _EXACT * max(abs(stated), drawn):
             raise DescriptionError(
                 f"bar {bar.name!r} is {stated:g} long, but its ends are {drawn:g} apart in the drawn pose"
             )

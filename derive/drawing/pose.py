@@ -13,7 +13,12 @@ from derive.ir.interpret import evaluate
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.reference_cases import Bytes, Reals
-from derive.report.reference_calls import FRAME, Machine, forward, machine_with
+from derive.kinematics.sampling import sample_axes
+from derive.report.reference_calls import FRAME, Machine, forward, machine_with, margins
+
+_SAMPLES, _SEED = 3000, 3
+_DECIMALS = 3
+"""Of axis values at a pose that is found by sampling."""
 
 
 @dataclass(frozen=True)
@@ -55,9 +60,21 @@ def drawn_pose(machine: Machine) -> Pose:
         found = pose_at(machine, (0.0,) * len(mechanism.joints))
         if found is None or (mechanism.chain is None and not _is_usual(machine, found)):
             found = pose_at(machine, tuple(j.nominal for j in mechanism.joints))
+            found = _most_regular(machine) if found is None else found
     if found is None:
         raise DescriptionError("no pose can be drawn: the nominal values of its joints fit no pose of the mechanism")
     return found
+
+
+def _most_regular(machine: Machine) -> Pose | None:
+    """Of sampled poses the one that is farthest from singular ones; None where no pose is possible."""
+    mechanism = machine.kinematics.mechanism
+    drawn = sample_axes(mechanism, dict(machine.values), _SAMPLES, _SEED)
+    axes = np.stack([np.round(drawn[j.axis.name], _DECIMALS) for j in mechanism.joints], axis=1)
+    least = np.min(np.abs(margins(machine, [tuple(row) for row in axes.tolist()])), axis=0)
+    if np.isnan(least).all():
+        return None
+    return pose_at(machine, tuple(axes[int(np.nanargmax(least))].tolist()))
 
 
 def _is_usual(machine: Machine, pose: Pose) -> bool:

@@ -210,7 +210,11 @@ def heading_of(chain: Chain) -> sp.Expr:
     joints, _ = flange_flips(chain)
     turns = pose_of(joints).turns
     if len(turns) != 1 or turns[0].axis != 2:
-        raise DescriptionError("the chain must turn the flange about z alone: its rotation is not one turn about z")
+        about = f"it turns about {', '.join('xyz'[t.axis] for t in turns)}" if turns else "it does not turn at all"
+        raise DescriptionError(
+            f"the chain must turn the flange about z alone: its rotation is not one turn about z, {about}; command the "
+            "whole rotation, or a direction, or turn the flange back"
+        )
     return turns[0].amount
 
 

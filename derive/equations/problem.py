@@ -18,6 +18,9 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import cosine, names_in, real, sine
 
+_NUMBER = 1e-9
+"""A sum of numbers is zero where it is at most this share of its terms."""
+
 
 @dataclass(frozen=True)
 class Equation:
@@ -162,6 +165,8 @@ class Problem:
     """The squares of lengths that are roots of parameters."""
     parameters: tuple[sp.Symbol, ...] = ()
     """The names that are made of parameters alone."""
+    numbers: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """The values of names that stand for numbers: those of a chain, their sines and cosines."""
     fixed: tuple[sp.Symbol, ...] = ()
     """The same once no other equation is left: a determinant made of them becomes a condition on the machine."""
     definitions: Mapping[sp.Symbol, sp.Expr] | None = None
@@ -195,8 +200,15 @@ class Problem:
 
     def is_never_zero(self, expression: sp.Expr) -> bool:
         """Whether an expression of known names cannot vanish for any legal machine and pose."""
-        reduced = self.reduce(expression)
-        return bool(reduced.is_nonzero or reduced.xreplace({DEGREE: sp.pi / 180}).is_nonzero)
+        reduced = self.reduce(expression).xreplace({DEGREE: sp.pi / 180})
+        return bool(reduced.is_nonzero) or self._is_number(reduced)
+
+    def _is_number(self, value: sp.Expr) -> bool:
+        """Whether a value is a number of the chain other than zero, but for rounding."""
+        if not value.free_symbols or not value.free_symbols <= self.numbers.keys():
+            return False
+        terms = [float(term.xreplace(dict(self.numbers))) for term in sp.Add.make_args(value)]
+        return abs(sum(terms)) > _NUMBER * sum(map(abs, terms))
 
     def determines(self, determinant: sp.Expr) -> bool:
         """Whether equations with this determinant have one solution: it is never zero, or parameters alone decide."""
@@ -215,7 +227,8 @@ class Problem:
         """
         if all(factor in self.positive for factor in sp.Mul.make_args(value)):
             return True
-        ratios = [cancelled(value / quantity).xreplace({DEGREE: sp.pi / 180}) for quantity in self.positive]
+        known = {**self.numbers, DEGREE: sp.pi / 180}
+        ratios = [cancelled(value / quantity).xreplace(known) for quantity in self.positive]
         return any(ratio.is_number and ratio.is_positive for ratio in ratios)
 
     def with_equations(self, equations: tuple[Equation, ...]) -> Problem:

@@ -70,7 +70,14 @@ class Chain:
         return sp.ImmutableMatrix(product)
 
 
+LETTERS = {Motion.TURN: "R", Motion.SHIFT: "T", Motion.FLIP: "flip_"}
+"""How descriptions spell a motion, in front of its axis."""
+
+
 def _one(motion: Motion, axis: int, amount: object) -> Chain:
+    if amount is None or isinstance(amount, str | bool | list | tuple):
+        place = f"{LETTERS[motion]}{'xyz'[axis]}({amount!r})"
+        raise TypeError(f"{place} needs a joint, a parameter, a number or an expression of these")
     return Chain((Factor(motion, axis, sp.sympify(amount)),))
 
 

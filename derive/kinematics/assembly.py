@@ -39,7 +39,8 @@ from derive.ir.symbols import (
     SCALE,
     real,
 )
-from derive.kinematics.sampling import NO_POSE, possible_axes, sample_machine
+from derive.kinematics.no_pose import why_no_pose
+from derive.kinematics.sampling import possible_axes, sample_machine
 from derive.plate.legs import MARGIN
 from derive.plate.plate import platform_checks
 
@@ -88,7 +89,7 @@ def _orientation(mechanism: Mechanism, forward: Forward) -> int:
         good = np.broadcast_to(status == Status.OK, (count,))
         found |= {int(s) for s in np.sign(side * values["indicator"][good])}
     if not found:
-        raise DescriptionError(f"assembly {mechanism.assembly.name!r}: {NO_POSE}")
+        raise DescriptionError(f"assembly {mechanism.assembly.name!r}: {why_no_pose(mechanism)}")
     if len(found) != 1 or 0 in found:
         raise DescriptionError(
             f"assembly {mechanism.assembly.name!r}: its indicator does not tell the two solutions apart"

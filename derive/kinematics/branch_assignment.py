@@ -36,8 +36,9 @@ from derive.kinematics.forward import (
     derivation_at_axes,
 )
 from derive.kinematics.inverse import Inverse
-from derive.kinematics.sampling import NO_POSE, possible_axes, sample_machine
-from derive.plate.turning import given_pose, samples_near_home
+from derive.kinematics.no_pose import near_home, why_no_pose
+from derive.kinematics.sampling import possible_axes, sample_machine
+from derive.plate.turning import given_pose
 
 _SAMPLES = 64
 
@@ -77,10 +78,18 @@ def assign(
     branches of the machine only where the point is the flange itself.
     """
     found, unnamed = _assigned(mechanism, inverse, forward, optional_zero)
-    if unnamed:
-        names = ", ".join(s.step.name for s in unnamed)
-        raise DescriptionError(f"no branch names the two solutions for {names}")
+    refuse_unnamed(unnamed)
     return found
+
+
+def refuse_unnamed(steps: Sequence[StepDeterminant]) -> None:
+    """Refuse steps with two solutions that no branch names."""
+    if steps:
+        names = ", ".join(s.step.name for s in steps)
+        raise DescriptionError(
+            f"no branch names the two solutions for {names}: state one for each, by a quantity whose sign tells them "
+            "apart, or exclude one by a quantity in positive="
+        )
 
 
 def _assigned(
@@ -97,13 +106,23 @@ def _assigned(
             (s, o) for s, row in zip(determinants, signs, strict=True) for o in (1, -1) if np.all(o * row == indicator)
         ]
         if len(steps) != 1:
-            raise DescriptionError(f"branch {branch.name!r}: its indicator agrees with {len(steps)} steps, not one")
+            raise DescriptionError(
+                f"branch {branch.name!r}: its indicator agrees with {len(steps)} steps, not one: its sign must change "
+                f"where two solutions meet, {_met(determinants)}"
+            )
         first = next((a.branch.name for a in found if a.determinant == steps[0][0]), None)
         if first is not None:
             raise DescriptionError(f"branches {first!r} and {branch.name!r} name the same two solutions")
         found.append(Assignment(branch, *steps[0]))
     unnamed = tuple(s for s in determinants if s not in [a.determinant for a in found])
     return tuple(found), unnamed
+
+
+def _met(determinants: Sequence[StepDeterminant]) -> str:
+    """For which unknowns there are two solutions."""
+    if not determinants:
+        return "and this machine has one solution alone"
+    return f"those for {', '.join(s.step.name for s in determinants)}"
 
 
 def steps_and_rest(
@@ -138,7 +157,7 @@ def _signs(
     program = normalise("signs", statements, [Output(n.name.name, n.name) for n in named])
     machine = sample_machine(mechanism, 21, optional_zero)
     if mechanism.is_platform:
-        samples = samples_near_home(mechanism, inverse.known, inverse.signs, machine, 22)
+        samples = near_home(mechanism, inverse.known, inverse.signs, machine, 22)
     else:
         machine |= {f"point_{c}": np.asarray(0.0) for c in "xyz"}
         samples = possible_axes(mechanism, machine, _SAMPLES, 22, program)
@@ -146,7 +165,7 @@ def _signs(
     values, status = run(program, samples)
     good = np.broadcast_to(status == Status.OK, (count,))
     if not good.any():
-        raise DescriptionError(NO_POSE)
+        raise DescriptionError(why_no_pose(mechanism))
     rows = [np.sign(np.broadcast_to(values[n.name.name], (count,))[good]) for n in named]
     return rows[: len(determinants)], rows[len(determinants) :]
 

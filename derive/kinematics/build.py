@@ -14,6 +14,7 @@ from derive.description.mechanism import (
     Mechanism,
     Turning,
 )
+from derive.description.numbers import almost_right_angles, with_named_numbers
 from derive.equations.axes import finite
 from derive.equations.choices import with_choices
 from derive.equations.closure import flange_rotation, heading_of
@@ -68,6 +69,7 @@ from derive.kinematics.forward import (
 )
 from derive.kinematics.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics.kinematics import Freedom, Kinematics, Margin
+from derive.kinematics.no_pose import near_home
 from derive.kinematics.number_of_joints import check_joints
 from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.sampling import sample_machine
@@ -79,12 +81,21 @@ from derive.kinematics.scan.programs import names_of_search
 from derive.kinematics.shared_names import refuse_names, refuse_names_of_joints, refuse_shared_names
 from derive.lowering.lower import lowered
 from derive.plate.plate import check_home
-from derive.plate.turning import forward_from_given, joints_at_home, samples_near_home
+from derive.plate.turning import forward_from_given, joints_at_home
 from derive.solver.solve import Unsolved
 
 
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
+    try:
+        return _built(with_named_numbers(mechanism))
+    except (Unsolved, DescriptionError) as problem:
+        if told := almost_right_angles(mechanism):
+            raise type(problem)(f"{problem}; {told}") from None
+        raise
+
+
+def _built(mechanism: Mechanism) -> Kinematics:
     check_joints(mechanism)
     if mechanism.is_platform:
         check_home(mechanism)
@@ -137,7 +148,7 @@ def _samples(
     """Poses at which the exponents of margins are found."""
     if not mechanism.is_platform:
         return samples_anywhere(mechanism, jacobian)
-    samples = samples_near_home(mechanism, inverse.known, inverse.signs, sample_machine(mechanism, 11), 12)
+    samples = near_home(mechanism, inverse.known, inverse.signs, sample_machine(mechanism, 11), 12)
     constants, _ = run(setup_program(mechanism, machine_parameters(mechanism), at_home=at_home), samples)
     return samples | constants
 

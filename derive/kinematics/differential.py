@@ -52,12 +52,16 @@ from derive.kinematics.kinematics import Margin
 from derive.kinematics.parameters import (
     has_length,
 )
-from derive.kinematics.sampling import possible_axes, sample_machine
+from derive.kinematics.sampling import ENOUGH, possible_axes, sample_machine, size_of
 from derive.plate.plate import platform_jacobian
 
 _ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
 """The rows of a twist: along and about the axes of the base, and about the x and y axes of the tool, which tilt its z
 axis."""
+_EXACT = 1e-6
+"""The largest difference of logarithms of what is one product."""
+_DIGITS = 1e-6
+"""The share of the largest singular value of a Jacobian that its least one has where its determinant has digits."""
 _TURNS: dict[Turning, tuple[str, ...]] = {
     Turning.NONE: (),
     Turning.ABOUT_Z: ("turn z",),
@@ -257,17 +261,16 @@ def samples_anywhere(mechanism: Mechanism, program: Program) -> dict[str, NDArra
 def _exponents(
     mechanism: Mechanism, margins: Program, jacobian: Program, samples: Mapping[str, NDArray[np.float64]]
 ) -> list[int]:
-    """Fit log|det J| = c + Σ e_k log|m_k| over poses of one machine; the e_k must be integers and the fit exact."""
+    """Fit log|det J| = c + Σ e_k log|m_k| over poses of one machine; the e_k must be integers and the fit exact.
+
+    Lengths are measured in lengths of the machine, which moves c alone: so the unit of length decides nothing.
+    """
     count = max(v.size for v in samples.values())
     values, status = run(margins, samples)
-    entries, _ = run(jacobian, samples)
     good = np.broadcast_to(status == Status.OK, (count,))
-    rows, columns = len(jacobian_rows(mechanism)), len(mechanism.joints)
-    flat = np.stack([np.broadcast_to(v, (count,)) for v in entries.values()], axis=-1)
-    matrix = flat.reshape(count, rows, columns)[good]
-    matrix = matrix[:, :, [j in mechanism.solved_joints for j in mechanism.joints]]
-    volume = np.log(np.sqrt(np.abs(np.linalg.det(matrix @ matrix.transpose(0, 2, 1)))))
-    logs = [np.log(np.abs(np.broadcast_to(values[o.name], (count,))[good])) for o in margins.outputs]
+    matrix = _scaled_jacobian(mechanism, jacobian, samples, count)[good]
+    volume, clear = _log_volume(matrix)
+    logs = [np.log(np.abs(np.broadcast_to(values[o.name], (count,))[good]))[clear] for o in margins.outputs]
     own = _independent(logs)
     design = np.stack([*(logs[k] for k in own), np.ones_like(volume)], axis=-1)
     solution, *_ = np.linalg.lstsq(design, volume, rcond=None)
@@ -275,9 +278,33 @@ def _exponents(
     exponents = [found.get(k, 0) for k in range(len(logs))]
     fitted = sum((e * log for e, log in zip(exponents, logs, strict=True)), np.zeros_like(volume))
     spread = float(np.ptp(volume - fitted)) if volume.size else 0.0
-    if spread > 1e-6:
-        raise DescriptionError(f"the margins {[o.name for o in margins.outputs]} do not multiply to the determinant")
+    if spread > _EXACT:
+        names = ", ".join(o.name for o in margins.outputs)
+        raise DescriptionError(f"the margins {names} do not multiply to the determinant of the Jacobian")
     return exponents
+
+
+def _scaled_jacobian(
+    mechanism: Mechanism, jacobian: Program, samples: Mapping[str, NDArray[np.float64]], count: int
+) -> NDArray[np.float64]:
+    """The Jacobian by the joints that are solved for, with lengths in lengths of the machine."""
+    entries, _ = run(jacobian, samples)
+    rows, columns = jacobian_rows(mechanism), mechanism.joints
+    flat = np.stack([np.broadcast_to(v, (count,)) for v in entries.values()], axis=-1)
+    size = size_of(mechanism, samples)
+    by_rows = np.array([1.0 / size if row in COORDINATE_NAMES else 1.0 for row in rows])
+    by_columns = np.array([1.0 if j.is_angle else size for j in columns])
+    matrix = flat.reshape(count, len(rows), len(columns)) * by_rows[:, None] * by_columns
+    return np.asarray(matrix[:, :, [j in mechanism.solved_joints for j in columns]])
+
+
+def _log_volume(matrix: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """The logarithm of |det J| at the poses where it has enough digits for the fit, and which these are."""
+    sizes = np.linalg.svd(matrix, compute_uv=False)
+    share = sizes[:, -1] / np.where(sizes[:, 0] > 0, sizes[:, 0], 1.0)
+    best = np.sort(share)[-min(len(share), ENOUGH) :]
+    clear = share >= min(_DIGITS, best[0]) if len(best) else np.zeros(0, dtype=bool)
+    return np.linalg.slogdet(matrix[clear])[1], clear
 
 
 def _independent(logs: Sequence[NDArray[np.float64]]) -> list[int]:

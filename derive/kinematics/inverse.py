@@ -13,6 +13,7 @@ from derive.description.mechanism import (
     Mechanism,
     Turning,
 )
+from derive.description.numbers import fixed_numbers
 from derive.equations.axes import axis_lets, finite, frozen_lets, plain_angle, reference_lets, reference_value
 from derive.equations.closure import (
     FLANGE,
@@ -132,6 +133,7 @@ def _solve(
         columns=closure.columns,
         position=(*POSITION, *FLANGE),
         parameters=fixed_names(mechanism),
+        numbers=fixed_numbers(mechanism),
         links=closure.links,
         point=closure.target.point,
         point_lets=closure.target.lets,

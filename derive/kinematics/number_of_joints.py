@@ -22,7 +22,10 @@ def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
     joints, held = mechanism.joints, mechanism.held
     if spare < 0:
         left = f", of which {len(held)} {'is' if len(held) == 1 else 'are'} held" if held else ""
-        return f"the task commands {commanded}, and there are only {len(joints)} joints{left}"
+        return (
+            f"the task commands {commanded}, and there are only {len(joints)} joints{left}; command less of the pose, "
+            "or add joints"
+        )
     number = "one joint" if spare == 1 else f"{spare} joints"
     names = "the one that is" if spare == 1 else "those that are"
     remedy = f"name {names} held at the reference: held=({joints[0].name},)"

@@ -43,8 +43,10 @@ _LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH)
 
 
 def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
-    """The description's parameters, then offset and limits of every axis and of every limited quantity."""
-    parameters = list(mechanism.parameters)
+    """The description's parameters, then offset and limits of every axis and of every limited quantity: all that users
+    give.
+    """
+    parameters = [p for p in mechanism.parameters if p.fixed is None]
     for joint in mechanism.joints:
         parameters.append(_number(joint, "offset", "axis value at the kinematic zero position", joint.offset_range))
     for joint in mechanism.joints:
@@ -125,6 +127,8 @@ def setup_program(
     at the home pose of a loop that turns its platform.
     """
     body: list[Statement] = [condition for p in parameters for condition in _range_of(p)]
+    numbers = [Let(real(p.name), p.fixed, p.meaning) for p in mechanism.parameters if p.fixed is not None]
+    body += numbers
     for constraint in mechanism.constraints:
         body += constraint.steps
         body.append(_needed(_inequality(constraint.condition), constraint.message))
@@ -137,6 +141,7 @@ def setup_program(
         if not (has_settings and window.is_axis):
             body += window.ends
             outputs += window.outputs
+    outputs += [Output(let.name.name, let.name) for let in numbers]
     sized, constants = _size(mechanism, at_home)
     body += sized
     outputs += constants
@@ -177,9 +182,7 @@ def machine_scale(mechanism: Mechanism) -> sp.Expr:
         own = [p for p in mechanism.parameters if p.role is Role.DISTANCE]
         return sp.Add(sp.Integer(1), *(sp.Abs(p.symbol) for p in own))
     own = [
-        p
-        for p in machine_parameters(mechanism)
-        if p.role in _LENGTHS or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)
+        p for p in mechanism.parameters if p.role in _LENGTHS or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)
     ]
     return sp.Add(*(sp.Abs(p.symbol) for p in own), *_numbers(mechanism))
 

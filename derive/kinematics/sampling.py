@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
@@ -21,10 +23,6 @@ from derive.kinematics.parameters import (
 Samples = dict[str, NDArray[np.float64]]
 ENOUGH = 16
 """Possible poses by which a sign or an exponent is told."""
-NO_POSE = (
-    "no sampled pose is possible: a quantity that must be positive never is, or the loop never closes; check the "
-    "nominal values of parameters and joints"
-)
 _MANY = 1024
 _SHARES = (1.0, 0.5, 0.25, 0.1)
 """Of the ranges, in which further poses are drawn."""
@@ -41,21 +39,45 @@ def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False)
         if optional_zero and parameter.role is Role.DISTANCE:
             value = 0.0
         values[parameter.name] = np.asarray(value)
+    values |= fixed_values(mechanism)
     values[SCALE.name] = np.asarray(evaluate(machine_scale(mechanism), values), dtype=float)
     return values
 
 
-def _reach(mechanism: Mechanism, machine: Samples) -> float:
+def machine_at(mechanism: Mechanism) -> Samples:
+    """The nominal machine: its parameters, and its characteristic length."""
+    values = {p.name: np.asarray(p.nominal) for p in machine_parameters(mechanism)} | fixed_values(mechanism)
+    if mechanism.is_platform:  # its length follows from its home pose: nothing here divides by it
+        return {**values, SCALE.name: np.asarray(_coordinates(mechanism, values))}
+    return {**values, SCALE.name: np.asarray(evaluate(machine_scale(mechanism), values), dtype=float)}
+
+
+def _coordinates(mechanism: Mechanism, values: Samples) -> float:
+    """The largest dimension that is a length."""
+    return max([abs(float(values[p.name])) for p in mechanism.parameters if p.unit == "u"], default=1.0) or 1.0
+
+
+def fixed_values(mechanism: Mechanism) -> Samples:
+    """The numbers of a chain that have names."""
+    return {p.name: np.asarray(p.nominal) for p in mechanism.parameters if p.fixed is not None}
+
+
+def size_of(mechanism: Mechanism, machine: Mapping[str, NDArray[np.float64]]) -> float:
     """A length of the size of the machine: of one without a length that is never zero, the sum of its distances; of a
     loop at least its largest coordinate that is a number or a distance.
     """
-    distances = [abs(float(machine[p.name])) for p in mechanism.parameters if p.role is Role.DISTANCE]
-    size = float(machine[SCALE.name]) if has_length(mechanism) else sum(distances) or 1.0
+    distances = [abs(_first(machine[p.name])) for p in mechanism.parameters if p.role is Role.DISTANCE]
+    size = _first(machine[SCALE.name]) if has_length(mechanism) else sum(distances) or 1.0
     if not mechanism.rods:
         return size
     ends = [sp.sympify(v) for rod in mechanism.rods for v in (*rod.base, *rod.plate)]
     numbers = [abs(float(t)) for end in ends for t in sp.Add.make_args(end) if t.is_number]
     return max(size, *distances, *numbers, 0.0)
+
+
+def _first(values: NDArray[np.float64]) -> float:
+    """The value of the first of some equal machines."""
+    return float(np.ravel(values)[0])
 
 
 def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, share: float = 1.0) -> Samples:
@@ -67,7 +89,7 @@ def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, s
     values: Samples = {}
     for joint in mechanism.joints:
         low, high = joint.domain or ((-180.0, 180.0) if joint.is_angle else (-1.0, 1.0))
-        reach = 1.0 if joint.is_angle else _reach(mechanism, machine)
+        reach = 1.0 if joint.is_angle else size_of(mechanism, machine)
         high = min(high, 1e3 if joint.is_angle else 2.0)
         drawn = joint.nominal + share * (generator.uniform(low, high, count) * reach - joint.nominal)
         values[joint.axis.name] = values[joint.reference.name] = drawn + float(machine[joint.offset.name])

@@ -107,7 +107,7 @@ class _Collecting(Rewriting):
 
     def _terms(self, rest: Node, terms: list[tuple[Value, Value]], together: dict[Value, Value]) -> list[Value]:
         total = self.graph.sum(coefficient for _, coefficient in terms)
-        is_saved = any(len(self._readers[before.node]) == 1 and before.node is not rest for before, _ in terms)
+        is_saved = any(len(self._readers.get(before.node, ())) == 1 and before.node is not rest for before, _ in terms)
         if len(terms) > 1 and is_saved and (self._constant(total.node) or total.node.is_number):
             return [self.graph.product([total, Value(rest, 1)])]
         return [together[before] for before, _ in terms]
@@ -151,7 +151,7 @@ class _Distributing(Rewriting):
                 pending += _scalable(node)
             elif self._coefficients.split(node) is None:
                 return False
-            for reader in self._readers[node]:
+            for reader in self._readers.get(node, ()):
                 if reader is not None and reader.head in (SUM, Select) and node in _scalable(reader):
                     pending.append(reader)
                 elif reader is None or not self._is_multiple(reader, node, factor):

@@ -43,7 +43,7 @@ class _Opening(Rewriting):
 
     def _opened(self, term: Value, reader: Node) -> list[Value]:
         """The terms of a part, with the sign that it has; none where it stays a part."""
-        if not self._is_sum(term.node) or len(self._readers[term.node]) > 1:
+        if not self._is_sum(term.node) or len(self._readers.get(term.node, ())) != 1:  # a name may be read no more
             return []
         inner = [Value(t.node, t.sign * term.sign) for t in term.node.parts]
         others = [t for t in reader.parts if t is not term]

@@ -34,6 +34,10 @@ _AROUND, _TURNED = 0.1, 0.2
 _SAMPLES = 256
 
 
+class NoPoseAtHome(DescriptionError):
+    """No pose near the home pose of a loop is possible."""
+
+
 def forward_from_home(mechanism: Mechanism) -> Forward:
     """The pose at axis values, by iteration from the home pose."""
     return found_from(mechanism, at_home(mechanism), search_program(mechanism))
@@ -86,7 +90,7 @@ def samples_near_home(
     """Poses near the home of a machine, and the axes there: in every branch, by the derivation of the inverse in the
     signs of its steps.
 
-    signs: those of its steps. Raises `DescriptionError` where none of the poses is possible.
+    signs: those of its steps. Raises `NoPoseAtHome` where none of the poses is possible.
     """
     size = normalise("size", platform_size(mechanism), [Output(SCALE.name, SCALE)])
     machine = {**machine, SCALE.name: run(size, machine)[0][SCALE.name]}
@@ -102,7 +106,7 @@ def samples_near_home(
     found, status = run(program, values | rest)
     good = np.broadcast_to(status == Status.OK, (_SAMPLES,))
     if not good.any():
-        raise DescriptionError("no pose near the home pose is possible: is it where the legs reach it?")
+        raise NoPoseAtHome("no pose near the home pose is possible: is it where the legs reach it?")
     columns = {n: np.broadcast_to(v, (_SAMPLES,))[good] for n, v in (poses | found).items()}
     return {**machine, **columns, **{j.reference.name: columns[j.axis.name] for j in mechanism.joints}}
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -24,14 +26,17 @@ from derive.ir.symbols import (
     ROTATION_ENTRIES,
 )
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.parameters import TIE_OF_LENGTHS
+from derive.kinematics.parameters import TIE_OF_LENGTHS, has_length
 from derive.kinematics.reference_cases import Bytes, Reals
+from derive.kinematics.sampling import size_of
 from derive.plate.plate import home_flag, home_position, home_rotation
 
 FRAME = ("x", "y", "z", *(r.name for r in ROTATION_ENTRIES))
 _DECIMALS, _ROTATION_DECIMALS = 6, 9
 """Far coarser than rounding, and fine enough that a rotation is still one."""
 _HIGHEST_BYTE = 3
+_SMALL, _MILLIMETRES = 10.0, 100.0
+"""A machine smaller than ten of its units is in metres; one in millimetres is at least a hundred large."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +47,19 @@ class Machine:
     given: Mapping[str, float]
     status: Status
     values: Mapping[str, Array]
+
+    @cached_property
+    def finer(self) -> int:
+        """How many decimals more lengths need than those of a machine in millimetres: it may be given in metres."""
+        mechanism = self.kinematics.mechanism
+        if self.status is not Status.OK or not has_length(mechanism):
+            return 0
+        size = size_of(mechanism, self.values)
+        return math.ceil(math.log10(_MILLIMETRES / size)) if 0.0 < size < _SMALL else 0
+
+    def rounded(self, values: Sequence[float], decimals: int = _DECIMALS) -> Reals:
+        """Lengths as they are told: far coarser than rounding, without a negative zero."""
+        return _rounded(values, decimals + self.finer)
 
     @property
     def home(self) -> Reals:
@@ -72,7 +90,7 @@ def forward(machine: Machine, axes: Reals) -> tuple[Status, Reals, Bytes]:
     branches = (_branch_byte(float(found[f"branch_{b.name}"][0])) for b in kinematics.branches)
     order = {joint.name: index for index, joint in enumerate(kinematics.mechanism.joints)}
     periods = (_period(axes[order[j.name]]) for j in kinematics.period_joints)
-    return Status.OK, (*_rounded(position), *_rounded(rotation, _ROTATION_DECIMALS)), (*branches, *periods)
+    return Status.OK, (*machine.rounded(position), *_rounded(rotation, _ROTATION_DECIMALS)), (*branches, *periods)
 
 
 def inverse(machine: Machine, frame: Reals, configuration: Bytes, reference: Reals) -> tuple[Status, Reals]:
@@ -116,7 +134,8 @@ def branches(
     }
     found, status = _run(kinematics.branch, machine, values | {"": np.zeros(len(slots))})
     solved = [
-        _rounded([float(found[n][k]) for n in axes]) if status[k] is Status.OK else nothing for k in range(len(slots))
+        machine.rounded([float(found[n][k]) for n in axes]) if status[k] is Status.OK else nothing
+        for k in range(len(slots))
     ]
     return slots, solved, list(status)
 

@@ -12,7 +12,7 @@ from itertools import product
 
 import numpy as np
 
-from derive.description.mechanism import Joint, Role
+from derive.description.mechanism import DescriptionError, Joint, Role
 from derive.ir.constants import (
     LARGEST,
     SINGULAR,
@@ -20,10 +20,8 @@ from derive.ir.constants import (
 from derive.ir.program import (
     Status,
 )
-from derive.ir.symbols import (
-    SCALE,
-)
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.parameters import has_length
 from derive.kinematics.reference_cases import Bytes, Called, Case, Reals, SelfTest
 from derive.kinematics.sampling import sample_axes
 from derive.report.reference_calls import Machine, branches, forward, inverse, machine_with, margins
@@ -117,7 +115,11 @@ class _Vectors:
 
     @cached_property
     def poses(self) -> tuple[Reals, ...]:
-        """Axis values of up to three regular poses; the first has the most solutions."""
+        """Axis values of up to three regular poses; the first has the most solutions. Raises `DescriptionError` where
+        no sampled pose is one.
+        """
+        if not self._regular:
+            raise DescriptionError("no sampled pose is regular: check the nominal values of parameters and joints")
         poses = self._regular[: 1 if self._mechanism.search else _TRIED]
         solutions = [sum(status is Status.OK for status in self._statuses(axes)) for axes in poses]
         best = poses[int(np.argmax(solutions))]
@@ -155,10 +157,10 @@ class _Vectors:
     def _regular(self) -> list[Reals]:
         """Poses away from singular ones, to which the inverse leads back."""
         found: list[Reals] = []
-        for axes, smallest in zip(
-            self._candidates, np.min(np.abs(margins(self.machine, self._candidates)), axis=0), strict=True
-        ):
-            if not smallest > _REGULAR:
+        least = np.min(np.abs(margins(self.machine, self._candidates)), axis=0)
+        regular = min(_REGULAR, float(np.nanmax(np.append(least, 0.0))) / 2)  # margins of some machines are never large
+        for axes, smallest in zip(self._candidates, least, strict=True):
+            if not smallest > regular:
                 continue
             _, frame, own = forward(self.machine, axes)
             status, back = inverse(self.machine, frame, own, axes)
@@ -271,7 +273,9 @@ class _Vectors:
 
 
 def _candidates(machine: Machine) -> list[Reals]:
-    """Axis values with one decimal, over the whole ranges; for a platform, near its home pose."""
+    """Axis values with one decimal, over the whole ranges; for a platform, near its home pose. Lengths of a small
+    machine have more decimals.
+    """
     mechanism = machine.kinematics.mechanism
     count = _LOOP_CANDIDATES if mechanism.rods else _CANDIDATES
     if mechanism.is_platform:
@@ -283,11 +287,15 @@ def _candidates(machine: Machine) -> list[Reals]:
         drawn = np.stack([samples[j.axis.name] * _stretch(machine, j) for j in mechanism.joints], axis=1)
     else:
         return [()]
-    return [tuple(round(float(v), 1) for v in row) for row in drawn]
+    angles = [j.is_angle for j in mechanism.joints]
+    return [
+        tuple(round(float(v), 1 if is_angle else 1 + machine.finer) for v, is_angle in zip(row, angles, strict=True))
+        for row in drawn
+    ]
 
 
 def _stretch(machine: Machine, joint: Joint) -> float:
     """The range of an axis: several turns where it has them; a default for a machine without lengths."""
     if joint.is_angle:
         return 2.0 if joint.multi_turn else 1.0
-    return _SIZE if float(machine.values[SCALE.name]) <= 1.0 else 1.0
+    return 1.0 if has_length(machine.kinematics.mechanism) else _SIZE

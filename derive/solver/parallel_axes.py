@@ -10,15 +10,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
+import numpy as np
 import sympy as sp
 
 from derive.algebra.angle_sums import Terms, positive_first, symbol_of_sum, terms_of
 from derive.algebra.normal_form import polynomial, reduce_units, split_known
 from derive.equations.problem import Binding, Equation, Problem
 from derive.geometry.frames import Factor
+from derive.ir.interpret import evaluate
 from derive.ir.program import Let
 from derive.ir.symbols import cosine, sine
+from derive.solver.probe import DRAWS, drawn, turned
 
+_SEED = 35
+_PARALLEL = 1e-9
+"""The largest sine of the angle between parallel directions."""
 _FUNCTIONS = ((cosine, sp.cos), (sine, sp.sin))
 
 
@@ -48,8 +54,25 @@ def candidate_sums(problem: Problem, arguments: Sequence[sp.Expr]) -> tuple[Sum,
         terms = terms_of(unknown, problem.angles)
         if terms is not None and len(terms) > 1:
             terms = positive_first(terms)
+            if not _parallel(problem, terms):
+                continue
             found.setdefault(symbol_of_sum(terms), Sum(symbol_of_sum(terms), terms, terms[-1][0]))
     return tuple(found.values())
+
+
+def _parallel(problem: Problem, terms: Terms) -> bool:
+    """Whether the axes of some angles are parallel, at random poses; true of equations without a rotation."""
+    if not problem.turns:
+        return True
+    values = drawn(problem, [], np.random.default_rng(_SEED))
+    directions, rotation = [], np.broadcast_to(np.eye(3), (DRAWS, 3, 3))
+    seen = {angle for angle, _ in terms}
+    for turn in problem.turns:
+        if seen & turn.amount.free_symbols:
+            directions.append(rotation[:, :, turn.axis])
+            seen -= turn.amount.free_symbols
+        rotation = rotation @ turned(turn.axis, np.broadcast_to(evaluate(turn.amount, values), (DRAWS,)))
+    return all(np.abs(np.cross(directions[0], other)).max() < _PARALLEL for other in directions[1:])
 
 
 def substitute(problem: Problem, total: Sum) -> Problem:

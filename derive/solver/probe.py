@@ -61,3 +61,13 @@ def drawn(problem: Problem, parts: Sequence[sp.Expr], rng: np.random.Generator) 
     for sign in problem.signs:
         values[sign.name] = rng.choice([-1.0, 1.0] if sign.is_nonzero else [0.0, 1.0], DRAWS)
     return values
+
+
+def turned(axis: int, angle: Array) -> Array:
+    """Rotations about a coordinate axis."""
+    matrix = np.zeros((len(angle), 3, 3))
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    matrix[:, axis, axis] = 1.0
+    matrix[:, first, first] = matrix[:, second, second] = np.cos(angle)
+    matrix[:, first, second], matrix[:, second, first] = -np.sin(angle), np.sin(angle)
+    return matrix

@@ -14,7 +14,7 @@ import sympy as sp
 from derive.equations.problem import Equation, Problem
 from derive.ir.interpret import Array, evaluate
 from derive.ir.symbols import POSITION, cosine, sine
-from derive.solver.probe import DRAWS, drawn
+from derive.solver.probe import DRAWS, drawn, turned
 
 _SEED = 33
 _STEP = 1e-5
@@ -138,16 +138,6 @@ def _at(problem: Problem, values: Mapping[str, Array]) -> Array:
     rotation = np.broadcast_to(np.eye(3), (DRAWS, 3, 3))
     for turn in problem.turns:
         amount = np.broadcast_to(evaluate(turn.amount, values), (DRAWS,))
-        rotation = rotation @ _turned(turn.axis, amount)
+        rotation = rotation @ turned(turn.axis, amount)
     entries = [rotation[:, i, j] for i in range(3) for j in problem.columns] if problem.turns else []
     return np.stack([*found, *entries, np.zeros(DRAWS)], axis=1)
-
-
-def _turned(axis: int, angle: Array) -> Array:
-    """Rotations about a coordinate axis."""
-    matrix = np.zeros((len(angle), 3, 3))
-    first, second = (axis + 1) % 3, (axis + 2) % 3
-    matrix[:, axis, axis] = 1.0
-    matrix[:, first, first] = matrix[:, second, second] = np.cos(angle)
-    matrix[:, first, second], matrix[:, second, first] = -np.sin(angle), np.sin(angle)
-    return matrix

@@ -13,7 +13,7 @@ from derive.ir.interpret import Array, run
 from derive.ir.program import Program, Status
 from derive.kinematics.kinematics import Kinematics
 from derive.witness.assembly import in_own_mode, starts_for
-from derive.witness.checks import CLEAR, CLOSURE_TOLERANCE, least_move, worst
+from derive.witness.checks import CLOSURE_TOLERANCE, clear_of_zero, least_move, worst
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
 from derive.witness.planted import refused_when_planted
@@ -90,7 +90,8 @@ def check_offset(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[f
     """The offset interface reaches the commanded point, and gives back the axes on the branch that it names."""
     if kin.offset_branch is None or kin.offset_configuration is None:
         return 0.0, 0.0
-    offset = _TOOL * samples.reach[:, None] * np.random.default_rng(SEED + 3).uniform(-1.0, 1.0, (len(samples), 3))
+    size = _TOOL * samples.reach / samples.ease
+    offset = size[:, None] * np.random.default_rng(SEED + 3).uniform(-1.0, 1.0, (len(samples), 3))
     offset[:, len(kin.mechanism.task.position) :] = 0.0
     rotation = samples.pose[:, 3:].reshape(-1, 3, 3)
     point = samples.pose[:, :3] + (rotation @ offset[:, :, None])[:, :, 0]
@@ -170,13 +171,14 @@ def _round_trip(
     for i, branch in enumerate(kin.branches):
         margin = branches[f"branch_{branch.name}"]
         slot += np.where(margin > 0, 0, 2**i)
-        clear &= np.abs(margin) > CLEAR
+        clear &= clear_of_zero(margin, samples)
     rows = np.arange(len(samples))
     errors = np.max(np.abs(axes[slot, rows] - samples.axes) / closure.axis_scale(samples.reach), axis=1)
     errors = np.where(ok[slot, rows], errors, np.inf)
     if not clear.any():
         raise Disagreement(f"{what}: no sample has clear branches")
-    return worst(kin, what, errors[clear], samples.take(clear), AXES_TOLERANCE)
+    part = samples.take(clear)
+    return worst(kin, what, errors[clear], part, AXES_TOLERANCE, part.ease * part.pose_ease)
 
 
 def _compare(kin: Kinematics, problem: Problem, solutions: tuple[Array, Array], place: str) -> int:

@@ -19,6 +19,7 @@ from derive.ir.symbols import (
     SCALE,
 )
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.no_pose import why_no_pose
 from derive.plate.plate import home_flag
 from derive.witness.closure import LEAST_MARGIN, POSE, Closure
 from derive.witness.disagreement import Disagreement
@@ -30,6 +31,8 @@ POSES = 24
 """Regular poses of each machine."""
 REGULAR = 0.05
 """The least singular value of the scaled Jacobian at a regular pose."""
+_LEAST_REGULAR = 5e-5
+"""The same where a machine has no pose that is more regular: one of its links is a thousandth of the others."""
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths (a gantry)."""
 _CANDIDATES = 100
@@ -39,8 +42,10 @@ _NEAR_CANDIDATES = 400
 """Poses near home to try where branches have assembly modes of their own."""
 _LOOP_CANDIDATES = 2500
 """Random axis values to try: few of them close a loop."""
+_SHIFT = 50.0
+"""The largest random value of a length whose nominal value is zero, as far as the machine is that large."""
 _SPREAD = {Role.PITCH: 20.0, Role.GEAR: 0.1, Role.COUPLING: 0.5, Role.ANGLE: 200.0}
-"""The largest random value of a parameter whose nominal value is zero, in reaches."""
+"""The largest random value of another parameter whose nominal value is zero."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +63,11 @@ class Samples:
     """A length of the size of the machine."""
     jacobian: Array
     """∂ task / ∂ axes per radian, by automatic differentiation of the closure."""
+    ease: Array
+    """How many times more rounding joints show that are found from the pose than at a regular pose: near a type 1
+    singularity."""
+    pose_ease: Array
+    """The same of a pose that is found from the joints: near a type 2 singularity."""
 
     def __len__(self) -> int:
         return len(self.axes)
@@ -66,7 +76,7 @@ class Samples:
         """The chosen rows."""
         rows = {
             f: getattr(self, f)[chosen]
-            for f in ("machine", "parameters", "axes", "joints", "pose", "reach", "jacobian")
+            for f in ("machine", "parameters", "axes", "joints", "pose", "reach", "jacobian", "ease", "pose_ease")
         }
         return replace(self, values={k: v[chosen] for k, v in self.values.items()}, **rows)
 
@@ -89,11 +99,23 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
     outputs, status = run(kin.forward, values)
     values |= outputs
     pose = np.stack([outputs[name] for name in POSE], axis=1)
-    samples = Samples(values, machine, parameters, axes, joints, pose, reach, np.empty(len(axes)))
+    samples = Samples(
+        values,
+        machine,
+        parameters,
+        axes,
+        joints,
+        pose,
+        reach,
+        np.empty((len(axes), 0)),
+        np.ones(len(axes)),
+        np.ones(len(axes)),
+    )
     inside = _inside(kin.mechanism, closure, samples)
     if refused := np.flatnonzero(inside & (status != Status.OK) & (kin.mechanism.chain is not None)).tolist():
         raise Disagreement(f"forward kinematics refuses a possible pose: {describe(kin, samples, refused[0])}")
-    samples = replace(samples, jacobian=np.empty((len(axes), 0)))
+    if not inside.any():
+        raise Disagreement(why_no_pose(kin.mechanism))
     samples = samples.take(inside & np.asarray(status == Status.OK, dtype=bool))
     chosen = _first_regular(closure, samples)
     possible = len(
@@ -111,12 +133,22 @@ def _first_regular(closure: Closure, samples: Samples) -> Samples:
     order = _rank_within(samples.machine, np.ones(len(samples), dtype=bool))
     for part in (samples.take(order <= _FIRST), samples):
         found = replace(part, jacobian=jacobian_of(closure, part))
-        regular = _least_singular_value(closure, found) > REGULAR
+        largest, least = _singular_values(closure, found)
+        ease = np.maximum(1.0, REGULAR / np.maximum(least, _LEAST_REGULAR))
+        found = replace(found, ease=ease, pose_ease=np.maximum(1.0, REGULAR * largest))
+        regular = least > _regular(found.machine, least)
         chosen = regular & (_rank_within(found.machine, regular) <= POSES)
         wanted = np.minimum(np.bincount(samples.machine), POSES)
         if np.all(np.bincount(found.machine[chosen], minlength=len(wanted)) >= wanted):
             break
     return found.take(chosen)
+
+
+def _regular(machine: NDArray[np.int64], least: Array) -> Array:
+    """The least singular value that is regular, of each row: less where its machine has no pose above `REGULAR`."""
+    best = np.zeros(machine.max(initial=0) + 1)
+    np.maximum.at(best, machine, least)
+    return np.where(best > REGULAR, REGULAR, np.maximum(best / 2, _LEAST_REGULAR))[machine]
 
 
 def _tried(mechanism: Mechanism) -> int:
@@ -136,7 +168,9 @@ def jacobian_of(closure: Closure, samples: Samples) -> Array:
 def describe(kin: Kinematics, samples: Samples, row: int) -> str:
     """One sample, for a message."""
     axes = ", ".join(f"{j.name}={samples.axes[row, i]:.6g}" for i, j in enumerate(kin.mechanism.joints))
-    machine = ", ".join(f"{p.name}={samples.values[p.name][row]:.6g}" for p in kin.mechanism.parameters)
+    machine = ", ".join(
+        f"{p.name}={samples.values[p.name][row]:.6g}" for p in kin.mechanism.parameters if p.fixed is None
+    )
     return f"at {axes}" + (f" of the machine {machine}" if machine else "")
 
 
@@ -149,8 +183,9 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
     cones = [c for rod in kin.mechanism.rods for c in (rod.base_cone, rod.plate_cone) if c is not None]
     names -= {s.name for cone in cones for s in cone.free_symbols}  # they refuse poses, and change no answer
     values = {}
+    largest = min(_SHIFT, float(_reach(kin.mechanism, _nominal(kin))[0]))
     for parameter in kin.parameters:
-        drawn = _draw(parameter, count, rng) if parameter.name in names else np.full(count, parameter.nominal)
+        drawn = _draw(parameter, count, rng, largest) if parameter.name in names else np.full(count, parameter.nominal)
         drawn[0] = parameter.nominal
         values[parameter.name] = drawn
     if MIN_TYPE2_MARGIN in values:  # every regular solution counts
@@ -163,10 +198,17 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
     return {name: column[accepted] for name, column in (values | constants).items()}
 
 
-def _draw(parameter: Parameter, count: int, rng: Generator) -> Array:
+def _nominal(kin: Kinematics) -> dict[str, Array]:
+    """The values of the nominal machine."""
+    given = {p.name: np.full(1, p.nominal) for p in (*kin.mechanism.parameters, *kin.parameters)}
+    constants, _ = run(kin.setup, given)
+    return given | {name: np.broadcast_to(value, (1,)) for name, value in constants.items()}
+
+
+def _draw(parameter: Parameter, count: int, rng: Generator, largest: float) -> Array:
     """Random values of one parameter; a parameter with a default keeps it in half of the machines."""
     low, high = max(parameter.low, -1e3), min(parameter.high, 1e3)
-    size = abs(parameter.nominal) or _SPREAD.get(parameter.role, 50.0)
+    size = abs(parameter.nominal) or _SPREAD.get(parameter.role, largest)
     if parameter.role is Role.LENGTH:
         drawn = parameter.nominal * rng.uniform(0.5, 1.5, count)
     elif parameter.role is Role.SIGNED_LENGTH:
@@ -221,13 +263,14 @@ def _unit(joint: Joint) -> float:
     return np.pi / 180.0 if joint.is_angle else 1.0
 
 
-def _least_singular_value(closure: Closure, samples: Samples) -> Array:
-    """The least singular value of the Jacobian of the joints that are solved for, with lengths in reaches: small near a
-    singularity of either type.
+def _singular_values(closure: Closure, samples: Samples) -> tuple[Array, Array]:
+    """The largest and the least singular value of the Jacobian of the joints that are solved for, with lengths in
+    reaches: the least is small near a type 1 singularity, the largest is large near a type 2 singularity.
     """
     columns, rows = closure.joint_scale(samples.reach), closure.row_scale(samples.reach)
     scaled = np.nan_to_num(samples.jacobian * columns[:, None, :] / rows[:, :, None], posinf=0.0, neginf=0.0)
-    return np.asarray(np.linalg.svd(scaled[:, :, closure.solved], compute_uv=False)[:, -1])
+    sizes = np.linalg.svd(scaled[:, :, closure.solved], compute_uv=False)
+    return np.asarray(sizes[:, 0]), np.asarray(sizes[:, -1])
 
 
 def _rank_within(group: NDArray[np.int64], chosen: NDArray[np.bool_]) -> NDArray[np.int64]:

@@ -23,6 +23,7 @@ from derive.mechanism import (
     radians,
     rotary,
 )
+from tests.machines.angle_machines import NUMBERS
 from tests.machines.searched_machines import SEARCHED
 
 X, Y, Z, R = (linear(name, f"slide {name}") for name in ("X", "Y", "Z", "R"))
@@ -381,4 +382,5 @@ MACHINES: Mapping[str, Mechanism] = {
     **ONE_ROOT,
     **OTHERS,
     **SEARCHED,
+    **NUMBERS,
 }

@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 
 from derive.description.mechanism import Mechanism, Role
 from derive.description.validate import validate
+from derive.geometry.frames import Motion
 from derive.pipeline import Built, derive_one, files_of, languages
 from tests.catalogue.closure import Closure
+from tests.machines.angle_machines import MEANT
 from tests.machines.collection import MACHINES
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled_text
@@ -69,7 +71,11 @@ def made(name: str) -> Made:
     offsets = {j.offset.name: 7.0 * k - 20.0 for k, j in enumerate(mechanism.joints)}
     robot = robot_class(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
     lengths = [abs(p.nominal) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
-    return Made(mechanism, built, robot, Closure(mechanism, robot.parameters), sum(lengths) or 500.0)
+    shifts = mechanism.chain.factors if mechanism.chain is not None else ()
+    terms = [t for f in shifts if f.motion is Motion.SHIFT for t in f.amount.as_ordered_terms()]
+    lengths += [abs(float(t)) for t in terms if t.is_number]
+    meant = MEANT.get(name, mechanism)
+    return Made(mechanism, built, robot, Closure(meant, robot.parameters), sum(lengths) or 500.0)
 
 
 def _imported(mechanism: Mechanism, built: Built) -> type[softkin.Mechanism]:

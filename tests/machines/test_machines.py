@@ -12,6 +12,7 @@ import softkin
 from numpy.typing import NDArray
 from softkin import KinematicsError, Status
 
+from tests.machines import angle_machines
 from tests.machines.collection import HELD, MACHINES, PARAMETERS_DECIDE
 from tests.machines.made import Array, Made, made
 from tests.text.controller import OK
@@ -50,6 +51,7 @@ EXPECTED = {
     "palletizer with both motors at the base": 4,
     "arm whose wrist goes sideways": 8,
     "arm in metres with a bent wrist and a shoulder beside its axis": 8,
+    **angle_machines.EXPECTED,
 }
 """The largest number of solutions, as a search of the closure from many starts finds them."""
 MOST = 300

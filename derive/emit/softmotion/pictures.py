@@ -15,7 +15,8 @@ def pictures_of(kinematics: Kinematics) -> dict[str, bytes]:
     from derive.emit.picture.page import page
 
     block = kinematics.mechanism.block_name
-    names = {p.name: input_name(p) for p in kinematics.mechanism.parameters}
+    parameters = kinematics.mechanism.parameters
+    names = {p.name: input_name(p) if p.fixed is None else f"{p.nominal:g}" for p in parameters}
     drawn = page(drawing_of(kinematics), block, names)
     made = pictures(drawn.marks, drawn.height)
     return {f"{FOLDER}/{block}.png": made.png, f"{FOLDER}/{block}.svg": made.svg}

@@ -45,7 +45,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
-from derive.kinematics.branch_assignment import Assignment, assign, steps_and_rest, with_branch_signs
+from derive.kinematics.branch_assignment import Assignment, assign, refuse_unnamed, steps_and_rest, with_branch_signs
 from derive.kinematics.forward import (
     pose_at_axes,
 )
@@ -90,9 +90,7 @@ def solve_both(mechanism: Mechanism) -> Scanned:
             f"a trial along {mechanism.search.joint.name} may be out of reach in its two-root steps only"
         )
     found, asked, unnamed = steps_and_rest(mechanism, trial, forward)
-    if unnamed:
-        names = ", ".join(s.step.name for s in unnamed)
-        raise DescriptionError(f"no branch names the two solutions for {names}")
+    refuse_unnamed(unnamed)
     return Scanned(mechanism, forward, closed, closed_branches, trial, found, asked)
 
 

@@ -145,7 +145,7 @@ def _amplitude(
         across / divisor,
         right,
         determinant,
-        equation.scales.get(angle, common * problem.scale),
+        equation.scales.get(angle, common * problem.scale_of(equation)),
         factors,
         told=told,
     )

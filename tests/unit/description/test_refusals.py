@@ -114,7 +114,10 @@ REFUSED = {
         "the closure has 3 equations, and the task commands only 2 quantities (x, y)",
     ),
     "z moved and not commanded": (arm(chain=ARM * Tz(L1 * sin(A2))), "z is not commanded but the joints move it"),
-    "a radius that is never positive": (arm(positive=(-1 - cos(A2) ** 2,)), "no sampled pose is possible"),
+    "a radius that is never positive": (
+        arm(positive=(-1 - cos(A2) ** 2,)),
+        "-cos(a2)**2 - 1 must be positive, and is at most -1: check the nominal values of parameters",
+    ),
     "a parameter with the name of a value": (with_parameter("reach"), f"parameter 'reach' {TAKEN}"),
     "a parameter with the name of a limit": (with_parameter("upper_a1"), f"'upper_a1' {GIVEN}"),
     "a parameter with the name of an effective limit": (with_parameter("lowest_a1"), f"'lowest_a1' {GIVEN}"),

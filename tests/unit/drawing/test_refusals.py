@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+import sympy as sp
 
 from derive.description.mechanism import DescriptionError, Mechanism, X, Y, rod
 from derive.description.validate import validate
 from derive.drawing.drawing import drawing_of
+from derive.drawing.pose import drawn_pose, nominal_machine
+from derive.ir.program import Require, Status
 from derive.kinematics.build import build
+from derive.report.reference_calls import margins
 from tests.unit.drawing.machines import CATALOGUE
 
 SCISSOR = CATALOGUE["Kin_P2X_Type2"]
@@ -32,10 +37,6 @@ WRONG = {
         _scissor(rod("1", *(SCISSOR.bars[0].base, SCISSOR.bars[0].plate), LENGTH)),
         "nothing that is drawn moves with joint 'A2': name its bars",
     ),
-    "no pose to draw": (
-        replace(SCISSOR, joints=tuple(replace(j, nominal=2.0 * j.nominal) for j in SCISSOR.joints)),
-        "no pose can be drawn: the nominal values of its joints fit no pose",
-    ),
     "an end that goes on no circle": (
         replace(
             CRANE, bars=(rod("reach", (0, 0, 0), (0, 0, R), R), rod("boom", (0, 0, THETA), (X, Y, THETA + 100), 200))
@@ -52,6 +53,27 @@ def test_refused(case: str) -> None:
     kinematics = build(validate(mechanism))
     with pytest.raises(DescriptionError, match=message):
         drawing_of(kinematics)
+
+
+FAR = replace(SCISSOR, joints=tuple(replace(j, nominal=2.0 * j.nominal) for j in SCISSOR.joints))
+
+
+def test_nominal_joints_that_fit_no_pose() -> None:
+    """Another pose is drawn, away from singular ones."""
+    machine = nominal_machine(build(validate(FAR)))
+    pose = drawn_pose(machine)
+    assert pose.axes != tuple(j.nominal for j in FAR.joints)
+    assert np.min(np.abs(margins(machine, [pose.axes]))) > 0.05
+
+
+def test_no_pose_can_be_drawn() -> None:
+    """Where no sampled pose is possible either, the nominal values are named."""
+    kinematics = build(validate(FAR))
+    nowhere = replace(kinematics.singularity, body=(Require(sp.false, Status.IMPOSSIBLE), *kinematics.singularity.body))
+    refused = replace(kinematics.forward, body=(Require(sp.false, Status.IMPOSSIBLE), *kinematics.forward.body))
+    machine = nominal_machine(replace(kinematics, singularity=nowhere, forward=refused))
+    with pytest.raises(DescriptionError, match="no pose can be drawn: the nominal values of its joints fit no pose"):
+        drawn_pose(machine)
 
 
 def test_a_bar_of_something_unknown_is_refused_before() -> None:

@@ -1,0 +1,185 @@
+"""The refusals of descriptions that are sound but for one part: each sentence names the part."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import sympy as sp
+from sympy import cos, sin
+
+from derive.description.catalogue import MECHANISMS, catalogue, load
+from derive.description.mechanism import Constraint, DescriptionError, Mechanism, Task, Turning, X, Y, rod
+from derive.description.validate import validate
+from derive.frames import Rz, Tx
+from derive.ir.program import Output, Program, Require, Status
+from derive.ir.symbols import real
+from derive.kinematics.build import build
+from derive.kinematics.kinematics import Kinematics
+from derive.mechanism import assembly, length, linear
+from derive.witness import Disagreement, witness
+from derive.witness.terms import term
+from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, invention
+
+PLANAR, HEXAPOD = (load(MECHANISMS / f"{n}.py") for n in ("softkin_planar_3rrr", "kin_hexapod"))
+SCISSOR = load(MECHANISMS / "kin_p2x_type2.py")
+ARM = {
+    "parameters": (L1, L2),
+    "joints": (A1, A2),
+    "chain": Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2),
+    "task": Task("xy"),
+    "branches": (ELBOW,),
+}
+
+
+def arm(**changes: object) -> Mechanism:
+    """The arm with two links in a plane, changed."""
+    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **{**ARM, **changes}).mechanism
+
+
+def with_joint(**changes: object) -> Mechanism:
+    return arm(joints=(A1, replace(A2, **changes)))
+
+
+COSINE = Constraint(sp.Gt(real("nowhere"), 0), "a condition")
+SHORTER = Constraint(sp.Lt(L1.symbol, L2.symbol), "the first link is the shorter one")
+MOVED = replace(PLANAR.rods[0], plate=tuple(p + PLANAR.joints[0] for p in PLANAR.rods[0].plate))
+DESCRIPTIONS = {
+    "no joints": (arm(joints=(), branches=()), "the mechanism has no joints"),
+    "a joint in small letters": (
+        arm(joints=(replace(A1, name="a1"), A2)),
+        "'a1' cannot name a joint: a capital letter, then letters and digits",
+    ),
+    "a nominal value outside": (
+        with_joint(domain=(0.0, 90.0), nominal=100.0),
+        "joint 'A2': its nominal value 100 is outside its domain (0.0, 90.0)",
+    ),
+    "a pitch without limits": (with_joint(pitch=L1.symbol), "joint 'A2' carries a pitch: it needs a limit_range"),
+    "a coupling of a later joint": (
+        arm(joints=(replace(A1, coupling=A2.motor), A2)),
+        "coupling of joint 'A1' reads 'motor_a2', which is not the motor of an earlier joint",
+    ),
+    "a pitch of a joint": (
+        with_joint(pitch=A1.symbol, limit_range=(-1.0, 1.0)),
+        "pitch of joint 'A2' reads 'a1', which is not a parameter",
+    ),
+    "periods without a joint": (arm(periods=("A1",)), "periods must name every multi-turn joint once: A1, A2"),
+    "neither a chain nor a closure": (arm(chain=None), "the mechanism needs either a chain or closure equations"),
+    "a chain and a closure": (arm(closure=(X - L1,)), "the mechanism needs either a chain or closure equations"),
+    "a cone without a home pose": (
+        replace(SCISSOR, rods=(rod("1", (A1, 0), (X, Y), L1, base_cone=sp.Integer(1)),), closure=()),
+        "a cone of a rod's joint is about the rod at the home pose, and the mechanism has none",
+    ),
+    "a constraint of something unknown": (
+        arm(constraints=(COSINE,)),
+        "constraint 'a condition' reads 'nowhere', which is no parameter of this mechanism",
+    ),
+    "a constraint that is broken": (
+        arm(constraints=(SHORTER,)),
+        "the nominal parameters break the constraint 'the first link is the shorter one'",
+    ),
+    "a platform that follows a direction": (
+        replace(
+            HEXAPOD, task=Task("xyz", Turning.DIRECTION), joints=HEXAPOD.joints[:5], rods=HEXAPOD.rods[:5], positive=()
+        ),
+        "a loop may turn its platform about z, or about every axis: it commands no direction",
+    ),
+    "a platform with the offset interface": (
+        replace(PLANAR, offset_interface=True),
+        "needs offset_interface=False: a position alone leaves its joints open",
+    ),
+    "a platform with an assembly": (
+        replace(PLANAR, assembly=assembly("tcp", cos(PLANAR.joints[0]), margin="m", above=+1, below=-1)),
+        "needs no assembly: its home pose tells the mode",
+    ),
+    "a platform with a rod that goes with a joint": (
+        replace(
+            PLANAR,
+            rods=(
+                replace(PLANAR.rods[0], plate=tuple(p + PLANAR.joints[0] for p in PLANAR.rods[0].plate)),
+                *PLANAR.rods[1:],
+            ),
+        ),
+        "rod '1': its end must be a point of the plate",
+    ),
+    "a platform with an equation beside its rods": (
+        replace(PLANAR, closure=(X - PLANAR.joints[0],)),
+        "the closure has 4 equations, and the task commands only 3 quantities",
+    ),
+    "a platform with half a home pose": (replace(PLANAR, home=(0,)), "needs a home pose of 3 coordinates, and has 1"),
+}
+
+
+@pytest.mark.parametrize("kind", DESCRIPTIONS)
+def test_refused(kind: str) -> None:
+    mechanism, sentence = DESCRIPTIONS[kind]
+    with pytest.raises(DescriptionError, match=re.escape(sentence)):
+        build(validate(mechanism))
+
+
+def test_a_folder_without_files(tmp_path: Path) -> None:
+    with pytest.raises(DescriptionError, match="no mechanism files"):
+        catalogue(tmp_path)
+
+
+def test_a_file_of_another_language(tmp_path: Path) -> None:
+    path = tmp_path / "kin_arm.txt"
+    path.write_text("")
+    with pytest.raises(DescriptionError, match=r"kin_arm\.txt: not a Python file"):
+        load(path)
+
+
+def test_what_no_equation_can_have() -> None:
+    """The witness reads descriptions itself, and refuses what it does not know."""
+    with pytest.raises(DescriptionError, match="strange is neither a joint nor a parameter"):
+        term(real("strange"), {})
+    with pytest.raises(DescriptionError, match=r"has no place in a description: tan\(strange\)"):
+        term(sp.tan(real("strange")), {real("strange"): 1.0})
+
+
+@pytest.fixture(scope="module")
+def planar_arm() -> Kinematics:
+    return build(validate(arm(offset_interface=False)))
+
+
+def bent(program: Program, name: str, factor: float) -> Program:
+    """The program with one output multiplied."""
+    outputs = (Output(o.name, o.value * sp.Float(factor)) if o.name == name else o for o in program.outputs)
+    return replace(program, outputs=tuple(outputs))
+
+
+def test_a_program_that_refuses_a_regular_pose(planar_arm: Kinematics) -> None:
+    closed = Require(sp.Le(real("axis_a1"), 10), Status.UNREACHABLE)
+    spoiled = replace(planar_arm.jacobian, body=(closed, *planar_arm.jacobian.body))
+    with pytest.raises(Disagreement, match=r"jacobian refuses a regular pose: at A1=.*of the machine link"):
+        witness(replace(planar_arm, jacobian=spoiled))
+
+
+def test_a_branch_without_a_clear_sample(planar_arm: Kinematics) -> None:
+    with pytest.raises(Disagreement, match="no sample has clear branches"):
+        witness(replace(planar_arm, forward=bent(planar_arm.forward, "branch_elbow", 0.0)))
+
+
+def test_a_branch_with_the_other_sign(planar_arm: Kinematics) -> None:
+    with pytest.raises(Disagreement, match="branch 'elbow' has the opposite sign of its indicator at A1="):
+        witness(replace(planar_arm, forward=bent(planar_arm.forward, "branch_elbow", -1.0)))
+
+
+def test_a_machine_that_is_always_singular(planar_arm: Kinematics) -> None:
+    """A chain whose second joint moves nothing to speak of: no pose is regular."""
+    chain = Rz(A1) * Tx(L1) * Rz(A2 * sp.Rational(1, 10**9)) * Tx(L2)
+    with pytest.raises(Disagreement, match="a machine has no regular pose: is the mechanism always singular"):
+        witness(replace(planar_arm, mechanism=replace(planar_arm.mechanism, chain=chain)))
+
+
+def test_the_indicator_of_an_assembly_must_tell() -> None:
+    """An indicator that is always positive names no assembly mode."""
+    size = length("rod_length", "rod", nominal=120.0)
+    first, second = linear("S1", "slide"), linear("S2", "slide")
+    rods = (rod("1", (first, 0), (X, Y), size), rod("2", (0, second), (X, Y), size))
+    always = assembly("tcp", 1 + sin(first) ** 2, margin="m", above=+1, below=-1)
+    mechanism = arm(chain=None, rods=rods, joints=(first, second), parameters=(size,), branches=(), assembly=always)
+    with pytest.raises(DescriptionError, match="its indicator does not tell the two solutions apart"):
+        build(mechanism)

@@ -1,0 +1,178 @@
+"""Descriptions as people write them who write one for the first time: each fault is told by a sentence, at once."""
+
+from __future__ import annotations
+
+import re
+import time
+from pathlib import Path
+
+import pytest
+
+from derive.description.catalogue import load
+from derive.description.mechanism import DescriptionError, Mechanism
+from derive.pipeline import _attempt
+
+HEAD = """from sympy import cos, sin, pi, sqrt
+from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz, denavit_hartenberg
+from derive.mechanism import *
+A1, A2, A3, A4, A5, A6 = (rotary(f"A{k}", "turn") for k in (1, 2, 3, 4, 5, 6))
+Z1 = linear("Z1", "lift")
+L1 = length("link_1", "first link", nominal=300.0)
+L2 = length("link_2", "second link", nominal=250.0)
+"""
+CHAIN = "Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(Z1) * Rz(A4)"
+SOUND = {
+    "name": '"Kin_Naive"',
+    "vendor": "Vendor.TEXTBOOK",
+    "family": '"scara"',
+    "source": '"none"',
+    "summary": '"A machine."',
+    "joints": "(A1, A2, Z1, A4)",
+    "parameters": "(L1, L2)",
+    "task": 'Task("xyz", Turning.ABOUT_Z)',
+    "chain": CHAIN,
+    "branches": '(branch("elbow", sin(A2), right=1, left=-1),)',
+}
+
+
+def written(first: str = "", **changes: str) -> str:
+    """The text of a description: `first` before the mechanism, some of its parts changed, or left out where empty."""
+    parts = {name: part for name, part in {**SOUND, **changes}.items() if part}
+    return HEAD + first + "\nMECHANISM = Mechanism(" + ", ".join(f"{n}={p}" for n, p in parts.items()) + ")\n"
+
+
+def nominal(value: str) -> str:
+    return written(f'L1 = length("link_1", "link", nominal={value})')
+
+
+SIX = "(A1, A2, A3, A4, A5, A6)"
+GENERAL = ", ".join(f"(A{k}, L1, L2, {twist})" for k, twist in enumerate((0.7, 1.1, 0.4, 1.3, 0.9, 0.3), 1))
+
+FAULTS = {
+    "a name with a typing error": (written(chain=CHAIN.replace("L2", "L22")), ":9: NameError: name 'L22' is not"),
+    "a parenthesis too few": (written(chain="Rz(A1 * Tx(L1"), "SyntaxError: '(' was never closed"),
+    "a joint too few in the list": (written(joints="(A1, A2, Z1)"), "chain reads 'a4', which is not a joint or a par"),
+    "a joint too few in the chain": (written(chain=CHAIN.replace("* Tz(Z1) ", "")), "joint 'Z1' occurs nowhere in"),
+    "a parameter too few": (written(parameters="(L1,)"), "chain reads 'link_2', which is not a joint or a parameter"),
+    "a joint used twice": (written(chain=CHAIN.replace("A2", "A1")), "joint 'A2' occurs nowhere in the closure"),
+    "a joint listed twice": (written(joints="(A1, A1, Z1, A4)"), "joint 'a1' is given 2 times"),
+    "a joint by its name": (written(chain=CHAIN.replace("A1", '"A1"')), "TypeError: Rz('A1') needs a joint, a param"),
+    "nothing for a joint": (written(chain=CHAIN.replace("A1", "None")), "Rz(None) needs a joint, a parameter, a num"),
+    "names for joints": (written(joints='("A1", "A2")'), "joints holds 'A1' (a str), and no Joint: write joints=("),
+    "names for parameters": (written(parameters='("link_1",)'), "parameters holds 'link_1' (a str), and no Parameter"),
+    "one joint without a comma": (written(joints="(A1)"), "joints must be several, as in joints=(A1, A2): one alone"),
+    "a sum of frames": (written(chain="Rz(A1) + Tx(L1)"), "TypeError: unsupported operand type(s) for +: 'Chain' a"),
+    "a matrix for a chain": (written(chain=f"({CHAIN}).matrix()"), "and no Chain: write chain=Rz(A1) * Tx(link), a pr"),
+    "a list for a chain": (written(chain="[Rz(A1), Tx(L1)]"), "(a list), and no Chain: write chain=Rz(A1) * Tx(link)"),
+    "a length that is no number": (nominal('float("nan")'), "parameter 'link_1': its nominal value is not a number"),
+    "a length in words": (nominal('"300"'), "parameter 'link_1': its nominal value is '300' (a str), and no number"),
+    "a length of nothing": (nominal("None"), "parameter 'link_1': its nominal value is None (a NoneType), and no n"),
+    "a length of zero": (nominal("0"), "parameter 'link_1': its nominal value 0 is outside its range ]0 .. 1e+09]"),
+    "no nominal value": (written('L1 = length("link_1", "l")'), "TypeError: length() missing 1 required keyword-only"),
+    "an exception in a function": (
+        written("def chain():\n    return 1 / 0\n", chain="chain()"),
+        "ZeroDivisionError: division by zero",
+    ),
+    "a comparison in the chain": (
+        written(chain=CHAIN.replace("Z1", "Z1.symbol > 0")),
+        "Tz(z1 > 0) of the chain is given what is true or false: it needs an angle or a length",
+    ),
+    "a comparison for an indicator": (
+        written(branches='(branch("elbow", A2.symbol > 0, right=1, left=-1),)'),
+        "branch 'elbow' holds a2 > 0, which is true or false: state the quantity whose sign tells",
+    ),
+    "a comparison for a positive quantity": (
+        written(positive="(A2.symbol > 0,)"),
+        "positive holds a2 > 0, which is true or false: state the quantity whose sign tells",
+    ),
+    "one positive quantity": (written(positive="sin(A2)"), "positive must be several, as in positive=(expression,)"),
+    "rows that do not exist": (written(task='Task("xz")'), "the task commands 'xz': it must be 'xy', 'xyz', or ''"),
+    "a word for a task": (written(task='"xyz"'), "task is 'xyz' (a str), and no Task: write task=Task("),
+    "a word for a turning": (written(task='Task("xyz", "about z")'), "the turning of the task is 'about z' (a str), a"),
+    "more rows than joints": (
+        written(task='Task("xyz", Turning.FULL)'),
+        "the task commands 6 quantities (x, y, z, turn x, turn y, turn z), and there are only 4 joints; command less",
+    ),
+    "fewer rows than joints": (written(task='Task("xy")'), "2 joints too many: the task commands 2 quantities (x, y)"),
+    "no link between two axes": (
+        written(chain=CHAIN.replace("* Tx(L2) ", ""), parameters="(L1,)"),
+        "the closure does not determine a2, a4: 4 unknowns in 5 equations (x, y, z, cos heading, sin heading) leave 1",
+    ),
+    "a branch with one sign": (
+        written(branches='(branch("elbow", sin(A2), right=1, left=1),)'),
+        "branch 'elbow' needs two names with the signs +1 and -1, not {'right': 1, 'left': 1}",
+    ),
+    "no branch": (written(branches=""), "no branch names the two solutions for a2: state one for each, by a quantity"),
+    "a branch without a comma": (
+        written(branches='branch("elbow", sin(A2), right=1, left=-1)'),
+        "branches must be several, as in branches=(branch(...),): one alone needs a comma behind it",
+    ),
+    "an indicator in degrees": (
+        written(branches='(branch("elbow", sin(A2) - 90, right=1, left=-1),)'),
+        "its indicator agrees with 0 steps, not one: its sign must change where two solutions meet, those for a2",
+    ),
+    "degrees": (written(chain=CHAIN.replace("Rz(A2)", "Rz(90) * Rz(A2)")), "Rz(90) of the chain turns by 90 radians"),
+    "a size for a length": (
+        written(chain=CHAIN.replace("Tz(Z1)", "Tz(abs(Z1.symbol))")),
+        "Tz(Abs(z1)) of the chain holds Abs(z1): it is made of +, -, *, powers, sines and cosines",
+    ),
+    "the root of a joint": (
+        written(chain=CHAIN.replace("Tz(Z1)", "Tz(sqrt(Z1.symbol))")),
+        "Tz(sqrt(z1)) of the chain holds sqrt(z1): it is made of",
+    ),
+    "one over a joint": (
+        written(chain=CHAIN.replace("Tz(Z1)", "Tz(1 / Z1.symbol)")),
+        "Tz(1/z1) of the chain holds 1/z1: it is made of",
+    ),
+    "a sine of another library": (
+        written("import math", branches='(branch("elbow", math.sin(A2), right=1, left=-1),)'),
+        "TypeError: must be real number, not Joint",
+    ),
+    "a flange that is tilted": (
+        written(chain=CHAIN.replace("Rz(A4)", "Rx(pi / 4) * Rz(A4)")),
+        "its rotation is not one turn about z, it turns about z, x, z; command the whole rotation, or a direction, or",
+    ),
+    "no vendor": (written(vendor=""), "TypeError: Mechanism.__init__() missing 1 required positional argument: 'vend"),
+    "a word for a vendor": (written(vendor='"Acme"'), "vendor is 'Acme' (a str), and no Vendor: write vendor=Vendor."),
+    "a name with a blank": (written(name='"Kin Naive"'), "'Kin Naive' cannot name a function block"),
+    "no mechanism": (HEAD, "defines no MECHANISM"),
+    "a name for a held joint": (written(held='("A1",)'), "held holds 'A1' (a str), and no Joint: write held=(E1,)"),
+    "three numbers in a row of a table": (
+        written(chain="denavit_hartenberg((A1, 0, L1), (A2, 0, L2, 0))"),
+        "ValueError: not enough values to unpack (expected 4, got 3)",
+    ),
+    "a length divided by zero": (written(chain=CHAIN.replace("Tx(L1)", "Tx(L1 / 0)")), "holds what is no number"),
+    "six axes at any angles": (
+        written(joints=SIX, chain=f"denavit_hartenberg({GENERAL})", task='Task("xyz", Turning.FULL)', branches=""),
+        "no subproblem determines a1, a2, a3, a4, a5, a6: 6 unknowns in 3 equations (x, y, z) and the comm",
+    ),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_the_fault_is_told(fault: str, tmp_path: Path) -> None:
+    """One sentence that names the line or the part, and what is wrong; never an error of the compiler."""
+    text, sentence = FAULTS[fault]
+    path = tmp_path / "kin_naive.py"
+    path.write_text(text)
+    start = time.process_time()
+    try:
+        answer = _attempt(None, (path, load(path)))
+    except DescriptionError as problem:
+        answer = str(problem)
+    assert isinstance(answer, str) and sentence in answer, answer
+    assert not re.search(r"\(\w+\.py:\d+\)$", answer), "an error of the compiler"
+    assert time.process_time() - start < 20.0
+
+
+def test_lists_are_as_good_as_tuples(tmp_path: Path) -> None:
+    """What can only be meant in one way is understood."""
+    path = tmp_path / "kin_naive.py"
+    path.write_text(written(joints="[A1, A2, Z1, A4]", parameters="[L1, L2]"))
+    assert load(path).joints == load_sound(tmp_path).joints
+
+
+def load_sound(folder: Path) -> Mechanism:
+    path = folder / "kin_sound.py"
+    path.write_text(written())
+    return load(path)
