@@ -54,6 +54,7 @@ class Why(Enum):
     COLUMNS_UNEVEN = "columns not of length one; was the frame converted from REAL?"
     COLUMNS_ASKEW = "columns not at right angles; was the frame converted from REAL?"
     OPPOSITE = "the tool points exactly the opposite way"
+    ACROSS = "the tool points across the plane in which the arm can turn it"
     OUT_OF_PLANE = "{}: a planar machine has none"
     OUT_OF_REACH = "{}: out of reach"
     CANNOT_REACH = "{} cannot reach"

@@ -287,8 +287,11 @@ def _offset_configuration(
 
 
 def _projection_program(mechanism: Mechanism) -> Program:
-    """The rotation nearest to the commanded one that the flange can take; of a direction, with any twist about it."""
-    if mechanism.task.turning in (Turning.DIRECTION, Turning.FULL):
+    """The rotation nearest to the commanded one that the flange can take; of a direction, with any twist about it.
+
+    Of a pitch it depends on the position, too: nothing is projected before that is known.
+    """
+    if mechanism.task.turning is not Turning.ABOUT_Z:
         own = [Output(r.name, r) for r in ROTATION_ENTRIES]
         return normalise("projection", (), own)
     cos_heading, sin_heading = real("cos_heading"), real("sin_heading")
@@ -305,7 +308,7 @@ def _turns_in_a_coupling(mechanism: Mechanism) -> bool:
 
 def _freedom(mechanism: Mechanism) -> Freedom:
     """How the flange turns."""
-    if mechanism.task.turning is Turning.FULL:
+    if mechanism.task.turning is Turning.FULL or mechanism.followed_turns:
         return Freedom.THREE
     if mechanism.chain is None:
         return Freedom.ONE if mechanism.is_platform else Freedom.ZERO

@@ -23,6 +23,7 @@ from derive.mechanism import (
     radians,
     rotary,
 )
+from tests.machines.task_machines import TASK_MACHINES
 
 X, Y, Z, R = (linear(name, f"slide {name}") for name in ("X", "Y", "Z", "R"))
 A, B, C, A1, A2, A3, A4, A5, A6, E1 = (
@@ -262,4 +263,5 @@ MACHINES: Mapping[str, Mechanism] = {
     **HELD,
     **ONE_ROOT,
     **OTHERS,
+    **TASK_MACHINES,
 }

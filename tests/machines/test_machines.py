@@ -12,6 +12,7 @@ from softkin import KinematicsError, Status
 
 from tests.machines.collection import HELD, MACHINES, PARAMETERS_DECIDE
 from tests.machines.made import Array, Made, made
+from tests.machines.task_machines import TASK_SOLUTIONS
 from tests.text.controller import OK
 
 EVERY = pytest.mark.parametrize("name", MACHINES)
@@ -34,6 +35,7 @@ EXPECTED = {
     "numbers for lengths": 2,
     "flange that turns against two axes": 4,
     "palletizer with both motors at the base": 4,
+    **TASK_SOLUTIONS,
 }
 """The largest number of solutions, as a search of the closure from many starts finds them."""
 MOST = 300
