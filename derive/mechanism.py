@@ -47,6 +47,7 @@ from derive.description.mechanism import (
     search,
     sign,
     signed_length,
+    transmission,
 )
 from derive.ir.symbols import (
     COORDINATE_NAMES,
@@ -102,4 +103,5 @@ __all__ = [
     "search",
     "sign",
     "signed_length",
+    "transmission",
 ]

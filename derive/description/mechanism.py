@@ -31,6 +31,7 @@ from derive.description.dimensions import (
     radians,
     sign,
     signed_length,
+    transmission,
 )
 from derive.description.errors import DescriptionError
 from derive.description.joints import (
@@ -106,6 +107,7 @@ __all__ = [
     "search",
     "sign",
     "signed_length",
+    "transmission",
 ]
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from derive.description.gears import with_gears
 from derive.description.mechanism import (
     DescriptionError,
     Mechanism,
@@ -84,6 +85,7 @@ from derive.solver.solve import Unsolved
 
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
+    mechanism = with_gears(mechanism)
     check_joints(mechanism)
     if mechanism.is_platform:
         check_home(mechanism)

@@ -204,7 +204,7 @@ def _motor_matrix(mechanism: Mechanism) -> sp.Matrix:
     """The derivative of the joints by the motors: the identity and the gear couplings."""
     motors = [j.motor for j in mechanism.joints]
     return sp.Matrix(
-        len(motors), len(motors), [sp.diff(j.motor + j.coupling, m) for j in mechanism.joints for m in motors]
+        len(motors), len(motors), [sp.diff(j.ratio * j.motor + j.coupling, m) for j in mechanism.joints for m in motors]
     )
 
 

@@ -198,10 +198,12 @@ def _position_symbols(pose: Term) -> dict[sp.Symbol, Term]:
 
 
 def _joint_values(mechanism: Mechanism, axes: Term, known: dict[sp.Symbol, Term]) -> Term:
-    """Joint = motor + coupling of the motors, motor = axis - offset, in radians and lengths."""
+    """Joint = ratio * motor + coupling of the motors, motor = axis - offset, in radians and lengths."""
     motors = [(axes[i] - known[j.offset]) * term(j.unit, {}) for i, j in enumerate(mechanism.joints)]
     named = known | {j.motor: motors[i] for i, j in enumerate(mechanism.joints)}
-    return ca.vertcat(*(motors[i] + term(j.coupling, named) for i, j in enumerate(mechanism.joints)))
+    return ca.vertcat(
+        *(motors[i] * term(j.ratio, named) + term(j.coupling, named) for i, j in enumerate(mechanism.joints))
+    )
 
 
 def _followed_axes(mechanism: Mechanism, known: dict[sp.Symbol, Term]) -> list[Term]:

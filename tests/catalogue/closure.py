@@ -53,13 +53,20 @@ class Closure:
         """Joint values in radians and lengths: motor = axis - offset, joint = motor + coupling."""
         motors = (axes - self.offsets) * self.units
         coupled = self._formulas.couplings
-        return motors + self._evaluate(coupled, motors) if coupled is not None else motors
+        joints = motors * self._ratios() if self._formulas.are_geared else motors
+        return joints + self._evaluate(coupled, motors) if coupled is not None else joints
+
+    def _ratios(self) -> Array:
+        """The turns of every joint per turn of its motor."""
+        return self._evaluate(self._formulas.ratios, np.zeros((1, len(self.mechanism.joints))))
 
     def axes(self, joints: Array) -> Array:
         """Axis values of joint values: couplings come from motors of earlier axes, so motor by motor."""
         motors = np.array(joints)
         for i, coupling in self._formulas.coupled.items():
             motors[:, i] = joints[:, i] - self._evaluate(coupling, motors)[:, 0]
+        if self._formulas.are_geared:
+            motors = motors / self._ratios()
         return motors / self.units + self.offsets
 
     def poses(self, axes: Array) -> tuple[Array, Array]:
@@ -248,6 +255,16 @@ class Formulas:
         """The same of all joints, where any is coupled."""
         motors = tuple(j.motor for j in self._mechanism.joints)
         return self._of(tuple(j.coupling for j in self._mechanism.joints), motors) if self.coupled else None
+
+    @cached_property
+    def are_geared(self) -> bool:
+        """Whether any joint has a gear of its own."""
+        return any(j.ratio != 1 for j in self._mechanism.joints)
+
+    @cached_property
+    def ratios(self) -> Formula:
+        """The gears of the joints."""
+        return self.at_joints(tuple(j.ratio for j in self._mechanism.joints))
 
     def _of(self, expressions: tuple[sp.Expr, ...], names: tuple[sp.Symbol, ...]) -> Formula:
         if (names, expressions) not in self._made:
