@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from math import lcm
 
 import sympy as sp
@@ -28,6 +29,8 @@ from derive.description.mechanism import (
 from derive.geometry.frames import Chain, Motion
 
 Table = dict[sp.Symbol, sp.Expr]
+_LARGEST_DENOMINATOR, _SAME = 10**5, 1e-14
+"""Of a gear that is written as a decimal number, and how near a fraction must be."""
 _NUMBERS_ALONE = "state every angle by motors of earlier axes and its own, or give the gears as numbers"
 
 
@@ -77,8 +80,19 @@ def _form(argument: sp.Expr, symbols: Sequence[sp.Symbol]) -> sp.Expr | None:
     expanded = sp.expand(argument)
     own = sp.Add(*[expanded.coeff(s) * s for s in symbols])
     is_linear = not (expanded - own).free_symbols & set(symbols)
-    own = sp.nsimplify(own, rational=True) if own.has(sp.Float) else own
-    return sp.expand(own) if own != 0 and is_linear else None
+    return _exact(own) if own != 0 and is_linear else None
+
+
+def _exact(argument: sp.Expr) -> sp.Expr:
+    """An angle in which the decimal numbers that multiply are fractions: 0.3333333333333333 is a third."""
+    floats = {n for n in argument.atoms(sp.Float) if n != argument}
+    return sp.expand(argument.xreplace({n: _fraction(float(n)) for n in floats}))
+
+
+def _fraction(number: float) -> sp.Rational:
+    near = Fraction(number).limit_denominator(_LARGEST_DENOMINATOR)
+    exact = near if abs(float(near) - number) <= _SAME * abs(number) else Fraction(repr(number))
+    return sp.Rational(exact.numerator, exact.denominator)
 
 
 def _is_plain(mechanism: Mechanism, forms: Sequence[sp.Expr], angles: Sequence[sp.Symbol]) -> bool:
@@ -162,15 +176,15 @@ def _replaced(mechanism: Mechanism, angles: Sequence[sp.Symbol], basis: sp.Matri
         kind = joint.kind if joint.kind is not Kind.ROTARY or whole[k] else Kind.GEARED
         geared[angle] = replace(joint, ratio=ratio, coupling=sp.expand(value - ratio * joint.motor), kind=kind)
     joints = tuple(geared.get(j.symbol, j) for j in mechanism.joints)
-    return _in_other_joints(replace(mechanism, joints=joints), table)
+    return in_other_joints(replace(mechanism, joints=joints), table)
 
 
-def _in_other_joints(mechanism: Mechanism, table: Table) -> Mechanism:
+def in_other_joints(mechanism: Mechanism, table: Table) -> Mechanism:
     """Every expression of a mechanism with its joints replaced."""
 
     def of(value: sp.Basic) -> sp.Expr:
         found = sp.sympify(value).xreplace(table)
-        angles = {f: f.func(sp.expand(f.args[0])) for f in found.atoms(sp.sin, sp.cos)}
+        angles = {f: f.func(_exact(f.args[0])) for f in found.atoms(sp.sin, sp.cos)}
         return sp.sympify(found.xreplace(angles))
 
     def all_of(values: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
@@ -181,7 +195,8 @@ def _in_other_joints(mechanism: Mechanism, table: Table) -> Mechanism:
 
     chain = mechanism.chain
     if chain is not None:
-        chain = Chain(tuple(replace(f, amount=sp.expand(of(f.amount))) for f in chain.factors))
+        moved = (_exact(of(f.amount)) if f.motion is Motion.TURN else sp.expand(of(f.amount)) for f in chain.factors)
+        chain = Chain(tuple(replace(f, amount=a) for f, a in zip(chain.factors, moved, strict=True)))
     assembly, search = mechanism.assembly, mechanism.search
     return replace(
         mechanism,

@@ -198,7 +198,7 @@ def _axes(mechanism: Mechanism, values: dict[str, Array], reach: Array, rng: Gen
     """Random axis values: several turns where the axis has a period, the reach where it is linear."""
     columns = []
     for joint in mechanism.joints:
-        size = reach if not joint.is_angle else 540.0 / turns_of(joint, values) if joint.multi_turn else 175.0
+        size = reach if not joint.is_angle else (540.0 if joint.multi_turn else 175.0) / turns_of(joint, values)
         low, high = joint.domain or (-np.inf, np.inf)
         drawn = rng.random(len(reach))
         motor = np.maximum(-size, low) * (1 - drawn) + np.minimum(size, high) * drawn
@@ -231,6 +231,8 @@ def _least_singular_value(closure: Closure, samples: Samples) -> Array:
     singularity of either type.
     """
     columns, rows = closure.joint_scale(samples.reach), closure.row_scale(samples.reach)
+    gears = np.diagonal(closure.gearing(samples.axes, samples.parameters), axis1=1, axis2=2)
+    columns = columns / np.abs(gears)  # per radian of the joint, however slow a gear makes it
     scaled = np.nan_to_num(samples.jacobian * columns[:, None, :] / rows[:, :, None], posinf=0.0, neginf=0.0)
     return np.asarray(np.linalg.svd(scaled[:, :, closure.solved], compute_uv=False)[:, -1])
 

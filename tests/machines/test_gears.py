@@ -7,15 +7,19 @@ from itertools import product
 
 import numpy as np
 import pytest
+import softkin
 from softkin import KinematicsError, Status
+from sympy import Rational
 
-from derive.description.gears import with_gears
+from derive.description.gears import in_other_joints, with_gears
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.frames import Ry, Rz, Tx, Ty, Tz
 from derive.kinematics.build import build
 from derive.mechanism import coupling, rotary
+from derive.witness import witness
 from tests.machines.made import Array, Made, made
 from tests.machines.task_machines import A1, A2, DRIVEN, G1, L1, L2, WITH_GEARS, A, B, X, Y, Z
+from tests.mechanisms import catalogue
 from tests.text.controller import OK
 
 EVERY = pytest.mark.parametrize("name", DRIVEN)
@@ -298,3 +302,58 @@ def test_what_is_no_gear_is_refused(mechanism: Mechanism, message: str) -> None:
     with pytest.raises(DescriptionError) as refusal:
         build(mechanism)
     assert str(refusal.value) == message
+
+
+@pytest.mark.parametrize("name", DRIVEN)
+def test_batches_write_the_same_numbers_of_turns(name: str) -> None:
+    machine = made(name)
+    axes = anywhere(machine, 40)
+    _, _, configurations, statuses = machine.robot.forward_batch(axes)
+    assert (statuses == Status.OK).all()
+    single = [machine.robot.forward(row)[1] for row in axes]
+    assert configurations.tolist() == [list(row) for row in single]
+    positions, rotations, _, _ = machine.robot.forward_batch(axes)
+    back, statuses = machine.robot.inverse_batch(positions, rotations, configurations, np.zeros_like(axes))
+    assert (statuses == Status.OK).all() and (np.abs(back - axes) <= tolerance(machine)).all()
+
+
+@pytest.mark.parametrize("gear", [3.0, -3.0, 0.4, -0.4])
+def test_an_axis_on_the_edge_of_a_turn_stays_on_its_side(gear: float) -> None:
+    """Half a turn of the joint is where one number ends: there, and by rounding beside it, the axes come back."""
+    machine = made("SCARA with gears of any ratio")
+    robot = type(machine.robot)(**{**machine.robot.parameters, "gear_1": gear, "offset_a1": 0.0, "offset_a2": 0.0})
+    controller = machine.controller()
+    assert controller.initialise(robot.parameters) == OK
+    for half in range(-5, 6):
+        for beside in (0.0, 1e-13, -1e-13, 1e-6, -1e-6):
+            axes = np.array([180.0 * half * gear * (1.0 + beside), 72.0 * half * (1.0 + beside) + 20.0, 5.0])
+            frame, configuration = robot.forward(axes)
+            answer = robot.inverse(frame, configuration, (0.0, 0.0, 0.0))
+            assert np.abs(answer - axes).max() <= 1e-6
+            status, found = controller.inverse(frame.position, frame.rotation, configuration, (0.0, 0.0, 0.0))
+            assert status == OK and np.abs(np.array(found[:3]) - axes).max() <= 1e-6
+
+
+def test_a_machine_with_gears_carries_an_orientation_kinematics() -> None:
+    """A coupling numbers the turns of each part as that part does."""
+    machine = made("SCARA with gears")
+    coupled = softkin.Coupled(machine.robot, softkin.CAxis())
+    rng = np.random.default_rng(3)
+    for shares in rng.uniform(-3.0, 3.0, (20, 4)):
+        axes = shares * np.array([1000.0, 700.0, 100.0, 400.0])
+        frame, configuration = coupled.forward(axes)
+        assert np.abs(np.array(coupled.inverse(frame, configuration, np.zeros(4))) - axes).max() <= 1e-6
+
+
+def test_a_gear_that_is_written_as_a_decimal_number_is_a_fraction() -> None:
+    own = with_gears(_with("SCARA with gears", chain=Rz(A1 * 0.3333333333333333) * Tx(L1) * Rz(A2 * 0.0125) * Tz(Z)))
+    assert [str(joint.ratio) for joint in own.joints] == ["1/3", "1/80", "1"]
+
+
+def test_a_loop_with_gears_is_the_loop_without_them() -> None:
+    """The arms of a five-bar behind gears: three turns of a motor are one of its arm."""
+    own = next(m for _, m in catalogue() if m.name == "Kin_P2C_Type1")
+    table = {joint.symbol: -joint.symbol / 3 for joint in own.joints}
+    geared = build(in_other_joints(replace(own, joints=tuple(replace(j, domain=None) for j in own.joints)), table))
+    assert [abs(joint.ratio) for joint in geared.mechanism.joints] == [Rational(1, 3)] * 2
+    assert witness(geared).inverted is not None
