@@ -126,7 +126,7 @@ def build(mechanism: Mechanism) -> Kinematics:
         programs.append(twist_program(mechanism, forward))
     if mechanism.is_orientation:
         programs += coupling_programs(mechanism)
-    elif mechanism.offset_interface:
+    elif mechanism.offset_interface and not mechanism.followed_turns:  # nothing is carried behind a pitch
         programs += _offset_programs(mechanism, closed, inverse.derivation.conditions)
     return _finished(mechanism, programs, kept, at_home)
 

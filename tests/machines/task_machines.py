@@ -67,7 +67,13 @@ _LINKS = Ry(A2) * Tz(L2) * Ry(A3) * Tz(L3) * Ry(A4) * Tz(L4)
 
 WITH_PITCH = {
     "arm with four axes": _machine(
-        "FourAxes", (A1, A2, A3, A4), _COLUMN * _LINKS, (SHOULDER, HEIGHT, L2, L3, L4), PITCH, _UPRIGHT
+        "FourAxes",
+        (A1, A2, A3, A4),
+        _COLUMN * _LINKS,
+        (SHOULDER, HEIGHT, L2, L3, L4),
+        PITCH,
+        _UPRIGHT,
+        offset_interface=True,
     ),
     "arm with four axes over its column": _machine(
         "OverColumn",
