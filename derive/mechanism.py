@@ -47,6 +47,7 @@ from derive.description.mechanism import (
     search,
     sign,
     signed_length,
+    transmission,
 )
 from derive.ir.constants import (
     DEGREE,
@@ -106,4 +107,5 @@ __all__ = [
     "search",
     "sign",
     "signed_length",
+    "transmission",
 ]

@@ -31,6 +31,8 @@ class Role(Enum):
     GEAR = "gear"
     COUPLING = "coupling"
     RATIO = "ratio"
+    TRANSMISSION = "transmission"
+    """A ratio of turns, of either sign, but not zero."""
     FLAG = "flag"
     SIGN = "sign"
     ANGLE = "angle"
@@ -91,6 +93,12 @@ def gear(name: str, meaning: str, *, nominal: float) -> Parameter:
 def coupling(name: str, meaning: str, *, nominal: float) -> Parameter:
     """A ratio of one motor's turn to another joint's turn, zero when not given."""
     return Parameter(real(name), name, Role.COUPLING, meaning, "1", -1e3, 1e3, False, 0.0, nominal)
+
+
+def transmission(name: str, meaning: str, *, nominal: float) -> Parameter:
+    """A ratio of turns, of either sign, as of a gear or a belt: it must be given and not be zero."""
+    symbol = sp.Symbol(name, real=True, nonzero=True)
+    return Parameter(symbol, name, Role.TRANSMISSION, meaning, "1", -1e6, 1e6, False, None, nominal)
 
 
 def angle(

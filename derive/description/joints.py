@@ -28,11 +28,15 @@ class Kind(Enum):
     ROTARY = "rotary"
     HELICAL = "helical"
     """Turns, and moves another axis along by its pitch: it is declared Linear, with values in degrees."""
+    GEARED = "geared"
+    """A turn of its motor is no whole turn of the joints that it moves: declared Linear, with values in degrees."""
+    DRIVING = "driving"
+    """A turning motor that moves lengths alone, through a belt or a screw: declared Linear, with values in degrees."""
 
 
 @dataclass(frozen=True)
 class Joint(Quantity):
-    """One axis: axis value = motor value + offset, joint value = motor value + coupling."""
+    """One axis: axis value = motor value + offset, joint value = ratio * motor value + coupling."""
 
     name: str
     kind: Kind
@@ -44,6 +48,8 @@ class Joint(Quantity):
     """The vendor's ranges, where the vendor gives them."""
     coupling: sp.Expr = sp.Integer(0)
     """The gear coupling: what the motors of earlier axes add to this joint, linear in their `motor` symbols."""
+    ratio: sp.Expr = sp.Integer(1)
+    """The joint's turn per turn of its motor, or its travel per unit: a number, or made of parameters; never zero."""
     pitch: sp.Expr = sp.Integer(0)
     """Where this is not zero, the joint is always limited (to `limit_range` where no limit is given)."""
     domain: Interval | None = None
@@ -53,6 +59,9 @@ class Joint(Quantity):
     def __post_init__(self) -> None:
         object.__setattr__(self, "coupling", sp.sympify(self.coupling))
         object.__setattr__(self, "pitch", sp.sympify(self.pitch))
+        object.__setattr__(self, "ratio", sp.sympify(self.ratio))
+        if self.kind is Kind.ROTARY and not self.ratio.is_Integer:
+            object.__setattr__(self, "kind", Kind.GEARED)
 
     @property
     def key(self) -> str:
@@ -66,13 +75,33 @@ class Joint(Quantity):
 
     @property
     def is_angle(self) -> bool:
+        """Whether the joint turns: its value is an angle, of which sines and cosines are taken."""
+        return self.kind not in (Kind.LINEAR, Kind.DRIVING)
+
+    @property
+    def in_degrees(self) -> bool:
         """Whether axis values are degrees."""
         return self.kind is not Kind.LINEAR
 
     @property
+    def is_geared(self) -> bool:
+        """Whether a unit of the motor is not one of the joint."""
+        return bool(self.ratio != 1)
+
+    @property
     def unit(self) -> sp.Expr:
-        """One unit of the axis value in units of the joint value."""
-        return DEGREE if self.is_angle else sp.Integer(1)
+        """One unit of the axis value in units of the motor value."""
+        return DEGREE if self.in_degrees else sp.Integer(1)
+
+    @property
+    def turns(self) -> sp.Expr:
+        """The turns of the joint per turn of its axis, without its sense: a number, or a constant of the setup."""
+        return sp.Abs(self.ratio) if self.ratio.is_number else real(f"turns_{self.key}")
+
+    @property
+    def sense(self) -> sp.Expr:
+        """+1, or -1 where the joint turns against its axis: a number, or a constant of the setup."""
+        return sp.sign(self.ratio) if self.ratio.is_number else real(f"sense_{self.key}")
 
     @property
     def axis(self) -> sp.Symbol:
@@ -101,6 +130,7 @@ class JointDetails(TypedDict, total=False):
     offset_range: Interval
     limit_range: Interval
     coupling: sp.Expr
+    ratio: sp.Expr
     pitch: sp.Expr
     domain: Interval
     nominal: float

@@ -31,6 +31,7 @@ from derive.description.dimensions import (
     radians,
     sign,
     signed_length,
+    transmission,
 )
 from derive.description.errors import DescriptionError
 from derive.description.joints import (
@@ -108,6 +109,7 @@ __all__ = [
     "search",
     "sign",
     "signed_length",
+    "transmission",
 ]
 
 
@@ -176,6 +178,12 @@ class Turning(Enum):
     """A rotation about the z axis of the machine: the commanded one is projected to it, tool direction first."""
     DIRECTION = "direction"
     """The direction of the tool, which is the z axis of the commanded rotation; the rotation about it is passive."""
+    PITCH = "pitch"
+    """The last turn of a chain alone, about an axis that the joints before it turn as the position says: the tool's
+    direction, which is the z axis of the commanded rotation, is projected to the plane in which the last turn moves it.
+    """
+    PITCH_ROLL = "pitch and roll"
+    """The last two turns of a chain: the pitch of the axis of the last one, and the roll about it."""
     FULL = "full"
     """The whole rotation."""
 
@@ -279,6 +287,11 @@ class Mechanism:
     def is_platform(self) -> bool:
         """Whether a closed loop turns its platform, as the commanded rotation says: its forward kinematics iterates."""
         return self.chain is None and self.task.turning is not Turning.NONE
+
+    @property
+    def followed_turns(self) -> int:
+        """How many turns at the end of the chain follow the commanded rotation, where the first ones do not; else 0."""
+        return {Turning.PITCH: 1, Turning.PITCH_ROLL: 2}.get(self.task.turning, 0)
 
     @property
     def is_orientation(self) -> bool:

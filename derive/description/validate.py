@@ -34,7 +34,7 @@ _FAMILY = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 _OF_AXES = (
     *("axis", "ref", "reference", "turn", "offset", "lower", "upper", "motor", "unlimited"),
-    *("lowest", "highest", "mid", "single", "open", "near"),
+    *("lowest", "highest", "mid", "single", "open", "near", "turns", "sense", "turned"),
 )
 """What programs call values of an axis: `offset_a1`."""
 _OF_BRANCHES = ("sigma", "branch", "sign")

@@ -93,5 +93,5 @@ def values_at(machine: Machine, pose: Pose) -> Values:
     for joint, axis in zip(mechanism.joints, pose.axes, strict=True):
         motor = np.asarray(axis * float(evaluate(joint.unit, values)))
         values[joint.motor.name] = motor
-        values[joint.symbol.name] = np.asarray(motor + evaluate(joint.coupling, values))
+        values[joint.symbol.name] = np.asarray(motor * evaluate(joint.ratio, values) + evaluate(joint.coupling, values))
     return values | {name: np.asarray(value) for name, value in zip(FRAME, pose.frame, strict=True)}

@@ -48,14 +48,24 @@ def joint_lets(mechanism: Mechanism) -> tuple[Let, ...]:
     lets: list[Let] = []
     for joint in mechanism.joints:
         motor = (joint.axis - joint.offset) * joint.unit
-        lets += _motor_and_joint(motor, joint.motor, joint.symbol, joint.coupling)
+        lets += _motor_and_joint(motor, joint.motor, joint.symbol, (joint.ratio, joint.coupling))
     return tuple(lets)
 
 
-def _motor_and_joint(value: sp.Expr, motor: sp.Symbol, joint: sp.Symbol, coupling: sp.Expr) -> list[Let]:
-    if coupling == 0:
+def _motor_and_joint(value: sp.Expr, motor: sp.Symbol, joint: sp.Symbol, gear: tuple[sp.Expr, sp.Expr]) -> list[Let]:
+    ratio, coupling = gear
+    if coupling == 0 and ratio == 1:
         return [Let(joint, value), Let(motor, joint)]
-    return [Let(motor, value), Let(joint, motor + coupling)]
+    return [Let(motor, value), Let(joint, ratio * motor + coupling)]
+
+
+def _axis_of(joint: Joint, value: sp.Expr) -> sp.Expr:
+    """The axis value at a joint value in units of the axis: without gear, with its coupling subtracted, and its
+    offset.
+    """
+    if not joint.is_geared:
+        return value + joint.offset - joint.coupling / joint.unit
+    return (value - joint.coupling / joint.unit) / joint.ratio + joint.offset
 
 
 def reference_lets(mechanism: Mechanism) -> tuple[Let, ...]:
@@ -64,7 +74,8 @@ def reference_lets(mechanism: Mechanism) -> tuple[Let, ...]:
     lets: list[Let] = []
     for joint in mechanism.joints:
         motor = (joint.reference - joint.offset) * joint.unit
-        lets += _motor_and_joint(motor, _reference_motor(joint), reference_value(joint), joint.coupling.xreplace(table))
+        gear = (joint.ratio, joint.coupling.xreplace(table))
+        lets += _motor_and_joint(motor, _reference_motor(joint), reference_value(joint), gear)
     return tuple(lets)
 
 
@@ -79,14 +90,16 @@ def reference_value(joint: Joint) -> sp.Symbol:
 
 def axis_lets(joint: Joint) -> tuple[Let, ...]:
     """The axis value of a solved joint: its period chosen, its offset added, its gear coupling subtracted."""
-    shift = joint.offset - joint.coupling / joint.unit
     motor = Let(joint.motor, (joint.axis - joint.offset) * joint.unit)
     if not joint.is_angle:
-        return (Let(joint.axis, joint.symbol + shift), motor)
+        return (Let(joint.axis, _axis_of(joint, joint.symbol / joint.unit)), motor)
     direction = Atan2(sine(joint.symbol), cosine(joint.symbol))
     if not joint.multi_turn:
-        return (Let(joint.axis, Wrap(direction) / DEGREE + shift), motor)
+        return (Let(joint.axis, _axis_of(joint, Wrap(direction) / DEGREE)), motor)
     near = real(f"near_{joint.key}")
+    if joint.is_geared:
+        return (*_near(joint, near), *_turned(joint, near), motor)
+    shift = joint.offset - joint.coupling / joint.unit
     return (
         *_near(joint, near),
         Let(joint.axis, NearestPeriod(direction / DEGREE + shift, near), turn_of=joint.name),
@@ -94,21 +107,34 @@ def axis_lets(joint: Joint) -> tuple[Let, ...]:
     )
 
 
+def _turned(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
+    """The axis value of a joint with a gear: its turn is chosen in degrees of the joint, counted as the axis counts."""
+    turned = real(f"turned_{joint.key}")
+    direction = Atan2(joint.sense * sine(joint.symbol), cosine(joint.symbol))
+    shift = joint.turns * joint.offset - joint.sense * joint.coupling / joint.unit
+    note = f"{joint.name} before its gear, in degrees of the joint"
+    return (
+        Let(turned, NearestPeriod(direction / DEGREE + shift, near), note, turn_of=joint.name),
+        Let(joint.axis, turned / joint.turns),
+    )
+
+
 def _near(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
     """The axis value to which the nearest period is chosen: of the commanded turn, the middle of the limits, or the
-    reference.
+    reference. With a gear it is in degrees of the joint.
 
     The middle is taken where one value at most lies inside the limits. In wider limits another value inside may be a
     whole turn away, so limits never choose there: they only refuse. The reference is compared joint by joint, because
     with gear coupling an axis moves with its neighbours.
     """
-    shift = -joint.coupling / joint.unit
-    reference = joint.reference if joint.coupling == 0 else reference_value(joint) / joint.unit + joint.offset + shift
+    reference = joint.reference
+    if joint.coupling != 0:
+        reference = _axis_of(joint, reference_value(joint) / joint.unit)
     note = f"{joint.name}: without a commanded turn, the value nearest to this"
     open_value, is_single = real(f"open_{joint.key}"), flag(f"single_{joint.key}")
     commanded = Select(sp.Gt(joint.turn, 0), joint.turn - 1, joint.turn)
     return (
-        Let(open_value, Select(is_single, real(f"mid_{joint.key}"), reference), note),
+        Let(open_value, joint.turns * Select(is_single, real(f"mid_{joint.key}"), reference), note),
         Let(near, Select(sp.Ne(joint.turn, 0), 360 * ToReal(commanded), open_value)),
     )
 
@@ -116,13 +142,15 @@ def _near(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
 def plain_angle(joint: Joint) -> Let:
     """The joint value with its whole turns, for equations in which the angle stands outside sines and cosines."""
     shift = joint.offset - joint.coupling / joint.unit
-    return Let(joint.symbol, (joint.axis - shift) * joint.unit, f"{joint.name}: joint value with its whole turns")
+    value = (joint.axis - shift) * joint.unit
+    if joint.is_geared:
+        value = (joint.axis - joint.offset) * joint.unit * joint.ratio + joint.coupling
+    return Let(joint.symbol, value, f"{joint.name}: joint value with its whole turns")
 
 
 def frozen_lets(joint: Joint) -> tuple[Statement, ...]:
     """A joint kept at its reference: its value, sine and cosine, and its axis value."""
-    shift = joint.offset - joint.coupling / joint.unit
-    axis = joint.reference if joint.coupling == 0 else reference_value(joint) / joint.unit + shift
+    axis = joint.reference if joint.coupling == 0 else _axis_of(joint, reference_value(joint) / joint.unit)
     lets: list[Statement] = [
         Let(joint.symbol, reference_value(joint), f"{joint.name}: held at the reference"),
         Let(joint.axis, axis),

@@ -164,7 +164,8 @@ def pose_closure(mechanism: Mechanism) -> Closure:
     """The closure of a commanded pose."""
     if mechanism.chain is None:
         return _stated_closure(mechanism, {})
-    if is_spatial(mechanism.chain) and mechanism.task.turning is not Turning.ABOUT_Z:
+    is_pitch = mechanism.followed_turns > 0
+    if is_pitch or (is_spatial(mechanism.chain) and mechanism.task.turning is not Turning.ABOUT_Z):
         return _spatial_closure(mechanism, mechanism.chain, mechanism.solved_joints, mechanism.task.turning)
     pose = pose_of(mechanism.chain)
     closure = _position_closure(mechanism, pose.position)
@@ -194,8 +195,9 @@ def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ..
     angles, lengths = (tuple(j.symbol for j in moving if j.is_angle is kind) for kind in (True, False))
     unknowns = Unknowns(angles, lengths, all_angles(mechanism), signs_of(mechanism))
     follows = turning is not Turning.NONE
-    columns = (2,) if turning is Turning.DIRECTION else (0, 1, 2)
-    commanded = Commanded(sp.Matrix(3, 3, ROTATION_ENTRIES), columns if follows else ())
+    columns = (2,) if turning in (Turning.DIRECTION, Turning.PITCH) else (0, 1, 2)
+    is_whole = follows and not mechanism.followed_turns  # a direction that is projected tells no wrist centre
+    commanded = Commanded(sp.Matrix(3, 3, ROTATION_ENTRIES), columns if is_whole else ())
     split = split_positions(chain, commanded, unknowns) if mechanism.task.position else Split(())
     pose = pose_of(chain)
     arguments = dict.fromkeys((*_arguments(pose.position), *(t.amount for t in pose.turns)))

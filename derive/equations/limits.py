@@ -27,7 +27,7 @@ def limits_program(mechanism: Mechanism) -> Program:
     body: list[Statement] = []
     for joint in sorted(mechanism.joints, key=lambda j: not j.multi_turn):  # a wrong turn is refused first
         reason = replace(
-            about_joint(joint.symbol, Why.BELOW, unit=_unit(joint.is_angle)), turns=turns.get(joint.key, ())
+            about_joint(joint.symbol, Why.BELOW, unit=_unit(joint.in_degrees)), turns=turns.get(joint.key, ())
         )
         body += _inside(joint.key, joint.axis, reason, f"limits of {joint.name}")
     if mechanism.limited:
@@ -66,8 +66,14 @@ def _value(quantity: Limited) -> sp.Symbol:
 
 def _other_turns(mechanism: Mechanism) -> dict[str, tuple[OtherTurn, ...]]:
     """By the key of an axis or a quantity: the axes whose turn its limits may refuse, the last one first."""
-    found = {j.key: (OtherTurn(j.name, j.axis, *_ends(j.key)),) for j in mechanism.period_joints}
+    found = {j.key: (_other_turn(j),) for j in mechanism.period_joints}
     return found | {q.name: tuple(_of_quantity(q, mechanism)) for q in mechanism.limited if q.is_angle}
+
+
+def _other_turn(joint: Joint) -> OtherTurn:
+    """The axis and its limits, in degrees of its joint."""
+    (lowest,), (highest,) = _ends(joint.key)
+    return OtherTurn(joint.name, joint.turns * joint.axis, (joint.turns * lowest,), (joint.turns * highest,))
 
 
 def _of_quantity(quantity: Limited, mechanism: Mechanism) -> Iterator[OtherTurn]:
@@ -76,7 +82,7 @@ def _of_quantity(quantity: Limited, mechanism: Mechanism) -> Iterator[OtherTurn]
     low, high = _ends(quantity.name)
     for joint in reversed(mechanism.joints):
         slope = sp.diff(quantity.value, joint.symbol)
-        if not joint.multi_turn or slope not in (1, -1) or _moves_others(joint, quantity, mechanism):
+        if not joint.multi_turn or joint.is_geared or slope not in (1, -1) or _moves_others(joint, quantity, mechanism):
             continue
         down, up = (low[0] - value, high[0] - value) if slope == 1 else (value - high[0], value - low[0])
         lowest, highest = _ends(joint.key)

@@ -153,6 +153,8 @@ class Problem:
     """The entries of the commanded rotation, by rows; none where it is not commanded."""
     columns: tuple[int, ...] = (0, 1, 2)
     """The columns of the commanded rotation that the task prescribes."""
+    followed: int = 0
+    """How many of the last turns follow the commanded rotation, once those before are known; 0: all of them."""
     position: tuple[sp.Symbol, ...] = ()
     """The coordinates of the commanded position."""
     links: tuple[Factor, ...] = ()

@@ -13,6 +13,7 @@ import sympy as sp
 
 from derive.algebra.normal_form import polynomial, reduce_units
 from derive.equations.known_turns import Side, is_unknown, joints_of, matrix_of, named_entries, needed
+from derive.equations.pitch.equations import followed_entries
 from derive.equations.problem import Equation, Problem
 from derive.geometry.frames import Chain, Factor
 from derive.geometry.pose import pose_of
@@ -26,7 +27,9 @@ _MOST_UNKNOWN = 2
 
 
 def rotations(problem: Problem) -> tuple[Equation, ...]:
-    """The entries of L^-1 R S^-1 = M that depend on unknown angles."""
+    """The entries of L^-1 R S^-1 = M that depend on unknown angles; of a pitch its own equations."""
+    if problem.followed:
+        return followed_entries(problem) if problem.turns else ()
     return tuple(e for e in _entries(problem) if problem.unknowns_of(e.expression))
 
 

@@ -12,6 +12,7 @@ import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, rotary
 from derive.ir.constants import (
+    GEARED_TURN,
     LARGEST,
     LIMIT,
     ONE_TURN,
@@ -37,6 +38,8 @@ class Window:
     fallback: Fallback = ()
     has_turns: bool = False
     is_axis: bool = False
+    turns: sp.Expr = sp.Integer(1)
+    """The turns of the joint per turn of the axis."""
 
     @property
     def given(self) -> tuple[str, str]:
@@ -99,6 +102,9 @@ class Window:
         if not self.has_turns:
             return widened
         one_turn = sp.And(sp.Not(unlimited), sp.Le(high - low, ONE_TURN + tolerance))
+        if self.turns != 1:
+            lowest, highest = (real(f"{word}_{self.key}") for word in ("lowest", "highest"))
+            one_turn = sp.And(sp.Lt(highest, UNLIMITED / 2), sp.Le((highest - lowest) * self.turns, GEARED_TURN))
         return (
             *widened,
             Let(flag(f"single_{self.key}"), one_turn, "at most one turn is inside the limits"),
@@ -121,7 +127,7 @@ class Window:
 @kept_by_identity(10)
 def windows(mechanism: Mechanism) -> tuple[Window, ...]:
     """Of all axes, then of all limited quantities."""
-    axes = (Window(j.key, _fallback(j), has_turns=j.multi_turn, is_axis=True) for j in mechanism.joints)
+    axes = (Window(j.key, _fallback(j), has_turns=j.multi_turn, is_axis=True, turns=j.turns) for j in mechanism.joints)
     return (*axes, *(Window(quantity.name) for quantity in mechanism.limited))
 
 

@@ -67,6 +67,8 @@ TIE_SHARE = sp.Float("1e-6")
 ONE_TURN = sp.Integer(350)
 """An axis has one value inside its limits where they are at most this far apart (degrees): no step of a path crosses
 the gap."""
+GEARED_TURN = sp.Float("350.001")
+"""The same in degrees of a joint with a gear, between the ends that tolerances have widened."""
 EDGE = sp.Float("1e-9")
 """How far (degrees) the intervals of the periods are shifted down: see `NearestPeriod`."""
 UNLIMITED = sp.Integer(10) ** 12

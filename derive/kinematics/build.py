@@ -9,6 +9,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from derive.description.gears import with_gears
 from derive.description.mechanism import (
     DescriptionError,
     Mechanism,
@@ -96,6 +97,7 @@ def build(mechanism: Mechanism) -> Kinematics:
 
 
 def _built(mechanism: Mechanism) -> Kinematics:
+    mechanism = with_gears(mechanism)
     check_joints(mechanism)
     if mechanism.is_platform:
         check_home(mechanism)
@@ -137,7 +139,7 @@ def _built(mechanism: Mechanism) -> Kinematics:
         programs.append(twist_program(mechanism, forward))
     if mechanism.is_orientation:
         programs += coupling_programs(mechanism)
-    elif mechanism.offset_interface:
+    elif mechanism.offset_interface and not mechanism.followed_turns:  # nothing is carried behind a pitch
         programs += _offset_programs(mechanism, closed, inverse.derivation.conditions)
     return _finished(mechanism, programs, kept, at_home)
 
@@ -303,8 +305,11 @@ def _offset_configuration(
 
 
 def _projection_program(mechanism: Mechanism) -> Program:
-    """The rotation nearest to the commanded one that the flange can take; of a direction, with any twist about it."""
-    if mechanism.task.turning in (Turning.DIRECTION, Turning.FULL):
+    """The rotation nearest to the commanded one that the flange can take; of a direction, with any twist about it.
+
+    Of a pitch it depends on the position, too: nothing is projected before that is known.
+    """
+    if mechanism.task.turning is not Turning.ABOUT_Z:
         own = [Output(r.name, r) for r in ROTATION_ENTRIES]
         return normalise("projection", (), own)
     cos_heading, sin_heading = real("cos_heading"), real("sin_heading")
@@ -321,7 +326,7 @@ def _turns_in_a_coupling(mechanism: Mechanism) -> bool:
 
 def _freedom(mechanism: Mechanism) -> Freedom:
     """How the flange turns."""
-    if mechanism.task.turning is Turning.FULL:
+    if mechanism.task.turning is Turning.FULL or mechanism.followed_turns:
         return Freedom.THREE
     if mechanism.chain is None:
         return Freedom.ONE if mechanism.is_platform else Freedom.ZERO

@@ -17,6 +17,7 @@ from derive.description.mechanism import (
 from derive.equations.chain_splits import is_spatial
 from derive.equations.closure import with_fixed_names
 from derive.equations.named_pose import named_pose
+from derive.equations.pitch.chain import followed_factors
 from derive.equations.pose_at_axes import (
     Forward,
 )
@@ -62,7 +63,11 @@ _EXACT = 1e-6
 """The largest difference of logarithms of what is one product."""
 _DIGITS = 1e-6
 """The share of the largest singular value of a Jacobian that its least one has where its determinant has digits."""
+_FOLLOWED = ("pitch", "roll")
+"""About the axes of the turns that follow the commanded rotation, where the first turns do not."""
 _TURNS: dict[Turning, tuple[str, ...]] = {
+    Turning.PITCH: _FOLLOWED[:1],
+    Turning.PITCH_ROLL: _FOLLOWED,
     Turning.NONE: (),
     Turning.ABOUT_Z: ("turn z",),
     Turning.DIRECTION: ("tilt x", "tilt y"),
@@ -136,8 +141,15 @@ def _by_screws(mechanism: Mechanism, rows: Sequence[str]) -> sp.Matrix:
     if mechanism.task.turning is Turning.DIRECTION:
         rotation = sp.Matrix(3, 3, list(ROTATION_ENTRIES))
         full = sp.Matrix.vstack(full, (rotation.T * full[3:, :])[:2, :])
-    chosen = [_ROWS.index(row) for row in rows]
-    return full.extract(chosen, list(range(full.cols)))
+    names = list(_ROWS[: full.rows])
+    for name, place in zip(_FOLLOWED, _followed(mechanism), strict=False):
+        full = sp.Matrix.vstack(full, sp.Matrix(screws[place].direction).T * full[3:6, :])
+        names.append(name)
+    return full.extract([names.index(row) for row in rows], list(range(full.cols)))
+
+
+def _followed(mechanism: Mechanism) -> tuple[int, ...]:
+    return followed_factors(mechanism) if mechanism.followed_turns else ()
 
 
 def _screws(mechanism: Mechanism, chain: Chain) -> tuple[tuple[Screw, ...], sp.ImmutableMatrix]:
@@ -196,7 +208,7 @@ def _motor_matrix(mechanism: Mechanism) -> sp.Matrix:
     """The derivative of the joints by the motors: the identity and the gear couplings."""
     motors = [j.motor for j in mechanism.joints]
     return sp.Matrix(
-        len(motors), len(motors), [sp.diff(j.motor + j.coupling, m) for j in mechanism.joints for m in motors]
+        len(motors), len(motors), [sp.diff(j.ratio * j.motor + j.coupling, m) for j in mechanism.joints for m in motors]
     )
 
 

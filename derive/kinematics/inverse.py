@@ -29,6 +29,8 @@ from derive.equations.closure import (
     signs_of,
     with_fixed_names,
 )
+from derive.equations.pitch.equations import with_refusal
+from derive.equations.pitch.heading import free_heading, free_value
 from derive.equations.problem import Problem
 from derive.geometry.frames import Motion
 from derive.ir.constants import (
@@ -91,6 +93,9 @@ def solve_pose(mechanism: Mechanism) -> Inverse:
     """Solve the closure of a commanded pose for the joints."""
     closure, held = pose_closure(mechanism), mechanism.held_joints
     derivation = _solve(mechanism, closure, mechanism.solved_joints)
+    if mechanism.followed_turns:
+        lets, _ = free_heading(mechanism, tuple(step.step for step in derivation.determinants))
+        derivation = replace(derivation, statements=(*lets, *with_refusal(derivation.statements)))
     kept = tuple(s for j in held for s in frozen_lets(j))
     naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *_heading(mechanism), *closure.lets)
     return Inverse(closure, derivation, naming, mechanism.solved_joints, held)
@@ -119,18 +124,21 @@ def _solve(
     mechanism: Mechanism, closure: Closure, moving: tuple[Joint, ...], *, is_overdetermined: bool = False
 ) -> Derivation:
     joints = {j.symbol: j for j in mechanism.joints}
+    heading = free_heading(mechanism)[1] if mechanism.followed_turns and closure.turns else None
+    free = {heading: free_value(heading)} if heading is not None else {}
     problem = Problem(
         angles=tuple(j.symbol for j in moving if j.is_angle),
         lengths=tuple(j.symbol for j in moving if not j.is_angle),
         equations=closure.equations,
         units=(*all_angles(mechanism), HEADING),
-        references={j.symbol: reference_value(j) for j in mechanism.joints},
+        references={j.symbol: reference_value(j) for j in mechanism.joints} | free,
         scale=SCALE,
         signs=signs_of(mechanism),
         is_overdetermined=is_overdetermined,
         turns=closure.turns,
         rotation=ROTATION_ENTRIES if closure.turns else (),
         columns=closure.columns,
+        followed=mechanism.followed_turns if closure.turns else 0,
         position=(*POSITION, *FLANGE),
         parameters=fixed_names(mechanism),
         numbers=fixed_numbers(mechanism),

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from derive.description.mechanism import DescriptionError, Mechanism
+from derive.description.mechanism import DescriptionError, Mechanism, Turning
+from derive.equations.chain_splits import is_spatial
+from derive.equations.pitch.chain import followed_of
 from derive.kinematics.differential import jacobian_rows
 
 
 def check_joints(mechanism: Mechanism) -> None:
     """Refuse more conditions than joints or coordinates: they cannot be met, and no later step would notice."""
+    if mechanism.followed_turns:
+        followed_of(mechanism)
     rows, equations = jacobian_rows(mechanism), mechanism.equations
     commanded = f"{len(rows)} quantities ({', '.join(rows)})"
     spare = len(mechanism.solved_joints) - len(rows)
@@ -22,10 +26,8 @@ def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
     joints, held = mechanism.joints, mechanism.held
     if spare < 0:
         left = f", of which {len(held)} {'is' if len(held) == 1 else 'are'} held" if held else ""
-        return (
-            f"the task commands {commanded}, and there are only {len(joints)} joints{left}; command less of the pose, "
-            "or add joints"
-        )
+        remedy = _follow_pitch(mechanism, spare) or "; command less of the pose, or add joints"
+        return f"the task commands {commanded}, and there are only {len(joints)} joints{left}{remedy}"
     number = "one joint" if spare == 1 else f"{spare} joints"
     names = "the one that is" if spare == 1 else "those that are"
     remedy = f"name {names} held at the reference: held=({joints[0].name},)"
@@ -35,3 +37,12 @@ def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
         f"{number} too many: the task commands {commanded}, and {len(mechanism.solved_joints)} joints are to be solved "
         f"for; {remedy}"
     )
+
+
+def _follow_pitch(mechanism: Mechanism, spare: int) -> str:
+    """What to command instead, of a chain whose heading may follow from its position."""
+    instead = {(Turning.DIRECTION, -1): Turning.PITCH, (Turning.FULL, -1): Turning.PITCH_ROLL}
+    found = instead.get((mechanism.task.turning, spare))
+    if found is None or mechanism.chain is None or mechanism.task.position != "xyz" or not is_spatial(mechanism.chain):
+        return ""
+    return f"; where the position decides the heading of the tool, command its {found.value}: Turning.{found.name}"

@@ -16,7 +16,7 @@ from derive.ir.constants import (
     TIE_SHARE,
 )
 from derive.ir.passes import without_assumptions
-from derive.ir.primitives import ToReal
+from derive.ir.primitives import Select, ToReal
 from derive.ir.program import (
     Let,
     Output,
@@ -101,7 +101,7 @@ def _least_margin() -> Parameter:
 
 
 def _number(joint: Joint, word: str, meaning: str, interval: tuple[float, float] | None) -> Parameter:
-    unit = "deg" if joint.is_angle else "u"
+    unit = "deg" if joint.in_degrees else "u"
     return _setting(f"{word}_{joint.key}", f"{joint.name}: {meaning}", unit, interval)
 
 
@@ -132,9 +132,11 @@ def setup_program(
     for constraint in mechanism.constraints:
         body += constraint.steps
         body.append(_needed(_inequality(constraint.condition), constraint.message))
+    gears, outputs_of_gears = _gears(mechanism)
+    body += gears
     found = windows(mechanism)
     ends = {name for window in found for name in window.given}
-    outputs = [_as_constant(p) for p in parameters if p.name not in ends]
+    outputs = [_as_constant(p) for p in parameters if p.name not in ends] + outputs_of_gears
     for window in found:
         body += [window.ordered, *window.limits]
         outputs += window.limit_outputs
@@ -153,6 +155,17 @@ def setup_program(
     inputs = tuple(input_of(p) for p in parameters)
     typed = tuple(converted(s, parameters) for s in without_assumptions(body))
     return verify(Program("setup", inputs, typed, tuple(outputs)))
+
+
+def _gears(mechanism: Mechanism) -> tuple[list[Let], list[Output]]:
+    """The gears that are made of parameters: the turns of the joint per turn of its axis, and its sense."""
+    lets: list[Let] = []
+    for joint in mechanism.joints:
+        if joint.multi_turn and not joint.ratio.is_number:
+            note = f"{joint.name}: turns of the joint per turn of the axis"
+            lets.append(Let(sp.Symbol(str(joint.turns), real=True), sp.Abs(joint.ratio), note))
+            lets.append(Let(sp.Symbol(str(joint.sense), real=True), Select(sp.Gt(joint.ratio, 0), 1, -1)))
+    return lets, [Output(let.name.name, let.name) for let in lets]
 
 
 def _size(mechanism: Mechanism, at_home: Sequence[Statement]) -> tuple[tuple[Statement, ...], tuple[Output, ...]]:
@@ -211,7 +224,7 @@ def _range_of(parameter: Parameter) -> tuple[Require, ...]:
     value = real(parameter.name)  # without assumptions: SymPy must not decide `length > 0` by itself
     low = sp.Float(parameter.low) if parameter.low % 1 else sp.Integer(int(parameter.low))
     high = sp.Float(parameter.high) if parameter.high % 1 else sp.Integer(int(parameter.high))
-    if parameter.role is Role.SIGNED_LENGTH:
+    if parameter.role in (Role.SIGNED_LENGTH, Role.TRANSMISSION):
         nonzero = sp.Or(
             sp.Gt(value, 0), sp.Lt(value, 0)
         )  # NaN fails a comparison; the absolute value of NaN is an error

@@ -89,7 +89,8 @@ def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, s
     values: Samples = {}
     for joint in mechanism.joints:
         low, high = joint.domain or ((-180.0, 180.0) if joint.is_angle else (-1.0, 1.0))
-        reach = 1.0 if joint.is_angle else size_of(mechanism, machine)
+        turns = abs(float(evaluate(joint.ratio, machine))) if joint.is_geared else 1.0
+        reach = 1.0 / turns if joint.is_angle else size_of(mechanism, machine)
         high = min(high, 1e3 if joint.is_angle else 2.0)
         drawn = joint.nominal + share * (generator.uniform(low, high, count) * reach - joint.nominal)
         values[joint.axis.name] = values[joint.reference.name] = drawn + float(machine[joint.offset.name])

@@ -89,7 +89,9 @@ def forward(machine: Machine, axes: Reals) -> tuple[Status, Reals, Bytes]:
     position, rotation = [float(found[n][0]) for n in FRAME[:3]], [float(found[n][0]) for n in FRAME[3:]]
     branches = (_branch_byte(float(found[f"branch_{b.name}"][0])) for b in kinematics.branches)
     order = {joint.name: index for index, joint in enumerate(kinematics.mechanism.joints)}
-    periods = (_period(axes[order[j.name]]) for j in kinematics.period_joints)
+    periods = (
+        _period(axes[order[j.name]] * float(evaluate(j.turns, machine.values))) for j in kinematics.period_joints
+    )
     return Status.OK, (*machine.rounded(position), *_rounded(rotation, _ROTATION_DECIMALS)), (*branches, *periods)
 
 

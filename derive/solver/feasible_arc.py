@@ -120,7 +120,8 @@ def _condition(
     if not moved or size.free_symbols & dependent.keys():
         return None
     parts = tuple(p for name in moved for p in [_part(name, dependent[name], angle)] if p is not None)
-    if len(parts) < len(moved):
+    read = {s for part in parts for coefficient in (part.along, part.across) for s in coefficient.free_symbols}
+    if len(parts) < len(moved) or read & dependent.keys():
         return None  # the later step does not depend on the angle by its first harmonic alone
     gone = _vanishing(statements, conditioning)
     if all(p.along.xreplace(gone) == 0 and p.across.xreplace(gone) == 0 for p in parts):

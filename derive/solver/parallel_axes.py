@@ -61,8 +61,11 @@ def candidate_sums(problem: Problem, arguments: Sequence[sp.Expr]) -> tuple[Sum,
 
 
 def _parallel(problem: Problem, terms: Terms) -> bool:
-    """Whether the axes of some angles are parallel, at random poses; true of equations without a rotation."""
-    if not problem.turns:
+    """Whether the axes of some angles are parallel, at random poses; true of equations without a rotation, and of a sum
+    by which one joint turns.
+    """
+    together = {angle for angle, _ in terms}
+    if not problem.turns or any(together <= turn.amount.free_symbols for turn in problem.turns):
         return True
     values = drawn(problem, [], np.random.default_rng(_SEED))
     directions, rotation = [], np.broadcast_to(np.eye(3), (DRAWS, 3, 3))

@@ -156,7 +156,7 @@ def _next(
         if binding is not None:
             return problem, binding, sums
     found = _best(candidate for tier in TIERS for candidate in [_candidates(problem, tier(problem))])
-    if found is not None and found.determinant is not None:
+    if found is not None and found.determinant is not None and not problem.is_overdetermined:
         found = _one_root(problem, found)
     if found is not None and not found.yields_to_a_sum:
         return problem, found, sums

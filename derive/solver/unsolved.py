@@ -35,7 +35,7 @@ def undetermined(problem: Problem) -> str | None:
         return f"the closure does not determine {_list(unknowns)}"
     several = _list([u for u, moves in zip(unknowns, moving, strict=True) if moves])
     too_many = f"{_count(unknowns)} in {_conditions(problem)} leave {free} free to move"
-    return f"the closure does not determine {several}: {too_many}; {_more(unknowns, free)}"
+    return f"the closure does not determine {several}: {too_many}; {_more(problem, unknowns, free)}"
 
 
 def unsolved(problem: Problem) -> str:
@@ -55,12 +55,14 @@ def searched_in_vain(message: str) -> str:
     return message.replace(_ONE_KNOWN, "; with any one of these joints known the others are not solved either", 1)
 
 
-def _more(unknowns: Sequence[sp.Symbol], free: int) -> str:
+def _more(problem: Problem, unknowns: Sequence[sp.Symbol], free: int) -> str:
     """What would determine all of them."""
     if any(u in POSITION for u in unknowns):
         return f"state {'one more equation' if free == 1 else f'{free} more equations'}"
     more = "one more quantity" if free == 1 else f"{free} more quantities"
-    return f"command {more}, or leave out {'one' if free == 1 else free} of these joints"
+    pitch = "; where the position decides the heading of the tool, command its pitch and roll: Turning.PITCH_ROLL"
+    hint = pitch if free == 1 and problem.turns and problem.columns == (2,) and not problem.followed else ""
+    return f"command {more}, or leave out {'one' if free == 1 else free} of these joints{hint}"
 
 
 def _help(problem: Problem) -> str:

@@ -24,6 +24,7 @@ from derive.description.mechanism import (
     Y,
     Z,
 )
+from derive.equations.pitch.chain import followed_factors
 from derive.geometry.frames import Chain, Motion
 from derive.ir.constants import (
     DEGREE,
@@ -135,7 +136,7 @@ def closure_of(mechanism: Mechanism) -> Closure:
     known |= {joint.symbol: q[i] for i, joint in enumerate(mechanism.joints)}
     task = task_rows(mechanism)
     twist = ca.SX.sym("twist", len(task))
-    moved = _moved(pose, task, twist)
+    moved = _moved(pose, task, twist, _followed_axes(mechanism, known))
     joints = _joint_values(mechanism, axes, known)
     residual, equations = _residual(mechanism, known, moved)
     units = ca.vertcat(*(float(j.unit.subs(DEGREE, sp.pi / 180)) for j in mechanism.joints))
@@ -164,6 +165,8 @@ def task_rows(mechanism: Mechanism) -> tuple[str, ...]:
     turns = {Turning.NONE: "", Turning.ABOUT_Z: "z", Turning.FULL: "xyz"}
     if mechanism.task.turning is Turning.DIRECTION:
         return (*mechanism.task.position, "tilt x", "tilt y")
+    if mechanism.followed_turns:
+        return (*mechanism.task.position, *("pitch", "roll")[: mechanism.followed_turns])
     return (*mechanism.task.position, *(f"turn {axis}" for axis in turns[mechanism.task.turning]))
 
 
@@ -195,17 +198,32 @@ def _position_symbols(pose: Term) -> dict[sp.Symbol, Term]:
 
 
 def _joint_values(mechanism: Mechanism, axes: Term, known: dict[sp.Symbol, Term]) -> Term:
-    """Joint = motor + coupling of the motors, motor = axis - offset, in radians and lengths."""
+    """Joint = ratio * motor + coupling of the motors, motor = axis - offset, in radians and lengths."""
     motors = [(axes[i] - known[j.offset]) * term(j.unit, {}) for i, j in enumerate(mechanism.joints)]
     named = known | {j.motor: motors[i] for i, j in enumerate(mechanism.joints)}
-    return ca.vertcat(*(motors[i] + term(j.coupling, named) for i, j in enumerate(mechanism.joints)))
+    return ca.vertcat(
+        *(motors[i] * term(j.ratio, named) + term(j.coupling, named) for i, j in enumerate(mechanism.joints))
+    )
 
 
-def _moved(pose: Term, task: tuple[str, ...], twist: Term) -> Term:
-    """The pose moved by a small twist: p + v, (I + [ω]) R."""
+def _followed_axes(mechanism: Mechanism, known: dict[sp.Symbol, Term]) -> list[Term]:
+    """The axes of the turns that follow the commanded rotation, in the frame of the base."""
+    if mechanism.chain is None or not mechanism.followed_turns:
+        return []
+    factors = mechanism.chain.factors
+    frames = ((factors[k], _frame(Chain(factors[:k]), known)) for k in followed_factors(mechanism))
+    return [frame[[3 + factor.axis, 6 + factor.axis, 9 + factor.axis]] for factor, frame in frames]
+
+
+def _moved(pose: Term, task: tuple[str, ...], twist: Term, axes: Sequence[Term] = ()) -> Term:
+    """The pose moved by a small twist: p + v, (I + [ω]) R. axes: of the pitch and the roll."""
     shift, spin, tilt = ([ca.SX(0)] * 3 for _ in range(3))
     parts = {"turn": spin, "tilt": tilt}
     for i, row in enumerate(task):
+        if row in ("pitch", "roll"):
+            about = axes[("pitch", "roll").index(row)]
+            spin = [spin[k] + about[k] * twist[i] for k in range(3)]
+            continue
         parts.get(row[:4], shift)["xyz".index(row[-1])] = twist[i]
     rotation = ca.reshape(pose[3:], 3, 3).T
     turned = rotation + ca.skew(ca.vertcat(*spin)) @ rotation + rotation @ ca.skew(ca.vertcat(*tilt))
@@ -217,10 +235,30 @@ def _residual(mechanism: Mechanism, known: dict[sp.Symbol, Term], pose: Term) ->
     if mechanism.chain is None:
         named = known | _position_symbols(pose)
         return _column([term(sp.sympify(e), named) for e in mechanism.equations]), len(mechanism.equations)
+    if mechanism.followed_turns:
+        pose = _followed_pose(mechanism, known, pose)
     difference = _frame(mechanism.chain, known) - pose
     count = len(mechanism.task.position)
-    rotation = {Turning.NONE: [], Turning.DIRECTION: [5, 8, 11]}.get(mechanism.task.turning, list(range(3, 12)))
+    column = [5, 8, 11]
+    followed = {Turning.NONE: [], Turning.DIRECTION: column, Turning.PITCH: column}
+    rotation = followed.get(mechanism.task.turning, list(range(3, 12)))
     return difference[[*range(count), *rotation]], count
+
+
+def _followed_pose(mechanism: Mechanism, known: dict[sp.Symbol, Term], pose: Term) -> Term:
+    """The pose with its rotation swung, by the smallest turn, until the tool is in the plane in which the pitch moves
+    it.
+    """
+    square, *others = _followed_axes(mechanism, known)
+    own = ca.reshape(_frame(mechanism.chain, known)[3:], 3, 3)  # by rows: this is its transpose
+    tool = own @ others[0] if others else ca.DM([0, 0, 1])
+    rotation = ca.reshape(pose[3:], 3, 3).T
+    commanded = rotation @ tool
+    seen = commanded - square * ca.dot(square, commanded)
+    seen = seen / ca.sqrt(ca.dot(seen, seen))
+    axis = ca.skew(ca.cross(commanded, seen))
+    swung = rotation + axis @ rotation + axis @ axis @ rotation / (1 + ca.dot(commanded, seen))
+    return ca.vertcat(pose[:3], ca.reshape(swung.T, 9, 1))
 
 
 def _frame(chain: Chain | None, known: dict[sp.Symbol, Term]) -> Term:

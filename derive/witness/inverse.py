@@ -18,7 +18,7 @@ from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
 from derive.witness.planted import refused_when_planted
 from derive.witness.roots import Problem, all_solutions, distinct, problem_at, same, within_one_turn
-from derive.witness.samples import SEED, Samples, describe
+from derive.witness.samples import SEED, Samples, describe, turns_of
 
 AXES_TOLERANCE = 1e-9
 _NEAR = 15.0
@@ -149,15 +149,18 @@ def _commands(kin: Kinematics, samples: Samples) -> dict[str, Array]:
     """Turns and references that lead to the sampled axes: explicit turns on even rows, near references on odd ones."""
     rng = np.random.default_rng(SEED + 2)
     explicit = np.arange(len(samples)) % 2 == 0
+    searched = kin.mechanism.search.joint if kin.mechanism.search is not None else None
     commands = {}
     for i, joint in enumerate(kin.mechanism.joints):
         axis = samples.axes[:, i]
-        near = axis + rng.uniform(-_NEAR, _NEAR, len(samples))
-        anywhere = rng.uniform(-720.0, 720.0, len(samples))
+        turns = turns_of(joint, samples.values) if joint.is_angle else 1.0
+        near = axis + rng.uniform(-_NEAR, _NEAR, len(samples)) / turns
+        anywhere = rng.uniform(-720.0, 720.0, len(samples)) / turns
         held = joint in kin.mechanism.held_joints
-        commands[joint.reference.name] = axis if held else np.where(explicit & joint.multi_turn, anywhere, near)
+        far = explicit & joint.multi_turn & (joint != searched)  # the reference tells roots of one branch apart
+        commands[joint.reference.name] = axis if held else np.where(far, anywhere, near)
         if joint.multi_turn:
-            count = np.floor((axis + 180.0) / 360.0)
+            count = np.floor((axis * turns + 180.0) / 360.0)
             commands[joint.turn.name] = np.where(explicit, np.where(count >= 0, count + 1, count), 0.0)
     return commands
 

@@ -12,7 +12,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role
-from derive.ir.interpret import Array, run
+from derive.ir.interpret import Array, evaluate, run
 from derive.ir.program import Status
 from derive.ir.symbols import (
     MIN_TYPE2_MARGIN,
@@ -211,7 +211,7 @@ def _draw(parameter: Parameter, count: int, rng: Generator, largest: float) -> A
     size = abs(parameter.nominal) or _SPREAD.get(parameter.role, largest)
     if parameter.role is Role.LENGTH:
         drawn = parameter.nominal * rng.uniform(0.5, 1.5, count)
-    elif parameter.role is Role.SIGNED_LENGTH:
+    elif parameter.role in (Role.SIGNED_LENGTH, Role.TRANSMISSION):
         drawn = abs(parameter.nominal) * rng.uniform(0.5, 1.5, count) * rng.choice([-1.0, 1.0], count)
     elif parameter.role is Role.FLAG:
         drawn = np.ones(count)
@@ -240,12 +240,17 @@ def _axes(mechanism: Mechanism, values: dict[str, Array], reach: Array, rng: Gen
     """Random axis values: several turns where the axis has a period, the reach where it is linear."""
     columns = []
     for joint in mechanism.joints:
-        size = reach if not joint.is_angle else 540.0 if joint.multi_turn else 175.0
+        size = reach if not joint.is_angle else (540.0 if joint.multi_turn else 175.0) / turns_of(joint, values)
         low, high = joint.domain or (-np.inf, np.inf)
         drawn = rng.random(len(reach))
         motor = np.maximum(-size, low) * (1 - drawn) + np.minimum(size, high) * drawn
         columns.append(motor + (0.0 if joint.multi_turn else values[joint.offset.name]))
     return np.stack(columns, axis=1)
+
+
+def turns_of(joint: Joint, values: dict[str, Array]) -> Array:
+    """The turns of a joint per turn of its axis."""
+    return np.asarray(np.abs(np.asarray(evaluate(joint.ratio, values), dtype=float)))
 
 
 def _inside(mechanism: Mechanism, closure: Closure, samples: Samples) -> NDArray[np.bool_]:
@@ -268,6 +273,8 @@ def _singular_values(closure: Closure, samples: Samples) -> tuple[Array, Array]:
     reaches: the least is small near a type 1 singularity, the largest is large near a type 2 singularity.
     """
     columns, rows = closure.joint_scale(samples.reach), closure.row_scale(samples.reach)
+    gears = np.diagonal(closure.gearing(samples.axes, samples.parameters), axis1=1, axis2=2)
+    columns = columns / np.abs(gears)  # per radian of the joint, however slow a gear makes it
     scaled = np.nan_to_num(samples.jacobian * columns[:, None, :] / rows[:, :, None], posinf=0.0, neginf=0.0)
     sizes = np.linalg.svd(scaled[:, :, closure.solved], compute_uv=False)
     return np.asarray(sizes[:, 0]), np.asarray(sizes[:, -1])

@@ -22,7 +22,14 @@ from derive.ir.constants import (
 Array = NDArray[np.float64]
 STEP = 1e-30
 ONE_DEGREE = np.pi / 180.0
-COLUMNS = {Turning.NONE: [], Turning.ABOUT_Z: [0, 1, 2], Turning.DIRECTION: [2], Turning.FULL: [0, 1, 2]}
+COLUMNS = {
+    Turning.NONE: [],
+    Turning.ABOUT_Z: [0, 1, 2],
+    Turning.DIRECTION: [2],
+    Turning.FULL: [0, 1, 2],
+    Turning.PITCH: [2],
+    Turning.PITCH_ROLL: [0, 1, 2],
+}
 """The columns of the commanded rotation that the task prescribes."""
 POSITION = (X.symbol, Y.symbol, Z.symbol)
 
@@ -46,13 +53,20 @@ class Closure:
         """Joint values in radians and lengths: motor = axis - offset, joint = motor + coupling."""
         motors = (axes - self.offsets) * self.units
         coupled = self._formulas.couplings
-        return motors + self._evaluate(coupled, motors) if coupled is not None else motors
+        joints = motors * self._ratios() if self._formulas.are_geared else motors
+        return joints + self._evaluate(coupled, motors) if coupled is not None else joints
+
+    def _ratios(self) -> Array:
+        """The turns of every joint per turn of its motor."""
+        return self._evaluate(self._formulas.ratios, np.zeros((1, len(self.mechanism.joints))))
 
     def axes(self, joints: Array) -> Array:
         """Axis values of joint values: couplings come from motors of earlier axes, so motor by motor."""
         motors = np.array(joints)
         for i, coupling in self._formulas.coupled.items():
             motors[:, i] = joints[:, i] - self._evaluate(coupling, motors)[:, 0]
+        if self._formulas.are_geared:
+            motors = motors / self._ratios()
         return motors / self.units + self.offsets
 
     def poses(self, axes: Array) -> tuple[Array, Array]:
@@ -96,10 +110,48 @@ class Closure:
         if self.mechanism.chain is None:
             return self._stated(joints, positions)
         position, rotation = self.frames(joints)
+        if self.mechanism.followed_turns:
+            rotations = self.nearest(joints, rotations)
         lengths = (position - positions)[:, self.task]
         return np.hstack(
             [lengths, (rotation - rotations)[:, :, self.columns].reshape(len(lengths), 3 * len(self.columns))]
         )
+
+    def nearest(self, joints: Array, rotations: Array) -> Array:
+        """The rotations swung, by the smallest turn, until the tool is in the plane in which the pitch moves it."""
+        _, rotation = self.frames(joints)
+        across = self._about(joints)[0]
+        tool = np.array([0.0, 0.0, 1.0])
+        if self.mechanism.followed_turns > 1:
+            tool = np.einsum("nij,ni->nj", rotation, self._about(joints)[1])[0]
+        commanded = rotations @ tool
+        seen = commanded - across * np.sum(across * commanded, axis=1)[:, None]
+        seen /= np.linalg.norm(seen, axis=1)[:, None]
+        return np.asarray(_swings(commanded, seen) @ rotations)
+
+    def _about(self, joints: Array) -> list[Array]:
+        """The directions of the axes of the pitch and the roll: those about which the last turning joints turn."""
+        assert self.mechanism.chain is not None
+        factors, symbols = self.mechanism.chain.factors, {j.symbol for j in self.mechanism.solved_joints}
+        places = [
+            k
+            for k, f in enumerate(factors)
+            if f.motion is Motion.TURN and f.amount.free_symbols & symbols and sp.expand(f.amount) != 0
+        ]
+        chosen: list[int] = []
+        for k in reversed(places):  # of neighbours about one axis the last one
+            if not chosen or factors[chosen[0]].axis != factors[k].axis:
+                chosen.insert(0, k)
+        amounts = self._evaluate(self._formulas.amounts, joints)
+        found = []
+        for place in chosen[-self.mechanism.followed_turns :]:
+            frame = np.zeros((3, 3, len(joints)), dtype=amounts.dtype)
+            frame[0, 0] = frame[1, 1] = frame[2, 2] = 1.0
+            for factor, amount in zip(factors[:place], amounts.T[:place], strict=True):
+                if factor.motion is not Motion.SHIFT:
+                    _turn(frame, factor.axis, np.pi * amount if factor.motion is Motion.FLIP else amount)
+            found.append(frame[factors[place].axis].T)
+        return found
 
     def jacobian(self, axes: Array, positions: Array) -> Array:
         """Rows of the task by axes, per radian for an axis in degrees."""
@@ -115,7 +167,9 @@ class Closure:
         rotations = self.frames(self.joints(axes))[1]
         spins = np.einsum("nika,njk->nija", spin.reshape(-1, 3, 3, axes.shape[1]), rotations)  # dR times R transposed
         twist = np.stack([spins[:, 2, 1], spins[:, 0, 2], spins[:, 1, 0]], axis=1)
-        if self.columns == [2]:  # turns about the x and y of the flange tilt the tool
+        if self.mechanism.followed_turns:
+            twist = np.stack([np.einsum("ni,nia->na", v, twist) for v in self._about(self.joints(axes))], axis=1)
+        elif self.columns == [2]:  # turns about the x and y of the flange tilt the tool
             twist = np.einsum("nij,nia->nja", rotations[:, :, :2], twist)
         return np.concatenate([by_position, twist[:, 2:] if self.follows_turn else twist], axis=1) / self.units
 
@@ -202,6 +256,16 @@ class Formulas:
         motors = tuple(j.motor for j in self._mechanism.joints)
         return self._of(tuple(j.coupling for j in self._mechanism.joints), motors) if self.coupled else None
 
+    @cached_property
+    def are_geared(self) -> bool:
+        """Whether any joint has a gear of its own."""
+        return any(j.ratio != 1 for j in self._mechanism.joints)
+
+    @cached_property
+    def ratios(self) -> Formula:
+        """The gears of the joints."""
+        return self.at_joints(tuple(j.ratio for j in self._mechanism.joints))
+
     def _of(self, expressions: tuple[sp.Expr, ...], names: tuple[sp.Symbol, ...]) -> Formula:
         if (names, expressions) not in self._made:
             formula = sp.lambdify((*names, *self._constants), list(expressions), modules="numpy")
@@ -223,6 +287,15 @@ def derivative(function: Callable[[Array], Array], at: Array) -> Array:
         shifted[:, i] += 1j * STEP
         columns.append(np.imag(function(shifted)) / STEP)
     return np.stack(columns, axis=2)
+
+
+def _swings(first: Array, second: Array) -> Array:
+    """The smallest rotations that take unit vectors to others."""
+    axis, agree = np.cross(first, second), np.sum(first * second, axis=1)
+    cross = np.zeros((len(first), 3, 3))
+    cross[:, 2, 1], cross[:, 0, 2], cross[:, 1, 0] = axis.T
+    cross[:, 1, 2], cross[:, 2, 0], cross[:, 0, 1] = -axis.T
+    return np.asarray(np.eye(3) + cross + cross @ cross / (1.0 + agree)[:, None, None])
 
 
 def _turn(rotation: Array, axis: int, angle: Array) -> None:

@@ -25,6 +25,7 @@ from derive.mechanism import (
 )
 from tests.machines.angle_machines import NUMBERS
 from tests.machines.searched_machines import SEARCHED
+from tests.machines.task_machines import TASK_MACHINES
 
 X, Y, Z, R = (linear(name, f"slide {name}") for name in ("X", "Y", "Z", "R"))
 A, B, C, A1, A2, A3, A4, A5, A6, E1 = (
@@ -383,4 +384,5 @@ MACHINES: Mapping[str, Mechanism] = {
     **OTHERS,
     **SEARCHED,
     **NUMBERS,
+    **TASK_MACHINES,
 }

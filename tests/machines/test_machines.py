@@ -15,6 +15,7 @@ from softkin import KinematicsError, Status
 from tests.machines import angle_machines
 from tests.machines.collection import HELD, MACHINES, PARAMETERS_DECIDE
 from tests.machines.made import Array, Made, made
+from tests.machines.task_machines import TASK_SOLUTIONS
 from tests.text.controller import OK
 
 EVERY = pytest.mark.parametrize("name", MACHINES)
@@ -52,6 +53,7 @@ EXPECTED = {
     "arm whose wrist goes sideways": 8,
     "arm in metres with a bent wrist and a shoulder beside its axis": 8,
     **angle_machines.EXPECTED,
+    **TASK_SOLUTIONS,
 }
 """The largest number of solutions, as a search of the closure from many starts finds them."""
 MOST = 300

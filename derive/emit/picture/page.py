@@ -54,7 +54,7 @@ def _words(drawing: Drawing, shown: Sequence[Choice], names: Mapping[str, str]) 
         yield "Zero pose: all axes at their offsets. Arrows show the positive direction of every axis."
     else:
         values = ", ".join(
-            f"{joint.name} = {value:.6g}{'°' if joint.is_angle else ''}" for joint, value in drawing.axes
+            f"{joint.name} = {value:.6g}{'°' if joint.in_degrees else ''}" for joint, value in drawing.axes
         )
         where = "Home pose, where" if drawing.is_home else "Drawn where"
         yield from wrap(f"{where} {values}. Arrows show the positive direction of every axis.", _LETTERS)

@@ -11,11 +11,12 @@ from derive.report.cost import Cost, costs_of
 
 _UNITS = {
     Role.LENGTH: "u", Role.SIGNED_LENGTH: "u", Role.DISTANCE: "u", Role.PITCH: "u/rev", Role.GEAR: "u/deg",
-    Role.COUPLING: "1", Role.RATIO: "1", Role.FLAG: "", Role.SIGN: "", Role.ANGLE: "deg",
+    Role.COUPLING: "1", Role.TRANSMISSION: "1", Role.RATIO: "1", Role.FLAG: "", Role.SIGN: "", Role.ANGLE: "deg",
 }  # fmt: skip
 _USUAL: dict[Role, tuple[float, float, float | None]] = {
     Role.LENGTH: (0.0, float(LARGEST), None),
     Role.SIGNED_LENGTH: (-float(LARGEST), float(LARGEST), None),
+    Role.TRANSMISSION: (-1e6, 1e6, None),
     Role.RATIO: (0.0, 1.0, 0.0),
     Role.FLAG: (0.0, 1.0, 0.0),
     Role.SIGN: (-1.0, 1.0, 1.0),
@@ -42,7 +43,7 @@ def axes(kin: Kinematics) -> list[str]:
     """The axes of the controller."""
     return _tuple(
         _call(
-            "Axis", name=j.name, kind=j.kind.value, unit="deg" if j.is_angle else "u",
+            "Axis", name=j.name, kind=j.kind.value, unit="deg" if j.in_degrees else "u",
             meaning=j.meaning, multi_turn=j.multi_turn,
         )
         for j in kin.mechanism.joints
@@ -75,6 +76,15 @@ def configuration(kin: Kinematics) -> list[str]:
         _call("ConfigurationByte", name=j.name, kind="period", branches=(), default=0) for j in kin.period_joints
     ]
     return _tuple([*branches, *periods])
+
+
+def turn_sizes(kin: Kinematics) -> str:
+    """How many turns a joint makes in one of its axis, of every axis with a period byte; empty without gears."""
+    if not any(j.is_geared for j in kin.period_joints):
+        return ""
+    sizes = (j.turns for j in kin.period_joints)
+    named = [literal(float(s)) if s.is_number else f"self._constants.{s}" for s in sizes]
+    return f"({', '.join(named)},)"
 
 
 def costs(kin: Kinematics) -> list[str]:

@@ -30,7 +30,7 @@ def finish(kin: Kinematics, trusted: Program) -> Function | None:
     trusted: one branch for such input. None where an axis alone does not know its turn or its limits: with gear
     coupling the reference is compared joint by joint, and a limited quantity is one of several axes.
     """
-    if kin.limited or any(joint.coupling != 0 for joint in kin.period_joints):
+    if kin.limited or any(joint.coupling != 0 or joint.is_geared for joint in kin.period_joints):
         return None
     joints = kin.mechanism.joints
     counted = {s.name for s in turns_that_count(trusted)}

@@ -37,6 +37,7 @@ from derive.ir.constants import (
     EXACT_ROTATION,
     FINISHED,
     FREE_ANGLE,
+    GEARED_TURN,
     HELD,
     LARGEST,
     LIMIT,
@@ -150,6 +151,7 @@ def _templates() -> Environment:
         "search_constants": {name: _literal((vars(cells) | vars(roots))[name]) for name in _OF_THE_SEARCH},
         "exact": literal(float(EXACT_ROTATION)),
         "one_turn": literal(int(ONE_TURN)),
+        "geared_turn": literal(float(GEARED_TURN)),
         "pivot": literal(float(PIVOT)),
         "singular": literal(float(SINGULAR)),
         "cells": _after_docstring(Path(cells.__file__).read_text()),
@@ -223,6 +225,10 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "lean": lean,
         "trusted": trusted,
         "slots": ("_all_trusted", "_constants", "_finish", "_one_trusted") if lean else ("_constants",),
+        "of_configuration": [
+            *(["Criterion"] if chooses_by_lengths(kin.mechanism) else []),
+            *(["period"] if entries.turn_sizes(kin) else []),
+        ],
         "chooses_by_lengths": chooses_by_lengths(kin.mechanism),
         "has_folds": has_folds(kin),
         "margins": tuple(m.name for m in kin.margins),
@@ -292,6 +298,7 @@ def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
     kinds = {m.kind for m in used if m.kind} | {a.kind for m in used for a in m.arguments}
     lean = {"PlainFrame", "Reals", "Rotation", "Signs", "Vector"} if can_be_unrolled(kin) else set()
     lean |= {"ConfigurationByte"} if kin.configuration_size else set()
+    lean |= {"Configuration"} if entries.turn_sizes(kin) else set()
     lean |= {"Axis"} if kin.mechanism.joints else set()
     return _sorted(kinds - {"Pose", "Image", "TotalImage"} | {"Diagnosis", "Parameter", "Reals", "Status"} | lean)
 

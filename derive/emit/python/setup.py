@@ -98,7 +98,7 @@ def _value(parameter: Parameter) -> str:
 def _window(window: Window, read: Collection[str]) -> list[str]:
     """The line that computes the range of an axis. It refuses invalid limits even where no program reads the range."""
     targets = [f"self.{o.name}" if o.name in read else "_" for o in window.outputs]
-    call = f'machine._window("{window.key}"{_without_limits(window)})'
+    call = f'machine._window("{window.key}"{_without_limits(window)}{_gear(window)})'
     while targets and targets[-1] == "_":
         targets.pop()
     if not targets:
@@ -113,6 +113,11 @@ def _without_limits(window: Window) -> str:
     condition, low, high = window.fallback[-1]
     interval = f"({_PRINTER.print(low)}, {_PRINTER.print(high)})"
     return f", {interval}" if condition == sp.true else f", {interval} if {_PRINTER.print(condition)} else None"
+
+
+def _gear(window: Window) -> str:
+    """The argument with the turns of a joint with a gear per turn of its axis."""
+    return f", turns={_PRINTER.print(window.turns)}" if window.has_turns and window.turns != 1 else ""
 
 
 def _refusal(statement: Require, inputs: list[str]) -> list[str]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from derive.description.mechanism import Joint, Kind
 from derive.emit.softmotion.inputs import Input, parameter_input
-from derive.emit.softmotion.settings import SETTINGS, Settings, settings_of
+from derive.emit.softmotion.settings import SETTINGS, Settings, settings_of, turns_of
 from derive.emit.st.contract import Contract
 from derive.emit.st.expression import literal
 from derive.emit.st.names import capitalized, stored_name, type_name
@@ -73,6 +73,8 @@ class PeriodByte:
     axis: str
     field: str
     input: str
+    turns: str = ""
+    """The turns of the joint per turn of the axis, as a factor in front of its value; empty without a gear."""
 
 
 @dataclass(frozen=True)
@@ -134,7 +136,14 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         axis_fields=axis_fields,
         branches=tuple(_branch_byte(i, b.name, b.names) for i, b in enumerate(kinematics.branches)),
         periods=tuple(
-            PeriodByte(size + i, order[j.name], j.name, axis_fields[order[j.name]], f"iPeriod{capitalized(j.key)}")
+            PeriodByte(
+                size + i,
+                order[j.name],
+                j.name,
+                axis_fields[order[j.name]],
+                f"iPeriod{capitalized(j.key)}",
+                f"{turns_of(j)}*" if j.is_geared else "",
+            )
             for i, j in enumerate(kinematics.period_joints)
         ),
         configuration_size=kinematics.configuration_size,

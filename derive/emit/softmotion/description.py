@@ -24,7 +24,9 @@ from derive.report.reasons import workspace
 
 _WIDTH = 100
 _MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "turns, deg; declared linear"}
+_MOTION |= {Kind.GEARED: "geared, deg; declared linear", Kind.DRIVING: "turning motor, deg; declared linear"}
 _PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 open"
+_GEARED = "turns of its joint, behind the gear: 1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 open"
 _BRANCH = "0 automatic, 3 where both solutions coincide"
 _READ = (
     f"A commanded rotation R may have few exact digits, as after conversion from REAL. Where R^T R differs from the "
@@ -110,7 +112,8 @@ def _configuration(block: Block) -> Iterator[str]:
     for branch in block.branches:
         yield from _item(f"Byte {branch.byte}, {branch.name}: 1 {branch.first}, 2 {branch.second}, {_BRANCH}.")
     for period in block.periods:
-        yield from _item(f"Byte {period.byte}, turn of {period.axis} (signed): {_PERIOD}.")
+        turns = _GEARED if period.turns else _PERIOD
+        yield from _item(f"Byte {period.byte}, turn of {period.axis} (signed): {turns}.")
     yield ""
     yield from wrap(
         f"{block.name}_Config sets a configuration, {block.name}_ReadConfig reads one. {_AUTOMATIC}", _WIDTH

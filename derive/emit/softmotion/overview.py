@@ -25,7 +25,7 @@ def _tools(kinematics: Kinematics) -> str:
     """The offsets that SMC_GroupSetTool accepts: to remove an offset, the orientation of the flange must be known."""
     if kinematics.mechanism.is_orientation:
         return "with a position block"
-    if kinematics.mechanism.task.turning is Turning.DIRECTION:
+    if kinematics.mechanism.task.turning is Turning.DIRECTION or kinematics.mechanism.followed_turns:
         return "along the axis it turns about"
     if kinematics.projection is not None or kinematics.freedom is Freedom.ZERO:
         return "any"

@@ -3,10 +3,12 @@ AxisSettings writes."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from derive.description.joints import Joint
+from derive.emit.st.expression import literal
 from derive.emit.st.names import stored_name
+from derive.ir.constants import GEARED_TURN, UNLIMITED
 
 SETTINGS = "ISMKinematicAxisSettings"
 """The interface by which SoftMotion passes the limits of a drive."""
@@ -30,6 +32,12 @@ class Settings:
     own_lower: str
     own_upper: str
     """The limits of the block."""
+    turns: str = ""
+    """The turns of the joint per turn of the axis; empty without a gear."""
+    one_turn: str = literal(float(GEARED_TURN))
+    """The widest range, in degrees of the joint, that holds one value for every direction."""
+    unlimited: str = literal(float(UNLIMITED / 2))
+    """More than any limit."""
 
 
 def settings_of(joint: Joint) -> Settings:
@@ -39,4 +47,10 @@ def settings_of(joint: Joint) -> Settings:
     ends = (stored_name(f"{word}_{key}") for word in ("lowest", "highest"))
     turns = (stored_name(f"{word}_{key}") if joint.multi_turn else "" for word in ("single", "mid"))
     own = (stored_name(f"{word}_{key}") for word in ("unlimited", "lower", "upper"))
-    return Settings(*given, *ends, *turns, *own)
+    gear = turns_of(joint) if joint.is_geared and joint.multi_turn else ""
+    return replace(Settings(*given, *ends, *turns, *own), turns=gear)
+
+
+def turns_of(joint: Joint) -> str:
+    """The turns of a joint with a gear per turn of its axis: a number, or the instance variable that holds it."""
+    return literal(float(joint.turns)) if joint.turns.is_number else stored_name(str(joint.turns))

@@ -117,7 +117,7 @@ def _or_free(
         Let(across, problem.tidy(matrix.det(method="berkowitz")), f"{note}: how far from across"),
         Let(divisor, Select(points, across, sp.Integer(1))),
         *lets,
-        Require(sp.Or(points, agree), Status.UNREACHABLE, reason=about_joint(last, Why.ACROSS)),
+        Require(sp.Or(points, agree), Status.UNREACHABLE, reason=about_joint(last, Why.SLIDE_ACROSS)),
     )
 
 

@@ -80,8 +80,8 @@ def _poses(robot: Mechanism, values: Array, program: Callable[[slice], _Forward]
         written = configurations[rows]
         for i, margin in zip(robot._branch_bytes, margins, strict=True):
             written[:, i] = _branch_bytes(margin)
-        for i, axis in zip(robot._period_bytes, robot.PERIOD_AXES, strict=True):
-            written[:, i] = _periods(values[rows, axis])
+        for i, axis, turns in zip(robot._period_bytes, robot.PERIOD_AXES, robot._turn_sizes(), strict=True):
+            written[:, i] = _periods(turns * values[rows, axis])
         written[failed] = 0
         statuses[rows] = status
     return positions, rotations, configurations, statuses

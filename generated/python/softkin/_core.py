@@ -165,10 +165,11 @@ class Mechanism(ABC):
             if not parameter.allows(found[parameter.name]):
                 raise self._refusal(parameter.meaning, parameter.name)
 
-    def _window(self, key: str, otherwise: tuple[float, float] | None = None) -> Window:
+    def _window(self, key: str, otherwise: tuple[float, float] | None = None, turns: float | None = None) -> Window:
         """The range of an axis or of another quantity, by the last part of the names of its limits.
 
-        otherwise: the range if no limits are given; None stands for an unlimited one.
+        otherwise: the range if no limits are given; None stands for an unlimited one. turns: with a gear, those of
+        the joint per turn of the axis.
         Raises NOT_INITIALIZED for a lower limit that is not below the upper one.
         """
         lower, upper = self.parameters[f"lower_{key}"], self.parameters[f"upper_{key}"]
@@ -180,6 +181,8 @@ class Mechanism(ABC):
         middle = 0.5 * low + 0.5 * high
         has_limits = is_given or otherwise is not None
         single = has_limits and high - low <= 350 + tolerance
+        if turns is not None:
+            single = has_limits and (high - low + 2.0 * tolerance) * turns <= 350.001
         if not (has_limits and self.checks_limits):
             return Window(-1e12, 1e12, single, middle)
         return Window(low - tolerance, high + tolerance, single, middle)
@@ -469,6 +472,10 @@ class Mechanism(ABC):
     def _written(self, margins: Reals, axes: Reals) -> Configuration:
         """The configuration of a pose."""
         return tuple(map(branch_byte, margins)) + self._periods(axes)
+
+    def _turn_sizes(self) -> Reals:
+        """How many turns a joint makes in one of its axis, of every axis with a period byte."""
+        return (1.0,) * len(self.PERIOD_AXES)
 
     def _periods(self, axes: Reals) -> Configuration:
         return tuple([1 if FIRST_TURN <= axes[i] < SECOND_TURN else period(axes[i]) for i in self.PERIOD_AXES])

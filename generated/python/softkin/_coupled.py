@@ -121,6 +121,12 @@ class Coupled(Mechanism):
         first, turning = self.position_part.BRANCHES, len(self.position_part.PERIOD_AXES)
         return branches[:first] + periods[:turning] + branches[first:] + periods[turning:]
 
+    def _turn_sizes(self) -> Reals:
+        return self.position_part._turn_sizes() + self.orientation_part._turn_sizes()
+
+    def _periods(self, axes: Reals) -> Configuration:
+        return self.position_part._periods(axes[: self._count]) + self.orientation_part._periods(axes[self._count :])
+
     def _written(self, margins: Reals, axes: Reals) -> Configuration:
         """The configuration of a pose: the bytes of the first part, then those of the second."""
         first, second, cut = self.position_part, self.orientation_part, self.position_part.BRANCHES

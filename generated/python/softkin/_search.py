@@ -85,8 +85,8 @@ class SearchedInverse(Mechanism):
     def _are_same(self, axes: Reals, other: Reals) -> bool:
         """Whether the axes differ by full turns alone."""
         apart = [abs(a - b) for a, b in zip(axes, other, strict=True)]
-        for index in self.PERIOD_AXES:
-            apart[index] = abs((apart[index] + 180.0) % 360.0 - 180.0)
+        for index, turns in zip(self.PERIOD_AXES, self._turn_sizes(), strict=True):
+            apart[index] = abs((turns * apart[index] + 180.0) % 360.0 - 180.0) / turns
         return max(apart) < _SAME
 
     @abstractmethod

@@ -163,6 +163,7 @@ _USUAL: dict[str, dict[str, Any]] = {
     "gear": {"unit": "u/deg", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
     "coupling": {"unit": "1", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
     "ratio": {"unit": "1", "low": 0.0, "high": 1.0, "low_is_open": False, "default": 0.0},
+    "transmission": {"unit": "1", "low": -1000000.0, "high": 1000000.0, "low_is_open": False, "default": None},
     "flag": {"unit": "", "low": 0.0, "high": 1.0, "low_is_open": False, "default": 0.0},
     "sign": {"unit": "", "low": -1.0, "high": 1.0, "low_is_open": False, "default": 1.0},
     "angle": {"unit": "deg", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
@@ -196,7 +197,7 @@ class Parameter:
             return True
         if self.kind == "sign":
             return value in (1, -1)
-        if self.kind == "signed length" and not (value > 0.0 or value < 0.0):
+        if self.kind in ("signed length", "transmission") and not (value > 0.0 or value < 0.0):
             return False
         return (value > self.low if self.low_is_open else value >= self.low) and value <= min(self.high, 1e9)
 

@@ -1,0 +1,7 @@
+"""The last turns of a chain, where they alone follow the commanded rotation: pitch, and roll about the tool's axis.
+
+The joints before them turn the plane in which the pitch moves the tool, and the position decides these. Once they are
+known, the commanded direction is seen in that plane and taken to length one: that is the nearest direction that the
+machine can reach. The roll then is the turn nearest to what is left of the commanded rotation. For a rotation that the
+machine can reach both are exact.
+"""

@@ -1,0 +1,227 @@
+"""Arms that follow the pitch, and the roll, of the commanded rotation: what of it they reach is the nearest."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from softkin import KinematicsError, Status
+
+from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning
+from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz
+from derive.kinematics.build import build
+from derive.solver.solve import Unsolved
+from tests.machines.made import Array, Made, made
+from tests.machines.task_machines import (
+    A1,
+    A2,
+    A3,
+    A4,
+    A5,
+    L2,
+    L3,
+    L4,
+    TASK_MACHINES,
+    WITH_PITCH,
+    WITH_PITCH_AND_ROLL,
+    B,
+    X,
+    Y,
+    Z,
+)
+from tests.text.controller import OK
+
+FOLLOWING = {**WITH_PITCH, **WITH_PITCH_AND_ROLL}
+EVERY = pytest.mark.parametrize("name", FOLLOWING)
+
+
+def rotations(count: int) -> Array:
+    """Rotations of all directions."""
+    left, _, right = np.linalg.svd(np.random.default_rng(3).normal(size=(count, 3, 3)))
+    found = left @ right
+    found[:, :, 0] *= np.linalg.det(found)[:, None]
+    return np.asarray(found)
+
+
+def within_reach(machine: Made, count: int) -> Array:
+    rng = np.random.default_rng(5)
+    sizes = np.where(machine.closure.angles, 150.0, 0.9)
+    return machine.axes(rng.uniform(-1.0, 1.0, (count, len(sizes))) * sizes)
+
+
+def tool_of(mechanism: Mechanism) -> Array:
+    """The direction that the pitch moves, in the frame of the flange."""
+    return np.array([1.0, 0.0, 0.0] if mechanism.name == "Kin_FiveAlongX" else [0.0, 0.0, 1.0])
+
+
+@EVERY
+def test_no_other_direction_of_the_arm_is_nearer_to_the_commanded_one(name: str) -> None:
+    """A rotation that the machine cannot reach: of all turns of the pitch and the roll none comes nearer."""
+    machine = made(name)
+    axes, tool = within_reach(machine, 12), tool_of(machine.mechanism)
+    positions, _ = machine.closure.poses(axes)
+    around = np.linspace(-180.0, 180.0, 721)
+    compared = 0
+    for reference, position, commanded in zip(axes, positions, rotations(len(axes)), strict=True):
+        for solution in machine.robot.inverse_all((position, commanded), reference):
+            if solution.axes is None:
+                continue
+            row = np.array([solution.axes])
+            reached, flange = machine.closure.poses(row)
+            assert np.abs(reached[0] - position).max() <= 1e-9 * machine.reach
+            pitch = len(row[0]) - machine.mechanism.followed_turns
+            pitched = np.repeat(row, len(around), axis=0)
+            pitched[:, pitch] += around
+            others = machine.closure.poses(pitched)[1] @ tool @ (commanded @ tool)
+            own = float(flange[0] @ tool @ (commanded @ tool))
+            assert own >= others.max() - 1e-12
+            if machine.mechanism.followed_turns > 1:
+                rolled = np.repeat(row, len(around), axis=0)
+                rolled[:, -1] += around
+                agreement = np.einsum("nij,ij->n", machine.closure.poses(rolled)[1], commanded)
+                assert np.einsum("ij,ij->", flange[0], commanded) >= agreement.max() - 1e-12
+            compared += 1
+    assert compared > 10
+
+
+@EVERY
+def test_a_tool_across_the_plane_of_the_arm_is_refused_in_both_languages(name: str) -> None:
+    machine = made(name)
+    axes = within_reach(machine, 1)
+    positions, flange = machine.closure.poses(axes)
+    square = machine.closure._about(machine.closure.joints(axes))[0][0]
+    tool = tool_of(machine.mechanism)
+    across = np.cross(square, flange[0] @ tool)
+    swing = np.outer(square, flange[0] @ tool) - np.outer(flange[0] @ tool, square) + np.outer(across, across)
+    commanded = swing @ flange[0]
+    assert np.allclose(commanded @ tool, square)
+    message = "the tool points across the plane in which the arm can turn it"
+    with pytest.raises(KinematicsError, match=message) as refusal:
+        machine.robot.inverse((positions[0], commanded), None, axes[0])
+    assert refusal.value.status is Status.UNREACHABLE
+    status, _ = machine.controller().inverse(positions[0], commanded, (), axes[0])
+    assert status != OK
+
+
+@pytest.mark.parametrize("name", ["arm with four axes over its column", "arm with four axes", "arm with five axes"])
+def test_over_the_first_axis_the_tool_tells_where_the_arm_stands(name: str) -> None:
+    """The position leaves the first axis free there, the commanded direction does not, whatever the reference."""
+    machine = made(name)
+    rng = np.random.default_rng(8)
+    found = 0
+    for bend, lean in rng.uniform(-1.2, 1.2, (40, 2)):
+        axes = _over_the_first_axis(machine, bend, lean)
+        if axes is None:
+            continue
+        positions, flange = machine.closure.poses(axes[None])
+        assert np.hypot(*positions[0, :2]) <= 1e-9
+        for turned in (0.0, 30.0, 90.0, 179.0, -120.0):
+            reference = axes + np.eye(len(axes))[0] * turned
+            answers = [s.axes for s in machine.robot.inverse_all((positions[0], flange[0]), reference)]
+            given = np.array([a for a in answers if a is not None])
+            assert len(given) >= 2
+            assert machine.error(given, positions.repeat(len(given), 0), flange.repeat(len(given), 0)).max() <= 1e-9
+            reached = machine.closure.poses(given)[1]
+            assert np.abs((reached - flange[0])[:, :, 2]).max() <= 1e-9
+            found += 1
+    assert found >= 10
+
+
+def _over_the_first_axis(machine: Made, bend: float, lean: float) -> Array | None:
+    """Axis values at which the tip is on the first axis and the tool leans: the second joint is sought."""
+    axes = machine.axes(np.degrees([[0.3, 0.0, bend, lean, 0.4]])[:, : len(machine.mechanism.joints)])[0]
+    around = np.linspace(-180.0, 180.0, 400)
+
+    def aside(second: float) -> float:
+        axes[1] = second
+        position, _ = machine.closure.poses(axes[None])
+        heading = machine.closure.joints(axes[None])[0, 0]
+        if machine.mechanism.name == "Kin_OverColumn":
+            heading = np.pi / 2 - heading
+        return float(position[0, 0] * np.cos(heading) + position[0, 1] * np.sin(heading))
+
+    values = [aside(a) for a in around]
+    for low, high, first, last in zip(around, around[1:], values, values[1:], strict=False):
+        if first * last < 0:
+            for _ in range(60):
+                middle = (low + high) / 2
+                low, high = (middle, high) if aside(middle) * first > 0 else (low, middle)
+            aside((low + high) / 2)
+            return axes
+    return None
+
+
+MILLIMETRES = ("SCARA whose quill is geared", "CoreXY with C", "SCARA with a nut and a spline")
+"""The machines whose descriptions state a travel as a number."""
+
+
+@pytest.mark.parametrize("name", [name for name in TASK_MACHINES if name not in MILLIMETRES])
+def test_metres_and_far_references(name: str) -> None:
+    """In metres the angles are the same and the lengths a thousandth; references may be far away."""
+    machine = made(name)
+    robot = machine.robot
+    lengths = {p.name: robot.parameters[p.name] / 1000 for p in robot.PARAMETERS if p.unit == "u"}
+    small = type(robot)(**{**robot.parameters, **lengths})
+    sizes = np.where(machine.closure.angles, 1.0, 1e-3)
+    for axes in within_reach(machine, 12):
+        frame, configuration = robot.forward(axes)
+        tiny, same = small.forward(axes * sizes)
+        assert np.allclose(tiny.position, np.array(frame.position) / 1000, rtol=0.0, atol=1e-12)
+        assert same == configuration
+        far = (axes + np.where(machine.closure.angles, 36000.0, 10.0)) * sizes
+        back = small.inverse(tiny, configuration, far)
+        assert np.allclose(back, axes * sizes, rtol=0.0, atol=1e-7)
+
+
+def _arm(chain: object, turning: Turning, joints: tuple[object, ...] = (A1, A2, A3, A4)) -> Mechanism:
+    own = WITH_PITCH["arm with four axes"]
+    return replace(own, chain=chain, joints=joints, task=Task("xyz", turning), branches=(), parameters=(L2, L3, L4))
+
+
+LINKS = Rz(A1) * Ry(A2) * Tz(L2) * Ry(A3) * Tz(L3)
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "message"),
+    [
+        (
+            _arm(LINKS * Ry(A4) * Tz(L4) * Rx(1), Turning.PITCH_ROLL),
+            "the task commands 5 quantities (x, y, z, pitch, roll), and there are only 4 joints; command less of the pose, "
+            "or add joints",
+        ),
+        (
+            _arm(Rz(A1) * Rx(A2) * Tz(L2) * Rx(A3) * Tz(L3) * Rx(A4) * Tz(L4) * Rx(1) * Ry(1), Turning.PITCH),
+            "the task commands pitch, but the z axis of the flange is not square to the axis of the turn before it:"
+            " turn the flange by fixed rotations at the end of the chain so that its z axis is the direction of the"
+            " tool",
+        ),
+        (
+            _arm(LINKS * Ry(A4) * Tz(L4), Turning.DIRECTION),
+            "the task commands 5 quantities (x, y, z, tilt x, tilt y), and there are only 4 joints; where the position"
+            " decides the heading of the tool, command its pitch: Turning.PITCH",
+        ),
+        (
+            _arm(LINKS * Ry(A4) * Tz(L4) * Rz(A5), Turning.DIRECTION, (A1, A2, A3, A4, A5)),
+            "the closure does not determine a5: 5 unknowns in 3 equations (x_from_a1, y_from_a1, z_from_a1) and the"
+            " commanded direction leave 1 free to move; command one more quantity, or leave out one of these joints;"
+            " where the position decides the heading of the tool, command its pitch and roll: Turning.PITCH_ROLL",
+        ),
+        (
+            replace(_arm(LINKS * Ry(A4) * Tz(L4), Turning.PITCH), task=Task("xy", Turning.PITCH)),
+            "a task with pitch commands the whole position: 'xyz'",
+        ),
+        (
+            replace(_arm(None, Turning.PITCH), closure=(X - A1, Y - A2, Z - A3)),
+            "a task with pitch needs a chain: its last turns follow the commanded rotation",
+        ),
+        (
+            replace(WITH_PITCH["slides and a tilting head"], chain=Tx(X) * Ty(Y) * Tz(Z) * Tx(B)),
+            "the task commands pitch, and the chain has no pitch at its end: no joint turns so",
+        ),
+    ],
+)
+def test_what_cannot_be_commanded_is_refused(mechanism: Mechanism, message: str) -> None:
+    with pytest.raises((DescriptionError, Unsolved)) as refusal:
+        build(mechanism)
+    assert str(refusal.value) == message
