@@ -9,7 +9,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.algebra.angle_sums import name_of
+from derive.algebra.angle_sums import name_of, terms_of
 from derive.description.mechanism import (
     ROTATION,
     DescriptionError,
@@ -170,6 +170,7 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
         yield "the mechanism needs either a chain or closure equations"
     if mechanism.task.position not in ("xy", "xyz") and not mechanism.is_orientation:
         yield f"the task commands {mechanism.task.position!r}: it must be 'xy', 'xyz', or '' of a chain that only turns"
+    yield from _heading(mechanism)
     cones = [cone for rod in mechanism.rods for cone in (rod.base_cone, rod.plate_cone) if cone is not None]
     if cones and not mechanism.home:
         yield "a cone of a rod's joint is about the rod at the home pose, and the mechanism has none"
@@ -181,10 +182,25 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
             yield f"joint {joint.name!r} occurs nowhere in the closure"
 
 
+def _heading(mechanism: Mechanism) -> Iterator[str]:
+    if mechanism.heading is None:
+        return
+    if mechanism.chain is not None:
+        yield "a chain tells the heading of its flange itself: heading= is for a loop whose plate carries a joint"
+    if mechanism.task.turning is not Turning.ABOUT_Z:
+        yield "heading= turns the flange about z: the task must command that, Turning.ABOUT_Z"
+    turning = [j.symbol for j in mechanism.joints if j.is_angle]
+    if terms_of(sp.expand(mechanism.heading), turning) is None:
+        yield f"heading={mechanism.heading} must be a sum of rotary joints, each of them added or subtracted once"
+    if mechanism.home:
+        yield "a loop with heading= needs no home pose: its position is solved in closed form"
+
+
 def _equations(mechanism: Mechanism) -> Expressions:
     if mechanism.chain is not None:
         return tuple(("chain", factor.amount) for factor in mechanism.chain.factors)
-    return tuple(("closure", sp.sympify(equation)) for equation in mechanism.equations)
+    heading = () if mechanism.heading is None else (("heading", mechanism.heading),)
+    return (*(("closure", sp.sympify(equation)) for equation in mechanism.equations), *heading)
 
 
 def _symbols(mechanism: Mechanism) -> Iterator[str]:
@@ -192,7 +208,7 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
     known = joints | _parameters(mechanism)
     if mechanism.chain is None:
         known |= {quantity.symbol for quantity in (X, Y, Z)}
-    if mechanism.is_platform or mechanism.task.turning is Turning.FULL:
+    if mechanism.is_turning_loop or mechanism.task.turning is Turning.FULL:
         known |= set(ROTATION)
     named = [
         *_equations(mechanism),

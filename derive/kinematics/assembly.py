@@ -34,8 +34,11 @@ from derive.ir.reason import Reason, Unit, Why, about
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
     DETERMINANT,
+    HEADING,
     MIN_TYPE2_MARGIN,
+    cosine,
     real,
+    sine,
 )
 from derive.kinematics.sampling import NO_POSE, possible_axes, sample_machine
 from derive.plate.legs import MARGIN
@@ -105,7 +108,7 @@ def assembly_checks(
     if done.margin is None or mechanism.assembly is None:
         return ()
     bound = {s.name for s in solved if isinstance(s, Let)} | {real(c) for c in "xyz"}
-    bound |= {s for j in mechanism.joints for s in (j.symbol, j.motor)}
+    bound |= {s for j in mechanism.joints for s in (j.symbol, j.motor)} | {cosine(HEADING), sine(HEADING)}
     seen = {real(c): real(f"flange_{c}") for c in "xyz"} if offset else {}
     own = tuple(
         replace(s, value=s.value.xreplace(seen))

@@ -308,7 +308,7 @@ def _freedom(mechanism: Mechanism) -> Freedom:
     if mechanism.task.turning is Turning.FULL:
         return Freedom.THREE
     if mechanism.chain is None:
-        return Freedom.ONE if mechanism.is_platform else Freedom.ZERO
+        return Freedom.ONE if mechanism.is_turning_loop else Freedom.ZERO
     joints = {j.symbol for j in mechanism.joints}
     turns = [t for t in pose_of(mechanism.chain).turns if t.motion is Motion.TURN]  # opposite ones have merged
     if not any(t.amount.free_symbols & joints for t in turns):

@@ -43,9 +43,12 @@ from derive.ir.program import (
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import (
     COORDINATE_NAMES,
+    HEADING,
     ROTATION_ENTRIES,
     SCALE,
+    cosine,
     real,
+    sine,
 )
 from derive.kinematics.branch_assignment import Assignment
 from derive.kinematics.kinematics import Margin
@@ -82,14 +85,16 @@ def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
 
 def twist_program(mechanism: Mechanism, forward: Forward) -> Program:
     """All six rows of the twist, whatever the task: a coupling needs them."""
-    if mechanism.is_platform:
-        solved, values = platform_jacobian(mechanism, _motor_matrix(mechanism))
-        width = len(mechanism.joints)
-        own = {row: values[k * width : (k + 1) * width] for k, row in enumerate(jacobian_rows(mechanism))}
-        entries = [e for row in _ROWS[:6] for e in own.get(row, [sp.Integer(0)] * width)]
-        return normalise("twist", (*forward.statements, *solved), _entries_of(entries, width))
-    lets, values = _per_motor(mechanism, _by_screws(mechanism, _ROWS[:6]))
-    return normalise("twist", (*forward.statements, *lets), _entries_of(values, len(mechanism.joints)))
+    width = len(mechanism.joints)
+    if mechanism.chain is not None:
+        lets, values = _per_motor(mechanism, _by_screws(mechanism, _ROWS[:6]))
+        return normalise("twist", (*forward.statements, *lets), _entries_of(values, width))
+    solved, values = (
+        platform_jacobian(mechanism, _motor_matrix(mechanism)) if mechanism.is_platform else jacobian_entries(mechanism)
+    )
+    own = {row: values[k * width : (k + 1) * width] for k, row in enumerate(jacobian_rows(mechanism))}
+    entries = [e for row in _ROWS[:6] for e in own.get(row, [sp.Integer(0)] * width)]
+    return normalise("twist", (*forward.statements, *solved), _entries_of(entries, width))
 
 
 def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
@@ -153,19 +158,25 @@ def _twist(screw: Screw, position: sp.ImmutableMatrix) -> sp.Matrix:
 
 def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]:
     """The Jacobian of stated equations: -A^-1 B with A = dΦ/dx, B = dΦ/dq, by the adjugate; type 2 singular where det A
-    = 0.
+    = 0. A heading follows from the joints alone.
     """
     closure = sp.Matrix([with_fixed_names(mechanism, e) for e in mechanism.equations])
     by_pose = closure.jacobian([real(c) for c in mechanism.task.position])
-    by_joints = closure.jacobian([j.symbol for j in mechanism.joints])
+    heading = sp.Integer(0) if mechanism.heading is None else mechanism.heading
+    turned = closure.xreplace({cosine(HEADING): sp.cos(heading), sine(HEADING): sp.sin(heading)})
+    joints = [j.symbol for j in mechanism.joints]
+    by_joints = turned.jacobian(joints)
+    rows_of_heading = int(mechanism.heading is not None)
+    own_row = sp.Matrix(rows_of_heading, len(joints), [sp.diff(heading, j) for j in joints * rows_of_heading])
     if by_pose.rows != by_pose.cols:
         raise DescriptionError(f"{by_pose.rows} closure equations for {by_pose.cols} commanded coordinates")
     if not by_pose.free_symbols:
-        return -by_pose.inv() * by_joints, ()
+        return (-by_pose.inv() * by_joints).col_join(own_row), ()
     entries, lets = _entries(mechanism, by_pose, mechanism.task.position)
     drives, more = _entries(mechanism, by_joints, [j.key for j in mechanism.joints])
     determinant, divisor = real("determinant"), real("determinant_divisor")
-    determined = sp.Gt(sp.Abs(determinant), FREE_ANGLE * SCALE**by_pose.rows)
+    lengths = sum(bool(by_pose.row(k).free_symbols) for k in range(by_pose.rows))  # the others are numbers
+    determined = sp.Gt(sp.Abs(determinant), FREE_ANGLE * SCALE**lengths)
     statements: tuple[Statement, ...] = (
         *lets,
         *more,
@@ -173,7 +184,7 @@ def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]
         Require(determined, Status.IMPOSSIBLE, reason=about_machine(Why.UNCONTROLLED)),
         Let(divisor, Select(determined, determinant, sp.Integer(1))),
     )
-    return -entries.adjugate() * drives / divisor, statements
+    return (-entries.adjugate() * drives / divisor).col_join(own_row), statements
 
 
 def _entries(mechanism: Mechanism, matrix: sp.Matrix, names: Sequence[str]) -> tuple[sp.Matrix, tuple[Let, ...]]:

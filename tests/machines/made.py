@@ -16,6 +16,8 @@ from derive.description.mechanism import Mechanism, Role
 from derive.description.validate import validate
 from derive.pipeline import Built, derive_one, files_of, languages
 from tests.catalogue.closure import Closure
+from tests.catalogue.loop_machines import LoopClosure
+from tests.machines.carried import CARRIED
 from tests.machines.collection import MACHINES
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled_text
@@ -63,13 +65,17 @@ class Made:
 @cache
 def made(name: str) -> Made:
     """Derive and load a machine; its offsets are not zero."""
-    mechanism = validate(MACHINES[name])
+    mechanism = validate({**MACHINES, **CARRIED}[name])
     built = derive_one(mechanism)
     robot_class = _imported(mechanism, built)
     offsets = {j.offset.name: 7.0 * k - 20.0 for k, j in enumerate(mechanism.joints)}
     robot = robot_class(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
     lengths = [abs(p.nominal) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
-    return Made(mechanism, built, robot, Closure(mechanism, robot.parameters), sum(lengths) or 500.0)
+    reach = sum(lengths) or 500.0
+    closure = (
+        LoopClosure(mechanism, robot.parameters, reach) if mechanism.rods else Closure(mechanism, robot.parameters)
+    )
+    return Made(mechanism, built, robot, closure, reach)
 
 
 def _imported(mechanism: Mechanism, built: Built) -> type[softkin.Mechanism]:
