@@ -168,8 +168,7 @@ def _periods(mechanism: Mechanism) -> Iterator[str]:
 def _shape(mechanism: Mechanism) -> Iterator[str]:
     if (mechanism.chain is None) == (not mechanism.equations):
         yield "the mechanism needs either a chain or closure equations"
-    if mechanism.task.position not in ("xy", "xyz") and not mechanism.is_orientation:
-        yield f"the task commands {mechanism.task.position!r}: it must be 'xy', 'xyz', or '' of a chain that only turns"
+    yield from _position(mechanism)
     yield from _heading(mechanism)
     cones = [cone for rod in mechanism.rods for cone in (rod.base_cone, rod.plate_cone) if cone is not None]
     if cones and not mechanism.home:
@@ -180,6 +179,20 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
     for joint in mechanism.joints:
         if joint.symbol not in used:
             yield f"joint {joint.name!r} occurs nowhere in the closure"
+
+
+def _position(mechanism: Mechanism) -> Iterator[str]:
+    position = mechanism.task.position
+    if position in ("xy", "xyz") or mechanism.is_orientation:
+        return
+    moved = {c.name for c in (X.symbol, Y.symbol, Z.symbol) for e in mechanism.equations if c in e.free_symbols}
+    if uncommanded := [c for c in "xyz" if c in moved and c not in position]:
+        yield (
+            f"the task commands {position!r}, and the loop moves {', '.join(uncommanded)} as well: coordinates "
+            "that are not commanded would be unknowns in both directions, which no rule solves for; "
+            "command 'xy' or 'xyz'"
+        )
+    yield f"the task commands {position!r}: it must be 'xy', 'xyz', or '' of a chain that only turns"
 
 
 def _heading(mechanism: Mechanism) -> Iterator[str]:

@@ -78,6 +78,7 @@ from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, marg
 from derive.kinematics.shared_names import refuse_names_of_joints, refuse_shared_names
 from derive.lowering.lower import lowered
 from derive.plate.plate import check_home
+from derive.plate.stated_rods import with_stated_rods
 from derive.plate.turning import forward_from_given, joints_at_home, samples_near_home
 from derive.solver.solve import Unsolved
 
@@ -85,6 +86,7 @@ from derive.solver.solve import Unsolved
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
     check_joints(mechanism)
+    mechanism = with_stated_rods(mechanism)
     if mechanism.is_platform:
         check_home(mechanism)
     refuse_names_of_joints(mechanism)
