@@ -178,7 +178,9 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
     used = {s for _, e in _equations(mechanism) for s in e.free_symbols}
     for joint in mechanism.joints:
         if joint.symbol not in used:
-            yield f"joint {joint.name!r} occurs nowhere in the closure"
+            is_carried = joint.is_angle and mechanism.is_turning_loop and mechanism.heading is None
+            hint = f": where it turns the tool on the plate, say so by heading={joint.name}" if is_carried else ""
+            yield f"joint {joint.name!r} occurs nowhere in the closure{hint}"
 
 
 def _position(mechanism: Mechanism) -> Iterator[str]:

@@ -170,13 +170,36 @@ def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]
     own_row = sp.Matrix(rows_of_heading, len(joints), [sp.diff(heading, j) for j in joints * rows_of_heading])
     if by_pose.rows != by_pose.cols:
         raise DescriptionError(f"{by_pose.rows} closure equations for {by_pose.cols} commanded coordinates")
-    if not by_pose.free_symbols:
-        return (-by_pose.inv() * by_joints).col_join(own_row), ()
-    entries, lets = _entries(mechanism, by_pose, mechanism.task.position)
-    drives, more = _entries(mechanism, by_joints, [j.key for j in mechanism.joints])
+    matrix, statements = _solved(mechanism, by_pose, by_joints)
+    return matrix.col_join(own_row), statements
+
+
+def _solved(mechanism: Mechanism, by_pose: sp.Matrix, by_joints: sp.Matrix) -> tuple[sp.Matrix, tuple[Statement, ...]]:
+    """-A^-1 B. The coordinates that equations of numbers alone hold (z of a quill) come first, without a divisor."""
+    first = [k for k in range(by_pose.rows) if not by_pose.row(k).free_symbols]
+    held = [c for c in range(by_pose.cols) if any(by_pose[k, c] != 0 for k in first)]
+    if len(held) != len(first):
+        first = held = []
+    others, left = ([k for k in range(by_pose.rows) if k not in own] for own in (first, held))
+    every = list(range(by_joints.cols))
+    known = -by_pose.extract(first, held).inv() * by_joints.extract(first, every) if first else sp.zeros(0, len(every))
+    rest = by_joints.extract(others, every) + by_pose.extract(others, held) * known
+    statements: tuple[Statement, ...] = ()
+    if others:
+        rest, statements = _by_adjugate(mechanism, by_pose.extract(others, left), rest, (others, left))
+    rows = dict(zip((*held, *left), (*known.tolist(), *rest.tolist()), strict=True))
+    return sp.Matrix([rows[c] for c in range(by_pose.cols)]), statements
+
+
+def _by_adjugate(
+    mechanism: Mechanism, by_pose: sp.Matrix, by_joints: sp.Matrix, places: tuple[list[int], list[int]]
+) -> tuple[sp.Matrix, tuple[Statement, ...]]:
+    """-A^-1 B with a determinant that may vanish. places: the numbers of the equations and of the coordinates."""
+    equations, coordinates = places
+    entries, lets = _entries(mechanism, by_pose, [mechanism.task.position[c] for c in coordinates], equations)
+    drives, more = _entries(mechanism, by_joints, [j.key for j in mechanism.joints], equations)
     determinant, divisor = real("determinant"), real("determinant_divisor")
-    lengths = sum(bool(by_pose.row(k).free_symbols) for k in range(by_pose.rows))  # the others are numbers
-    determined = sp.Gt(sp.Abs(determinant), FREE_ANGLE * SCALE**lengths)
+    determined = sp.Gt(sp.Abs(determinant), FREE_ANGLE * SCALE**by_pose.rows)
     statements: tuple[Statement, ...] = (
         *lets,
         *more,
@@ -184,17 +207,19 @@ def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]
         Require(determined, Status.IMPOSSIBLE, reason=about_machine(Why.UNCONTROLLED)),
         Let(divisor, Select(determined, determinant, sp.Integer(1))),
     )
-    return (-entries.adjugate() * drives / divisor).col_join(own_row), statements
+    return -entries.adjugate() * drives / divisor, statements
 
 
-def _entries(mechanism: Mechanism, matrix: sp.Matrix, names: Sequence[str]) -> tuple[sp.Matrix, tuple[Let, ...]]:
+def _entries(
+    mechanism: Mechanism, matrix: sp.Matrix, names: Sequence[str], equations: Sequence[int]
+) -> tuple[sp.Matrix, tuple[Let, ...]]:
     """The entries of a matrix of derivatives by names of their own, `slope_<equation>_by_<unknown>`."""
     trigonometric, values = named_trigonometry(mechanism, list(matrix))
     lets: list[Let] = [*trigonometric]
     entries = []
     for k, value in enumerate(values):
         if value != 0:
-            lets.append(Let(real(f"slope_{k // matrix.cols + 1}_by_{names[k % matrix.cols]}"), value))
+            lets.append(Let(real(f"slope_{equations[k // matrix.cols] + 1}_by_{names[k % matrix.cols]}"), value))
         entries.append(lets[-1].name if value != 0 else sp.Integer(0))
     return sp.Matrix(matrix.rows, matrix.cols, entries), tuple(lets)
 

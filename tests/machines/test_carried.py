@@ -256,6 +256,10 @@ REFUSED = {
     "a heading by a gear": (lambda m: replace(m, heading=2 * C.symbol), "must be a sum of rotary joints"),
     "a home pose": (lambda m: replace(m, home=(0, 0, 0)), "needs no home pose"),
     "a tool that only a loop joint turns": (lambda m: replace(m, heading=A1.symbol), "joint 'C' occurs nowhere"),
+    "a tool that nothing is said of": (
+        lambda m: replace(m, heading=None),
+        "joint 'C' occurs nowhere in the closure: where it turns the tool on the plate, say so by heading=C",
+    ),
     "a second quill": (
         lambda m: replace(m, closure=(X - Y,)),
         "the closure has 4 equations, and the task commands only 3 quantities",

@@ -648,15 +648,24 @@ class DualScara(OffsetKinematics, TwistChoice):
         # nothing controls the plate
         if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
-        one_by_determinant_divisor = 1.0 / determinant
         slope_2_by_a1 = twice_arm_length_1 * ((pivot_1_y - y) * cos_a1 + (x - pivot_1_x) * sin_a1)
-        shared_product = one_by_determinant_divisor * slope_2_by_a1
+        slope_2_by_a1_by_determinant_divisor = slope_2_by_a1 / determinant
         slope_3_by_a2 = twice_arm_length_2 * ((pivot_2_y - y) * cos_a2 + (x - pivot_2_x) * sin_a2)
-        shared_product_2 = one_by_determinant_divisor * slope_3_by_a2
+        slope_3_by_a2_by_determinant_divisor = slope_3_by_a2 / determinant
         return (
-            (-shared_product * slope_3_by_y, shared_product_2 * slope_2_by_y, 0.0, 0.0),
-            (shared_product * slope_3_by_x, -shared_product_2 * slope_2_by_x, 0.0, 0.0),
-            (0.0, 0.0, determinant * one_by_determinant_divisor, 0.0),
+            (
+                -slope_2_by_a1_by_determinant_divisor * slope_3_by_y,
+                slope_2_by_y * slope_3_by_a2_by_determinant_divisor,
+                0.0,
+                0.0,
+            ),
+            (
+                slope_2_by_a1_by_determinant_divisor * slope_3_by_x,
+                -slope_2_by_x * slope_3_by_a2_by_determinant_divisor,
+                0.0,
+                0.0,
+            ),
+            (0.0, 0.0, 1.0, 0.0),
             (0.0, 0.0, 0.0, 1.0),
         )
 
@@ -729,15 +738,24 @@ class DualScara(OffsetKinematics, TwistChoice):
         # nothing controls the plate
         if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
-        one_by_determinant_divisor = 1.0 / determinant
         slope_2_by_a1 = twice_arm_length_1 * ((pivot_1_y - y) * cos_a1 + (x - pivot_1_x) * sin_a1)
-        shared_product = one_by_determinant_divisor * slope_2_by_a1
+        slope_2_by_a1_by_determinant_divisor = slope_2_by_a1 / determinant
         slope_3_by_a2 = twice_arm_length_2 * ((pivot_2_y - y) * cos_a2 + (x - pivot_2_x) * sin_a2)
-        shared_product_2 = one_by_determinant_divisor * slope_3_by_a2
+        slope_3_by_a2_by_determinant_divisor = slope_3_by_a2 / determinant
         return (
-            (-shared_product * slope_3_by_y, shared_product_2 * slope_2_by_y, 0.0, 0.0),
-            (shared_product * slope_3_by_x, -shared_product_2 * slope_2_by_x, 0.0, 0.0),
-            (0.0, 0.0, determinant * one_by_determinant_divisor, 0.0),
+            (
+                -slope_2_by_a1_by_determinant_divisor * slope_3_by_y,
+                slope_2_by_y * slope_3_by_a2_by_determinant_divisor,
+                0.0,
+                0.0,
+            ),
+            (
+                slope_2_by_a1_by_determinant_divisor * slope_3_by_x,
+                -slope_2_by_x * slope_3_by_a2_by_determinant_divisor,
+                0.0,
+                0.0,
+            ),
+            (0.0, 0.0, 1.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 1.0),

@@ -288,12 +288,8 @@ class P2XType2(OffsetKinematics):
         # nothing controls the plate
         if not (abs(slope_2_by_y) > machine_scale_times_free_angle):
             return Status.IMPOSSIBLE
-        slope_2_by_y_times_half_by_slope_2_by_y = 0.5
         pivot_1_x_by_slope_2_by_y = pivot_1_x / slope_2_by_y
-        return (
-            (slope_2_by_y_times_half_by_slope_2_by_y, slope_2_by_y_times_half_by_slope_2_by_y),
-            (pivot_1_x_by_slope_2_by_y, -pivot_1_x_by_slope_2_by_y),
-        )
+        return ((0.5, 0.5), (pivot_1_x_by_slope_2_by_y, -pivot_1_x_by_slope_2_by_y))
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
