@@ -233,6 +233,9 @@ class Mechanism:
     bars: tuple[Rod, ...] = ()
     """The bars that are drawn, where the rods are not the bodies: each joins two points, and is as long as stated."""
     assembly: Assembly | None = None
+    heading: sp.Expr | None = None
+    """The turn of the flange about z, a sum of joints, of a loop whose equations hold the position alone: a joint that
+    the plate carries turns the tool. Equations of rods may read it as `ROTATION`."""
     home: tuple[sp.Expr, ...] = ()
     """The start of an iterative forward kinematics: the commanded coordinates, then the heading, or roll, pitch and yaw
     (Rz Ry Rx), in radians."""
@@ -267,6 +270,7 @@ class Mechanism:
             object.__setattr__(self, what, expressions(what, getattr(self, what)))
         if self.chain is not None:
             object.__setattr__(self, "chain", with_half_turns_last(self.chain))
+        object.__setattr__(self, "heading", None if self.heading is None else sp.sympify(self.heading))
         held = {joint.name for joint in self.held}  # the reference has the turn of a held joint: it needs no byte
         joints = (replace(j, multi_turn=False) if j.name in held else j for j in self.joints)
         object.__setattr__(self, "joints", tuple(joints))
@@ -286,6 +290,11 @@ class Mechanism:
     @property
     def is_platform(self) -> bool:
         """Whether a closed loop turns its platform, as the commanded rotation says: its forward kinematics iterates."""
+        return self.is_turning_loop and self.heading is None
+
+    @property
+    def is_turning_loop(self) -> bool:
+        """Whether the flange of a closed loop turns: the loop turns its platform, or a joint on the plate the tool."""
         return self.chain is None and self.task.turning is not Turning.NONE
 
     @property

@@ -9,7 +9,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.algebra.angle_sums import name_of
+from derive.algebra.angle_sums import name_of, terms_of
 from derive.description.amounts import wrong_amounts
 from derive.description.kinds import number
 from derive.description.mechanism import (
@@ -173,8 +173,8 @@ def _periods(mechanism: Mechanism) -> Iterator[str]:
 def _shape(mechanism: Mechanism) -> Iterator[str]:
     if (mechanism.chain is None) == (not mechanism.equations):
         yield "the mechanism needs either a chain or closure equations"
-    if mechanism.task.position not in ("xy", "xyz") and not mechanism.is_orientation:
-        yield f"the task commands {mechanism.task.position!r}: it must be 'xy', 'xyz', or '' of a chain that only turns"
+    yield from _position(mechanism)
+    yield from _heading(mechanism)
     cones = [cone for rod in mechanism.rods for cone in (rod.base_cone, rod.plate_cone) if cone is not None]
     if cones and not mechanism.home:
         yield "a cone of a rod's joint is about the rod at the home pose, and the mechanism has none"
@@ -183,13 +183,44 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
     used = {s for _, e in _equations(mechanism) for s in e.free_symbols}
     for joint in mechanism.joints:
         if joint.symbol not in used:
-            yield f"joint {joint.name!r} occurs nowhere in the closure"
+            is_carried = joint.is_angle and mechanism.is_turning_loop and mechanism.heading is None
+            hint = f": where it turns the tool on the plate, say so by heading={joint.name}" if is_carried else ""
+            yield f"joint {joint.name!r} occurs nowhere in the closure{hint}"
+
+
+def _position(mechanism: Mechanism) -> Iterator[str]:
+    position = mechanism.task.position
+    if position in ("xy", "xyz") or mechanism.is_orientation:
+        return
+    moved = {c.name for c in (X.symbol, Y.symbol, Z.symbol) for e in mechanism.equations if c in e.free_symbols}
+    if uncommanded := [c for c in "xyz" if c in moved and c not in position]:
+        yield (
+            f"the task commands {position!r}, and the loop moves {', '.join(uncommanded)} as well: coordinates "
+            "that are not commanded would be unknowns in both directions, which no rule solves for; "
+            "command 'xy' or 'xyz'"
+        )
+    yield f"the task commands {position!r}: it must be 'xy', 'xyz', or '' of a chain that only turns"
+
+
+def _heading(mechanism: Mechanism) -> Iterator[str]:
+    if mechanism.heading is None:
+        return
+    if mechanism.chain is not None:
+        yield "a chain tells the heading of its flange itself: heading= is for a loop whose plate carries a joint"
+    if mechanism.task.turning is not Turning.ABOUT_Z:
+        yield "heading= turns the flange about z: the task must command that, Turning.ABOUT_Z"
+    turning = [j.symbol for j in mechanism.joints if j.is_angle]
+    if terms_of(sp.expand(mechanism.heading), turning) is None:
+        yield f"heading={mechanism.heading} must be a sum of rotary joints, each of them added or subtracted once"
+    if mechanism.home:
+        yield "a loop with heading= needs no home pose: its position is solved in closed form"
 
 
 def _equations(mechanism: Mechanism) -> Expressions:
     if mechanism.chain is not None:
         return tuple(("chain", factor.amount) for factor in mechanism.chain.factors)
-    return tuple(("closure", sp.sympify(equation)) for equation in mechanism.equations)
+    heading = () if mechanism.heading is None else (("heading", mechanism.heading),)
+    return (*(("closure", sp.sympify(equation)) for equation in mechanism.equations), *heading)
 
 
 def _symbols(mechanism: Mechanism) -> Iterator[str]:
@@ -197,7 +228,7 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
     known = joints | _parameters(mechanism)
     if mechanism.chain is None:
         known |= {quantity.symbol for quantity in (X, Y, Z)}
-    if mechanism.is_platform or mechanism.task.turning is Turning.FULL:
+    if mechanism.is_turning_loop or mechanism.task.turning is Turning.FULL:
         known |= set(ROTATION)
     named = [
         *_equations(mechanism),

@@ -18,7 +18,8 @@ from derive.drawing.labels import Naming, Values, axis_name, vector_at
 from derive.drawing.scene import Arc, Body, Dimension, Frame, Scene, Segment, Slide, Spot, Turn, point
 from derive.ir.interpret import Array, evaluate
 
-_EXACT = 1e-7
+_EXACT, _ROUNDED = 1e-7, 1e-6
+"""Of lengths, as a part of them; and what six decimals of the drawn frame leave, of a machine in metres, too."""
 _TCP = (X.symbol, Y.symbol, Z.symbol)
 
 Entries = tuple[sp.Expr, ...]
@@ -71,7 +72,7 @@ class _Builder:
         """A bar between its ends. It must have the length that the description states."""
         start, end = vector_at(bar.base, self.values), vector_at(bar.plate, self.values)
         stated, drawn = float(evaluate(bar.length, self.values)), float(np.linalg.norm(end - start))
-        if abs(stated - drawn) > _EXACT * max(abs(stated), drawn):
+        if abs(stated - drawn) > _ROUNDED + _EXACT * max(abs(stated), drawn):
             raise DescriptionError(
                 f"bar {bar.name!r} is {stated:g} long, but its ends are {drawn:g} apart in the drawn pose"
             )
@@ -87,11 +88,27 @@ class _Builder:
                 axis = (end - start) / np.linalg.norm(end - start)
                 self.slides.append(Slide(axis_name(joint), point((start + end) / 2), point(axis), has_rail=False))
                 return
+        if not any(joint.symbol in sp.Matrix([*b.base, *b.plate]).free_symbols for b in bars_of(self.mechanism)):
+            self._carried(joint)
+            return
         ends = self._moved_by(joint)
         if joint.is_angle:
             self._crank(joint, ends)
         else:
             self._rail(joint, ends)
+
+    def _carried(self, joint: Joint) -> None:
+        """A joint that moves no bar: at the tool, which it turns about z, or shifts as a stated equation tells."""
+        tool = point(vector_at(_TCP, self.values))
+        heading = sp.sympify(self.mechanism.heading or 0)
+        for equation in self.mechanism.closure:
+            shift = np.array([_rate(equation, joint, c, self.values) for c in _TCP])
+            if not joint.is_angle and np.any(shift):
+                self.slides.append(Slide(axis_name(joint), tool, point(shift / np.linalg.norm(shift))))
+                return
+        if joint.symbol not in heading.free_symbols:
+            raise DescriptionError(f"nothing that is drawn moves with joint {joint.name!r}: name its bars")
+        self.turns.append(Turn(axis_name(joint), tool, (0.0, 0.0, float(heading.coeff(joint.symbol)))))
 
     def _moved_by(self, joint: Joint) -> list[tuple[Entries, bool]]:
         """The ends of bars that depend on the joint, and whether a crank holds them: base ends, else the first plate
@@ -234,6 +251,12 @@ class _Builder:
 
     def _joints(self) -> set[sp.Basic]:
         return {j.symbol for j in self.mechanism.joints}
+
+
+def _rate(equation: sp.Expr, joint: Joint, coordinate: sp.Symbol, values: Values) -> float:
+    """The coordinate per unit of the joint, as one equation has it."""
+    slope = float(evaluate(sp.diff(equation, coordinate), values))
+    return -float(evaluate(sp.diff(equation, joint.symbol), values)) / slope if slope else 0.0
 
 
 def _circle(joint: Joint, entries: Entries, values: Values) -> tuple[Array, Array, Array]:

@@ -120,12 +120,12 @@ def all_angles(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
 
 
 def with_fixed_names(mechanism: Mechanism, expression: sp.Expr) -> sp.Expr:
-    """The expression with the sines and cosines of fixed angles and of the heading of a platform, and the roots of
+    """The expression with the sines and cosines of fixed angles and of the heading of a loop, and the roots of
     parameters, by their names.
     """
     functions = ((cosine, sp.cos), (sine, sp.sin))
     table = {g(a * DEGREE): f(a) for a in fixed_angles(mechanism) for f, g in functions}
-    if mechanism.is_platform and mechanism.task.turning is Turning.ABOUT_Z:
+    if mechanism.is_turning_loop and mechanism.task.turning is Turning.ABOUT_Z:
         table |= _heading_entries()
     for root, let in _fixed_roots(mechanism.equations, tuple(p.symbol for p in mechanism.parameters)):
         table[root] = let.name
@@ -163,7 +163,7 @@ def flange_rotation(chain: Chain) -> sp.ImmutableMatrix:
 def pose_closure(mechanism: Mechanism) -> Closure:
     """The closure of a commanded pose."""
     if mechanism.chain is None:
-        return _stated_closure(mechanism, {})
+        return _with_heading(mechanism, _stated_closure(mechanism, {}), mechanism.heading)
     is_pitch = mechanism.followed_turns > 0
     if is_pitch or (is_spatial(mechanism.chain) and mechanism.task.turning is not Turning.ABOUT_Z):
         return _spatial_closure(mechanism, mechanism.chain, mechanism.solved_joints, mechanism.task.turning)
@@ -171,11 +171,15 @@ def pose_closure(mechanism: Mechanism) -> Closure:
     closure = _position_closure(mechanism, pose.position)
     if mechanism.task.turning is Turning.NONE:
         return closure
-    argument = heading_of(mechanism.chain)
-    turns = (
-        _equation(mechanism, "cos heading", sp.cos(argument) - real("cos_heading")),
-        _equation(mechanism, "sin heading", sp.sin(argument) - real("sin_heading")),
-    )
+    return _with_heading(mechanism, closure, heading_of(mechanism.chain))
+
+
+def _with_heading(mechanism: Mechanism, closure: Closure, argument: sp.Expr | None) -> Closure:
+    """The closure, with the equations that the flange is turned about z as it is commanded."""
+    if argument is None:
+        return closure
+    parts = (("cos", sp.cos(argument)), ("sin", sp.sin(argument)))
+    turns = tuple(_equation(mechanism, f"{word} heading", value - real(f"{word}_heading")) for word, value in parts)
     arguments = tuple(dict.fromkeys((*closure.arguments, argument)))
     return Closure(closure.equations + turns, arguments, closure.lets, closure.plane)
 
@@ -269,14 +273,15 @@ def _position_closure(mechanism: Mechanism, position: sp.ImmutableMatrix) -> Clo
 
 
 def _stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: str = "span") -> Closure:
-    """The stated equations; with an offset they hold for the flange, which keeps its orientation.
+    """The stated equations; with an offset they hold for the flange, whose orientation is known.
 
     known: the known part of a rod's vector: its "span" where the joints are unknown, its "pivot" where the position is.
     """
     flange = dict(zip(COORDINATE_NAMES, FLANGE, strict=True))
-    lets = tuple(
-        Let(flange[c], real(c) - o, "position of the flange: the point less its offset") for c, o in offset.items()
-    )
+    rotation = sp.eye(3) if mechanism.heading is None else sp.Matrix(3, 3, [*_heading_entries().values()])
+    shift = rotation * sp.Matrix([*offset.values()]) if offset else ()
+    note = "position of the flange: the point less its offset"
+    lets = tuple(Let(flange[c], real(c) - o, note) for c, o in zip(offset, shift, strict=True))
     table = {real(c): flange[c] for c in offset}
     wanted = {j.symbol for j in mechanism.joints} if known == "span" else set(map(real, COORDINATE_NAMES))
     equations = [

@@ -15,12 +15,21 @@ from derive.ir.program import (
     Let,
 )
 from derive.ir.symbols import (
+    HEADING,
     cosine,
     real,
     sine,
 )
 
 _FUNCTIONS = ((sine, sp.sin), (cosine, sp.cos))
+
+
+def heading_at_joints(mechanism: Mechanism) -> tuple[Let, ...]:
+    """Cosine and sine of the heading of a loop, at joint values; nothing where its equations alone hold the pose."""
+    if mechanism.heading is None:
+        return ()
+    lets, values = named_trigonometry(mechanism, [sp.cos(mechanism.heading), sp.sin(mechanism.heading)])
+    return (*lets, *(Let(f(HEADING), v) for f, v in zip((cosine, sine), values, strict=True)))
 
 
 def named_trigonometry(mechanism: Mechanism, values: Iterable[sp.Expr]) -> tuple[tuple[Let, ...], list[sp.Expr]]:

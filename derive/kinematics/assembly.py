@@ -35,9 +35,12 @@ from derive.ir.reason import Reason, Unit, Why, about
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
     DETERMINANT,
+    HEADING,
     MIN_TYPE2_MARGIN,
     SCALE,
+    cosine,
     real,
+    sine,
 )
 from derive.kinematics.no_pose import why_no_pose
 from derive.kinematics.sampling import possible_axes, sample_machine
@@ -108,7 +111,7 @@ def assembly_checks(
     if done.margin is None or mechanism.assembly is None:
         return ()
     bound = {s.name for s in solved if isinstance(s, Let)} | {real(c) for c in "xyz"}
-    bound |= {s for j in mechanism.joints for s in (j.symbol, j.motor)}
+    bound |= {s for j in mechanism.joints for s in (j.symbol, j.motor)} | {cosine(HEADING), sine(HEADING)}
     seen = {real(c): real(f"flange_{c}") for c in "xyz"} if offset else {}
     own = tuple(
         replace(s, value=s.value.xreplace(seen))

@@ -82,6 +82,7 @@ from derive.kinematics.scan.programs import names_of_search
 from derive.kinematics.shared_names import refuse_names, refuse_names_of_joints, refuse_shared_names
 from derive.lowering.lower import lowered
 from derive.plate.plate import check_home
+from derive.plate.stated_rods import with_stated_rods
 from derive.plate.turning import forward_from_given, joints_at_home
 from derive.solver.solve import Unsolved
 
@@ -99,6 +100,7 @@ def build(mechanism: Mechanism) -> Kinematics:
 def _built(mechanism: Mechanism) -> Kinematics:
     mechanism = with_gears(mechanism)
     check_joints(mechanism)
+    mechanism = with_stated_rods(mechanism)
     if mechanism.is_platform:
         check_home(mechanism)
     refuse_names_of_joints(mechanism)
@@ -329,7 +331,7 @@ def _freedom(mechanism: Mechanism) -> Freedom:
     if mechanism.task.turning is Turning.FULL or mechanism.followed_turns:
         return Freedom.THREE
     if mechanism.chain is None:
-        return Freedom.ONE if mechanism.is_platform else Freedom.ZERO
+        return Freedom.ONE if mechanism.is_turning_loop else Freedom.ZERO
     joints = {j.symbol for j in mechanism.joints}
     turns = [t for t in pose_of(mechanism.chain).turns if t.amount.free_symbols & joints]  # opposite ones have merged
     return Freedom.THREE if len(turns) > 1 else Freedom.ONE if turns else Freedom.ZERO

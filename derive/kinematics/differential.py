@@ -44,9 +44,12 @@ from derive.ir.program import (
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import (
     COORDINATE_NAMES,
+    HEADING,
     ROTATION_ENTRIES,
     SCALE,
+    cosine,
     real,
+    sine,
 )
 from derive.kinematics.branch_assignment import Assignment
 from derive.kinematics.kinematics import Margin
@@ -91,14 +94,16 @@ def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
 
 def twist_program(mechanism: Mechanism, forward: Forward) -> Program:
     """All six rows of the twist, whatever the task: a coupling needs them."""
-    if mechanism.is_platform:
-        solved, values = platform_jacobian(mechanism, _motor_matrix(mechanism))
-        width = len(mechanism.joints)
-        own = {row: values[k * width : (k + 1) * width] for k, row in enumerate(jacobian_rows(mechanism))}
-        entries = [e for row in _ROWS[:6] for e in own.get(row, [sp.Integer(0)] * width)]
-        return normalise("twist", (*forward.statements, *solved), _entries_of(entries, width))
-    lets, values = _per_motor(mechanism, _by_screws(mechanism, _ROWS[:6]))
-    return normalise("twist", (*forward.statements, *lets), _entries_of(values, len(mechanism.joints)))
+    width = len(mechanism.joints)
+    if mechanism.chain is not None:
+        lets, values = _per_motor(mechanism, _by_screws(mechanism, _ROWS[:6]))
+        return normalise("twist", (*forward.statements, *lets), _entries_of(values, width))
+    solved, values = (
+        platform_jacobian(mechanism, _motor_matrix(mechanism)) if mechanism.is_platform else jacobian_entries(mechanism)
+    )
+    own = {row: values[k * width : (k + 1) * width] for k, row in enumerate(jacobian_rows(mechanism))}
+    entries = [e for row in _ROWS[:6] for e in own.get(row, [sp.Integer(0)] * width)]
+    return normalise("twist", (*forward.statements, *solved), _entries_of(entries, width))
 
 
 def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
@@ -169,17 +174,46 @@ def _twist(screw: Screw, position: sp.ImmutableMatrix) -> sp.Matrix:
 
 def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]:
     """The Jacobian of stated equations: -A^-1 B with A = dΦ/dx, B = dΦ/dq, by the adjugate; type 2 singular where det A
-    = 0.
+    = 0. A heading follows from the joints alone.
     """
     closure = sp.Matrix([with_fixed_names(mechanism, e) for e in mechanism.equations])
     by_pose = closure.jacobian([real(c) for c in mechanism.task.position])
-    by_joints = closure.jacobian([j.symbol for j in mechanism.joints])
+    heading = sp.Integer(0) if mechanism.heading is None else mechanism.heading
+    turned = closure.xreplace({cosine(HEADING): sp.cos(heading), sine(HEADING): sp.sin(heading)})
+    joints = [j.symbol for j in mechanism.joints]
+    by_joints = turned.jacobian(joints)
+    rows_of_heading = int(mechanism.heading is not None)
+    own_row = sp.Matrix(rows_of_heading, len(joints), [sp.diff(heading, j) for j in joints * rows_of_heading])
     if by_pose.rows != by_pose.cols:
         raise DescriptionError(f"{by_pose.rows} closure equations for {by_pose.cols} commanded coordinates")
-    if not by_pose.free_symbols:
-        return -by_pose.inv() * by_joints, ()
-    entries, lets = _entries(mechanism, by_pose, mechanism.task.position)
-    drives, more = _entries(mechanism, by_joints, [j.key for j in mechanism.joints])
+    matrix, statements = _solved(mechanism, by_pose, by_joints)
+    return matrix.col_join(own_row), statements
+
+
+def _solved(mechanism: Mechanism, by_pose: sp.Matrix, by_joints: sp.Matrix) -> tuple[sp.Matrix, tuple[Statement, ...]]:
+    """-A^-1 B. The coordinates that equations of numbers alone hold (z of a quill) come first, without a divisor."""
+    first = [k for k in range(by_pose.rows) if not by_pose.row(k).free_symbols]
+    held = [c for c in range(by_pose.cols) if any(by_pose[k, c] != 0 for k in first)]
+    if len(held) != len(first):
+        first = held = []
+    others, left = ([k for k in range(by_pose.rows) if k not in own] for own in (first, held))
+    every = list(range(by_joints.cols))
+    known = -by_pose.extract(first, held).inv() * by_joints.extract(first, every) if first else sp.zeros(0, len(every))
+    rest = by_joints.extract(others, every) + by_pose.extract(others, held) * known
+    statements: tuple[Statement, ...] = ()
+    if others:
+        rest, statements = _by_adjugate(mechanism, by_pose.extract(others, left), rest, (others, left))
+    rows = dict(zip((*held, *left), (*known.tolist(), *rest.tolist()), strict=True))
+    return sp.Matrix([rows[c] for c in range(by_pose.cols)]), statements
+
+
+def _by_adjugate(
+    mechanism: Mechanism, by_pose: sp.Matrix, by_joints: sp.Matrix, places: tuple[list[int], list[int]]
+) -> tuple[sp.Matrix, tuple[Statement, ...]]:
+    """-A^-1 B with a determinant that may vanish. places: the numbers of the equations and of the coordinates."""
+    equations, coordinates = places
+    entries, lets = _entries(mechanism, by_pose, [mechanism.task.position[c] for c in coordinates], equations)
+    drives, more = _entries(mechanism, by_joints, [j.key for j in mechanism.joints], equations)
     determinant, divisor = real("determinant"), real("determinant_divisor")
     determined = sp.Gt(sp.Abs(determinant), FREE_ANGLE * SCALE**by_pose.rows)
     statements: tuple[Statement, ...] = (
@@ -192,14 +226,16 @@ def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]
     return -entries.adjugate() * drives / divisor, statements
 
 
-def _entries(mechanism: Mechanism, matrix: sp.Matrix, names: Sequence[str]) -> tuple[sp.Matrix, tuple[Let, ...]]:
+def _entries(
+    mechanism: Mechanism, matrix: sp.Matrix, names: Sequence[str], equations: Sequence[int]
+) -> tuple[sp.Matrix, tuple[Let, ...]]:
     """The entries of a matrix of derivatives by names of their own, `slope_<equation>_by_<unknown>`."""
     trigonometric, values = named_trigonometry(mechanism, list(matrix))
     lets: list[Let] = [*trigonometric]
     entries = []
     for k, value in enumerate(values):
         if value != 0:
-            lets.append(Let(real(f"slope_{k // matrix.cols + 1}_by_{names[k % matrix.cols]}"), value))
+            lets.append(Let(real(f"slope_{equations[k // matrix.cols] + 1}_by_{names[k % matrix.cols]}"), value))
         entries.append(lets[-1].name if value != 0 else sp.Integer(0))
     return sp.Matrix(matrix.rows, matrix.cols, entries), tuple(lets)
 

@@ -24,7 +24,7 @@ from derive.equations.closure import (
 from derive.equations.named_pose import named_pose
 from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import Problem
-from derive.equations.trigonometry import named_trigonometry
+from derive.equations.trigonometry import heading_at_joints, named_trigonometry
 from derive.geometry.pose import pose_of
 from derive.ir.constants import (
     BOUNDARY,
@@ -56,6 +56,7 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.kinematics.inverse import Inverse
+from derive.plate.legs import about_z
 from derive.plate.turning import forward_from_home
 from derive.solver.solve import Derivation, solve
 
@@ -78,9 +79,11 @@ def pose_at_axes(mechanism: Mechanism) -> Forward:
     trigonometric = tuple(Let(f(a), g(a)) for a in joints for f, g in ((cosine, sp.cos), (sine, sp.sin)))
     derivation = _solve_for_position(mechanism)
     determinant = derivation.determinants[0] if derivation.determinants else None
-    known = (*checks, *fixed_lets(mechanism), *trigonometric, *_in_assembly_mode(derivation, mechanism))
+    turned = [let for let in heading_at_joints(mechanism) if let not in trigonometric]
+    known = (*checks, *fixed_lets(mechanism), *trigonometric, *turned, *_in_assembly_mode(derivation, mechanism))
     position_values = tuple(real(c) if c in mechanism.task.position else sp.Integer(0) for c in COORDINATE_NAMES)
-    return Forward(known, position_values, tuple(sp.eye(3)), determinant)
+    rotation = sp.eye(3) if mechanism.heading is None else about_z(cosine(HEADING), sine(HEADING))
+    return Forward(known, position_values, tuple(rotation), determinant)
 
 
 def _frame_by_frame(mechanism: Mechanism, checks: tuple[Statement, ...]) -> Forward:
@@ -200,4 +203,6 @@ def _angle_values(mechanism: Mechanism, inverse: Inverse) -> dict[sp.Symbol, sp.
         table[total.symbol] = sp.Add(*[table[a] * s for a, s in total.terms])
     if mechanism.chain is not None and mechanism.task.turning is Turning.ABOUT_Z:
         table[HEADING] = heading_of(mechanism.chain)
+    elif mechanism.heading is not None:
+        table[HEADING] = mechanism.heading
     return table

@@ -9,6 +9,7 @@ import sympy as sp
 
 from derive.algebra.normal_form import polynomial
 from derive.description.mechanism import (
+    DescriptionError,
     Joint,
     Mechanism,
     Turning,
@@ -32,6 +33,7 @@ from derive.equations.closure import (
 from derive.equations.pitch.equations import with_refusal
 from derive.equations.pitch.heading import free_heading, free_value
 from derive.equations.problem import Problem
+from derive.equations.trigonometry import heading_at_joints
 from derive.geometry.frames import Motion
 from derive.ir.constants import (
     FREE_ANGLE,
@@ -115,9 +117,18 @@ def solve_offset(mechanism: Mechanism) -> Inverse:
     moving = tuple(j for j in mechanism.joints if j not in frozen)
     closure = offset_closure(mechanism, moving)
     derivation = _solve(mechanism, closure, moving)
-    kept = tuple(s for j in frozen for s in frozen_lets(j))
+    kept = (*(s for j in frozen for s in frozen_lets(j)), *_kept_heading(mechanism, frozen))
     naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *closure.lets)
     return Inverse(closure, derivation, naming, moving, frozen)
+
+
+def _kept_heading(mechanism: Mechanism, frozen: tuple[Joint, ...]) -> tuple[Statement, ...]:
+    """The heading of a loop's flange with the joints that turn it held at the reference."""
+    if mechanism.heading is None:
+        return ()
+    if moved := sorted(str(s) for s in mechanism.heading.free_symbols - {j.symbol for j in frozen}):
+        raise DescriptionError(f"joint {moved[0].upper()!r}, which the position determines, turns the flange")
+    return heading_at_joints(mechanism)
 
 
 def _solve(
@@ -155,8 +166,13 @@ def _solve(
 
 
 def _frozen_joints(mechanism: Mechanism) -> tuple[Joint, ...]:
-    """The held joints, and the last rotary ones of a chain, as many as the position does not determine."""
+    """The held joints, and the last rotary ones of a chain, as many as the position does not determine; of a loop the
+    joint of its heading that the fewest equations of the position read.
+    """
     held, solved = mechanism.held_joints, mechanism.solved_joints
+    if mechanism.heading is not None:
+        own = [j for j in reversed(mechanism.joints) if j.symbol in mechanism.heading.free_symbols]
+        return (min(own, key=lambda j: sum(e.has(j.symbol) for e in mechanism.equations)),)
     excess = len(solved) - len(mechanism.task.position)
     if mechanism.chain is None or excess <= 0:
         return held

@@ -12,13 +12,14 @@ def check_joints(mechanism: Mechanism) -> None:
     """Refuse more conditions than joints or coordinates: they cannot be met, and no later step would notice."""
     if mechanism.followed_turns:
         followed_of(mechanism)
-    rows, equations = jacobian_rows(mechanism), mechanism.equations
+    rows = jacobian_rows(mechanism)
+    equations = len(mechanism.equations) + (mechanism.heading is not None)
     commanded = f"{len(rows)} quantities ({', '.join(rows)})"
     spare = len(mechanism.solved_joints) - len(rows)
     if spare:
         raise DescriptionError(_wrong_number(mechanism, spare, commanded))
-    if len(equations) > len(rows):
-        raise DescriptionError(f"the closure has {len(equations)} equations, and the task commands only {commanded}")
+    if equations > len(rows):
+        raise DescriptionError(f"the closure has {equations} equations, and the task commands only {commanded}")
 
 
 def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:

@@ -134,7 +134,7 @@ def check_home(mechanism: Mechanism) -> None:
     if rods != count or mechanism.closure:
         raise DescriptionError(
             f"a platform that a loop turns needs a rod for each of the {count} quantities of the task: "
-            f"it has {rods} rods" + (" and other equations" if mechanism.closure else "")
+            f"it has {rods} rods{_no_rods(mechanism)}"
         )
     for rod in mechanism.rods:
         if is_driven(mechanism, point_of(rod)):
@@ -145,6 +145,21 @@ def check_home(mechanism: Mechanism) -> None:
         raise DescriptionError(
             f"a platform that a loop turns needs a home pose of {count} coordinates, and has {len(mechanism.home)}"
         )
+
+
+def _no_rods(mechanism: Mechanism) -> str:
+    """What to do about equations that are no rods."""
+    if not mechanism.closure:
+        return ""
+    joints = {j.symbol for j in mechanism.joints}
+    turns = [e for e in mechanism.closure if not e.free_symbols & {real(c) for c in COORDINATE_NAMES}]
+    if turns and all(e.free_symbols & joints for e in turns):
+        told = ", ".join(j.name for j in mechanism.joints if j.symbol in turns[0].free_symbols)
+        return f" and an equation that only turns it: where a joint on the plate ({told}) does, say so by heading="
+    return (
+        f" and {len(mechanism.closure)} other equations: closure= of a loop that turns its platform must say that a "
+        "point of the platform keeps its distance from one that joints move, which a rod says"
+    )
 
 
 def home_rotation(mechanism: Mechanism) -> sp.Matrix:

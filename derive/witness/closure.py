@@ -97,7 +97,7 @@ class Closure:
     by_joints: Rows
     """joints, pose, parameters → B = ∂Φ/∂q"""
     frame: Rows
-    """joints, parameters → the pose of a chain; with stated equations its constant part, at position zero"""
+    """joints, parameters → the pose of a chain; with stated equations the rotation that they tell, at position zero"""
     positive: Rows
     """joints, pose, parameters → the quantities that are positive in this machine"""
     indicators: Rows
@@ -149,7 +149,7 @@ def closure_of(mechanism: Mechanism) -> Closure:
         residual=Rows("residual", state, at_rest[0]),
         by_pose=Rows("by_pose", state, at_rest[1]),
         by_joints=Rows("by_joints", state, ca.jacobian(at_rest[0], q)),
-        frame=Rows("frame", (q, p), _frame(mechanism.chain, known)),
+        frame=Rows("frame", (q, p), _frame_of(mechanism, known)),
         positive=Rows("positive", state, _column([term(sp.sympify(e), named) for e in _positive(mechanism)])),
         indicators=Rows("indicators", state, _column([_indicator(b, named) for b in mechanism.branches])),
         equations=equations,
@@ -234,7 +234,8 @@ def _residual(mechanism: Mechanism, known: dict[sp.Symbol, Term], pose: Term) ->
     """Φ, and the number of its rows before those of the rotation."""
     if mechanism.chain is None:
         named = known | _position_symbols(pose)
-        return _column([term(sp.sympify(e), named) for e in mechanism.equations]), len(mechanism.equations)
+        stated = [*mechanism.equations, *_turned(mechanism)]
+        return _column([term(sp.sympify(e), named) for e in stated]), len(mechanism.equations)
     if mechanism.followed_turns:
         pose = _followed_pose(mechanism, known, pose)
     difference = _frame(mechanism.chain, known) - pose
@@ -259,6 +260,21 @@ def _followed_pose(mechanism: Mechanism, known: dict[sp.Symbol, Term], pose: Ter
     axis = ca.skew(ca.cross(commanded, seen))
     swung = rotation + axis @ rotation + axis @ axis @ rotation / (1 + ca.dot(commanded, seen))
     return ca.vertcat(pose[:3], ca.reshape(swung.T, 9, 1))
+
+
+def _turned(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
+    """The equations of a heading that joints tell: the x axis of the flange."""
+    if mechanism.heading is None:
+        return ()
+    return sp.cos(mechanism.heading) - ROTATION[0, 0], sp.sin(mechanism.heading) - ROTATION[1, 0]
+
+
+def _frame_of(mechanism: Mechanism, known: dict[sp.Symbol, Term]) -> Term:
+    """The frame of a chain; of a loop its rotation, at position zero."""
+    if mechanism.heading is None:
+        return _frame(mechanism.chain, known)
+    angle = term(mechanism.heading, known)
+    return ca.vertcat(ca.SX.zeros(3), ca.reshape(_turn(2, ca.cos(angle), ca.sin(angle)).T, 9, 1))
 
 
 def _frame(chain: Chain | None, known: dict[sp.Symbol, Term]) -> Term:

@@ -205,7 +205,7 @@ def _compare(kin: Kinematics, problem: Problem, solutions: tuple[Array, Array], 
 def _point_error(
     kin: Kinematics, closure: Closure, samples: Samples, joints: Array, point: Array, offset: Array
 ) -> Array:
-    if kin.mechanism.chain is None:  # the flange keeps its orientation: the offset only shifts the pose
+    if kin.mechanism.chain is None:  # the flange keeps the orientation of the reference: the offset shifts the pose
         return least_move(kin, closure, samples, joints)
     frame = closure.frame(joints, samples.parameters)[:, :, 0]
     reached = frame[:, :3] + (frame[:, 3:].reshape(-1, 3, 3) @ offset[:, :, None])[:, :, 0]

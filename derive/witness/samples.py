@@ -159,10 +159,15 @@ def _tried(mechanism: Mechanism) -> int:
 
 
 def jacobian_of(closure: Closure, samples: Samples) -> Array:
-    """J = -A⁻¹ B, by least squares where Φ has more rows than the task."""
+    """J = -A⁻¹ B, by least squares where Φ has more rows than the task.
+
+    Rows of Φ are squares of lengths, lengths and numbers: each over its size, or a number has the rounding of a square.
+    """
     state = (samples.joints, samples.pose, samples.parameters)
     a, b = closure.by_pose(*state), closure.by_joints(*state)
-    return np.asarray(-np.linalg.pinv(a) @ b @ closure.gearing(samples.axes, samples.parameters))
+    sizes = np.linalg.norm(np.concatenate([a, b], axis=2), axis=2, keepdims=True)
+    sizes[sizes == 0.0] = 1.0
+    return np.asarray(-np.linalg.pinv(a / sizes) @ (b / sizes) @ closure.gearing(samples.axes, samples.parameters))
 
 
 def describe(kin: Kinematics, samples: Samples, row: int) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.description.mechanism import Mechanism, Turning, X, Y, Z
+from derive.description.mechanism import ROTATION, Mechanism, Turning, X, Y, Z
 from derive.geometry.frames import Motion
 from derive.ir.constants import (
     DEGREE,
@@ -79,7 +79,16 @@ class Closure:
             by_pose = derivative(lambda p: self._stated(joints, p), positions)[:, :, self.task]
             steps = np.linalg.solve(by_pose, self._stated(joints, positions)[:, :, None])
             positions[:, self.task] -= steps[:, :, 0]
-        return positions, np.tile(np.eye(3), (len(axes), 1, 1))
+        return positions, self.turns(joints)
+
+    def turns(self, joints: Array) -> Array:
+        """The rotation of a loop's flange: about z by the heading that the joints tell, where they do."""
+        rotation = np.tile(np.eye(3, dtype=joints.dtype), (len(joints), 1, 1))
+        if self.mechanism.heading is not None:
+            heading = self.at_joints([self.mechanism.heading], joints)[:, 0]
+            rotation[:, 0, 0] = rotation[:, 1, 1] = np.cos(heading)
+            rotation[:, 1, 0], rotation[:, 0, 1] = np.sin(heading), -np.sin(heading)
+        return rotation
 
     def frames(self, joints: Array) -> tuple[Array, Array]:
         """Position and rotation at the end of a chain."""
@@ -101,14 +110,15 @@ class Closure:
             lengths = self._stated(joints, positions)
             if 2 not in self.task:
                 lengths = np.hstack([lengths, positions[:, 2:]])
-            return np.hstack([lengths, (rotations - np.eye(3)).reshape(-1, 9)])
+            return np.hstack([lengths, (rotations - self.turns(joints)).reshape(-1, 9)])
         position, rotation = self.frames(joints)
         return np.hstack([position - positions, (rotation - rotations).reshape(-1, 9)])
 
     def equations(self, joints: Array, positions: Array, rotations: Array) -> Array:
         """The commanded part of the closure, which the inverse has to solve."""
         if self.mechanism.chain is None:
-            return self._stated(joints, positions)
+            turned = (rotations - self.turns(joints))[:, :, self.columns]
+            return np.hstack([self._stated(joints, positions), turned.reshape(len(turned), 3 * len(self.columns))])
         position, rotation = self.frames(joints)
         if self.mechanism.followed_turns:
             rotations = self.nearest(joints, rotations)
@@ -159,7 +169,12 @@ class Closure:
             by_axes = derivative(lambda a: self._stated(self.joints(a), positions), axes)
             joints = self.joints(axes)
             by_pose = derivative(lambda p: self._stated(joints, p), positions)[:, :, self.task]
-            return -np.linalg.solve(by_pose, by_axes) / self.units
+            by_position = -np.linalg.solve(by_pose, by_axes)
+            if self.mechanism.heading is None:
+                return by_position / self.units
+            heading = [self.mechanism.heading]
+            by_heading = derivative(lambda a: self.at_joints(heading, self.joints(a)), axes)
+            return np.concatenate([by_position, by_heading], axis=1) / self.units
         by_position = derivative(lambda a: self.frames(self.joints(a))[0], axes)[:, self.task]
         if not self.follows_rotation:
             return by_position / self.units
@@ -212,6 +227,9 @@ class Formulas:
         self._mechanism = mechanism
         self._joints = tuple(j.symbol for j in mechanism.joints)
         self._pose = (*self._joints, *POSITION)
+        angle = mechanism.heading
+        self._turned = {} if angle is None else dict(zip(ROTATION, sp.rot_axis3(-angle), strict=True))
+        """Where joints tell the rotation of a loop's flange: its entries, which rods may read."""
         self._constants = (*(p.symbol for p in mechanism.parameters), DEGREE)
         self._made: dict[tuple[tuple[sp.Symbol, ...], tuple[sp.Expr, ...]], Formula] = {}
 
@@ -268,7 +286,8 @@ class Formulas:
 
     def _of(self, expressions: tuple[sp.Expr, ...], names: tuple[sp.Symbol, ...]) -> Formula:
         if (names, expressions) not in self._made:
-            formula = sp.lambdify((*names, *self._constants), list(expressions), modules="numpy")
+            told = [sp.sympify(e).xreplace(self._turned) for e in expressions]
+            formula = sp.lambdify((*names, *self._constants), told, modules="numpy")
             self._made[names, expressions] = formula
         return self._made[names, expressions]
 

@@ -18,7 +18,9 @@ from tests.catalogue.machines import TURNS, Machine
 from tests.mechanisms import catalogue
 
 LOOPS = tuple(m for _, m in catalogue() if m.rods and not m.is_platform)
-"""Loops whose plate keeps its orientation. Those whose plate turns are in `turning_machines.py`."""
+"""Loops whose plate keeps its orientation, with a tool that turns on it or without. Those whose plate turns are in
+`turning_machines.py`.
+"""
 CANDIDATES = 6000
 REGULAR = 0.08
 """Indicators at a regular pose are at least this part of their largest value."""
@@ -26,6 +28,8 @@ FAR = 4.0
 """Where Newton's method starts, in reaches: beyond everything, once on either side."""
 DIRECTIONS = np.array([[0.36, 0.48, 0.8], [-0.48, 0.8, 0.36], [0.8, 0.36, -0.48], [0.6, -0.8, 0.0]])
 PASSES = 20
+TURNED = np.array([[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]])
+"""The rotation that is commanded of a loop with a tool that turns."""
 
 
 class LoopClosure(Closure):
@@ -41,7 +45,7 @@ class LoopClosure(Closure):
         self._side = mechanism.assembly.indicator * sp.sign(mechanism.assembly.handedness)
         self._room = tuple(b.largest - sp.Abs(b.value) for b in mechanism.bounds)
         self._indicators = tuple(b.signs[0] * b.indicator for b in mechanism.branches)
-        self._equations = (*mechanism.closure, *(r.equation / r.length for r in mechanism.rods))
+        self._equations = (*(r.equation / r.length for r in mechanism.rods), *mechanism.closure)
 
     def poses(self, axes: Array) -> tuple[Array, Array]:
         """Position and rotation at axis values; not a number where nothing, or nothing on this
@@ -57,7 +61,7 @@ class LoopClosure(Closure):
             positions, closed = self.assembly_from(joints[rows], direction)
             mine = closed & (self.side(joints[rows], positions) > 0)
             found[rows[mine]] = positions[mine]
-        return found, np.tile(np.eye(3), (len(axes), 1, 1))
+        return found, self.turns(joints)
 
     def assembly_from(self, joints: Array, direction: Array) -> tuple[Array, Array]:
         """The end of Newton's method from a far start in a direction, and whether the loop closes there."""
@@ -80,8 +84,11 @@ class LoopClosure(Closure):
         return derivative(lambda p: self._stated(joints, p), positions)[:, :, self.task]
 
     def by_joints(self, joints: Array, positions: Array) -> Array:
-        """B = ∂Φ/∂q: equations by joint values."""
-        return derivative(lambda q: self._stated(q, positions), joints)
+        """B = ∂Φ/∂q: equations by joint values; last the heading, where joints tell it."""
+        return derivative(lambda q: np.hstack([self._stated(q, positions), *self._heading(q)]), joints)
+
+    def _heading(self, joints: Array) -> list[Array]:
+        return [] if self.mechanism.heading is None else [self.at_joints([self.mechanism.heading], joints)]
 
     def side(self, joints: Array, positions: Array) -> Array:
         """Positive in the assembly mode of this machine."""
@@ -105,6 +112,16 @@ class LoopClosure(Closure):
 
     def _stated(self, joints: Array, positions: Array) -> Array:
         return self.at(joints, positions, self._equations)
+
+
+def facing(robot: softkin.Mechanism) -> Array | None:
+    """A rotation to command, of a loop with a tool that turns; None where none is read."""
+    return None if robot.FREEDOM == "zero" else TURNED
+
+
+def facings(robot: softkin.Mechanism, count: int) -> Array | None:
+    """The same, a row each."""
+    return None if robot.FREEDOM == "zero" else np.tile(TURNED, (count, 1, 1))
 
 
 @dataclass(frozen=True, eq=False)

@@ -97,6 +97,11 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     },
     "Kin_TGantry2": {},
     "Kin_TGantry3": {},
+    "Softkin_Delta_C": {"base_radius": 160.0, "arm_length": 240.0, "rod_length": 560.0, "plate_radius": 45.0},
+    "Softkin_DualScara": {
+        "base_distance": 140.0, "arm_length_1": 200.0, "arm_length_2": 210.0, "rod_length_1": 260.0,
+        "rod_length_2": 250.0,
+    },
     "Softkin_Hexaglide": _HEXAGLIDE,
     "Softkin_Planar_3RRR": _3RRR,
     "Kin_Tool": {"tool_x": 15.0, "tool_y": -8.0, "tool_z": -60.0},

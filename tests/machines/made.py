@@ -17,7 +17,9 @@ from derive.description.validate import validate
 from derive.geometry.frames import Motion
 from derive.pipeline import Built, derive_one, files_of, languages
 from tests.catalogue.closure import Closure
+from tests.catalogue.loop_machines import LoopClosure
 from tests.machines.angle_machines import MEANT
+from tests.machines.carried import CARRIED
 from tests.machines.collection import MACHINES
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled_text
@@ -65,7 +67,7 @@ class Made:
 @cache
 def made(name: str) -> Made:
     """Derive and load a machine; its offsets are not zero."""
-    mechanism = validate(MACHINES[name])
+    mechanism = validate({**MACHINES, **CARRIED}[name])
     built = derive_one(mechanism)
     robot_class = _imported(mechanism, built)
     offsets = {j.offset.name: 7.0 * k - 20.0 for k, j in enumerate(mechanism.joints)}
@@ -75,7 +77,9 @@ def made(name: str) -> Made:
     terms = [t for f in shifts if f.motion is Motion.SHIFT for t in f.amount.as_ordered_terms()]
     lengths += [abs(float(t)) for t in terms if t.is_number]
     meant = MEANT.get(name, mechanism)
-    return Made(mechanism, built, robot, Closure(meant, robot.parameters), sum(lengths) or 500.0)
+    reach = sum(lengths) or 500.0
+    closure = LoopClosure(mechanism, robot.parameters, reach) if mechanism.rods else Closure(meant, robot.parameters)
+    return Made(mechanism, built, robot, closure, reach)
 
 
 def _imported(mechanism: Mechanism, built: Built) -> type[softkin.Mechanism]:

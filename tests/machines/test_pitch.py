@@ -187,8 +187,8 @@ LINKS = Rz(A1) * Ry(A2) * Tz(L2) * Ry(A3) * Tz(L3)
     [
         (
             _arm(LINKS * Ry(A4) * Tz(L4) * Rx(1), Turning.PITCH_ROLL),
-            "the task commands 5 quantities (x, y, z, pitch, roll), and there are only 4 joints; command less of the pose, "
-            "or add joints",
+            "the task commands 5 quantities (x, y, z, pitch, roll), and there are only 4 joints; command less of "
+            "the pose, or add joints",
         ),
         (
             _arm(Rz(A1) * Rx(A2) * Tz(L2) * Rx(A3) * Tz(L3) * Rx(A4) * Tz(L4) * Rx(1) * Ry(1), Turning.PITCH),

@@ -33,7 +33,9 @@ if TYPE_CHECKING:
     from softkin.caxis import CAxis
     from softkin.caxis_tool import CAxisTool
     from softkin.crane import Crane
+    from softkin.delta_c import DeltaC
     from softkin.delta_p3c_type3 import DeltaP3CType3
+    from softkin.dualscara import DualScara
     from softkin.gantry2 import Gantry2
     from softkin.gantry3 import Gantry3
     from softkin.gantrycutter2 import GantryCutter2
@@ -89,8 +91,10 @@ __all__ = [
     "ConfigurationByte",
     "Coupled",
     "Crane",
+    "DeltaC",
     "DeltaP3CType3",
     "Diagnosis",
+    "DualScara",
     "Frame",
     "Gantry2",
     "Gantry3",
@@ -147,7 +151,9 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_CAxis": ("caxis", "CAxis"),
     "Kin_CAxis_Tool": ("caxis_tool", "CAxisTool"),
     "Kin_Crane": ("crane", "Crane"),
+    "Softkin_Delta_C": ("delta_c", "DeltaC"),
     "Kin_Delta_P3C_Type3": ("delta_p3c_type3", "DeltaP3CType3"),
+    "Softkin_DualScara": ("dualscara", "DualScara"),
     "Kin_Gantry2": ("gantry2", "Gantry2"),
     "Kin_Gantry3": ("gantry3", "Gantry3"),
     "Kin_GantryCutter2": ("gantrycutter2", "GantryCutter2"),

@@ -51,7 +51,7 @@ the rod at the home pose. It does not test whether rods touch each other: exclud
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
-    Jacobian against automatic differentiation below 1e-12,
+    Jacobian against automatic differentiation below 1e-11,
     solutions found by a search from many starts: 1, each of which the inverse finds, too.
 """
 

@@ -58,14 +58,14 @@ class Constants:
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
         machine_scale_times_plane = 1e-6 * machine_scale
         shared_product = 2.5e-13 * arm_length * arm_length
-        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        machine_scale_times_free_angle = 1e-11 * machine_scale
         assembly_sign_by_arm_length = assembly_sign / arm_length
         self.arm_length, self.tcp_link_distance, self.offset_a1 = arm_length, tcp_link_distance, offset_a1
         self.offset_a2, self.min_type2_margin, self.assembly_sign = offset_a2, min_type2_margin, assembly_sign
         self.span_1_x, self.machine_scale_times_rounding = span_1_x, machine_scale_times_rounding
         self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
         self.machine_scale_times_plane, self.shared_product = machine_scale_times_plane, shared_product
-        self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.assembly_sign_by_arm_length = assembly_sign_by_arm_length
 
 
@@ -267,8 +267,7 @@ class P2XType2(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         arm_length, arm_length_squared_times_rounding = k.arm_length, k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        machine_scale_squared_times_free_angle = k.machine_scale_squared_times_free_angle
+        assembly_sign, machine_scale_times_free_angle = k.assembly_sign, k.machine_scale_times_free_angle
         machine_scale_times_rounding, offset_a1, offset_a2 = k.machine_scale_times_rounding, k.offset_a1, k.offset_a2
         tcp_link_distance = k.tcp_link_distance
         # inputs must be numbers, and of reasonable size
@@ -287,14 +286,10 @@ class P2XType2(OffsetKinematics):
         y = (sqrt(radicand_y) if radicand_y > 0.0 else 0.0) * assembly_sign
         slope_2_by_y = 2.0 * y
         # nothing controls the plate
-        if not (abs(slope_2_by_y) > machine_scale_squared_times_free_angle):
+        if not (abs(slope_2_by_y) > machine_scale_times_free_angle):
             return Status.IMPOSSIBLE
-        slope_2_by_y_times_half_by_slope_2_by_y = 0.5
         pivot_1_x_by_slope_2_by_y = pivot_1_x / slope_2_by_y
-        return (
-            (slope_2_by_y_times_half_by_slope_2_by_y, slope_2_by_y_times_half_by_slope_2_by_y),
-            (pivot_1_x_by_slope_2_by_y, -pivot_1_x_by_slope_2_by_y),
-        )
+        return ((0.5, 0.5), (pivot_1_x_by_slope_2_by_y, -pivot_1_x_by_slope_2_by_y))
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

@@ -10,7 +10,7 @@ import softkin
 from softkin import Status
 
 from tests.catalogue.closure import Array
-from tests.catalogue.loop_machines import LoopMachine
+from tests.catalogue.loop_machines import LoopMachine, facings
 
 POINTS = np.linspace(0.0, 1.0, 101)
 PARTNERS = 3000
@@ -70,7 +70,10 @@ def _poses(robot: softkin.Mechanism, axes: Array, machine: LoopMachine) -> tuple
 
 
 def _answers(robot: softkin.Mechanism, line: Crossing, shares: Array) -> Array:
-    return robot.inverse_batch(line.positions(shares), None, line.configuration, line.axes)[1] == Status.OK
+    return (
+        robot.inverse_batch(line.positions(shares), facings(robot, len(shares)), line.configuration, line.axes)[1]
+        == Status.OK
+    )
 
 
 def _lost(line: Crossing) -> float:

@@ -47,6 +47,15 @@ def inclined(rod: float, inner: float) -> dict[str, float]:
     return sizes | {"rail_angle": 30.0, "max_angle_ball_joint": 45.0}
 
 
+def delta(base: float, rod: float, plate: float) -> dict[str, float]:
+    return {"base_radius": base, "arm_length": 200.0, "rod_length": rod, "plate_radius": plate}
+
+
+def two_arms(rod: float, apart: float) -> dict[str, float]:
+    sizes = {f"arm_length_{i}": 250.0 for i in (1, 2)} | {f"rod_length_{i}": rod for i in (1, 2)}
+    return sizes | {"base_distance": apart}
+
+
 T_LAYOUT = azimuths(0.0, 90.0, 180.0)
 CORNERS = ((150.0, 0.0), (0.0, 150.0), (-150.0, 0.0))
 FIVE_BARS: tuple[Edge, ...] = (
@@ -81,6 +90,16 @@ EDGES: dict[str, tuple[Edge, ...]] = {
         (arms(base_radius=140.0, inner_arm=200.0, outer_arm=300.0 * JUST, tcp_radius=40.0) | T_LAYOUT, (0.0, 0.0, 0.0)),
         (arms(base_radius=140.0, inner_arm=200.0, outer_arm=250.0, tcp_radius=40.0) | T_LAYOUT, (0.0, 0.0, 0.0)),
         (arms(base_radius=140.0, inner_arm=200.0, outer_arm=450.0, tcp_radius=140.0) | T_LAYOUT, (90.0, 90.0, 90.0)),
+    ),
+    "Softkin_Delta_C": (
+        (delta(140.0, 300.0 * JUST, 40.0), (0.0, 0.0, 0.0, 30.0)),
+        (delta(140.0, 250.0, 40.0), (0.0, 0.0, 0.0, 30.0)),
+        (delta(140.0, 450.0, 140.0), (90.0, 90.0, 90.0, 30.0)),
+    ),
+    "Softkin_DualScara": (
+        (two_arms(330.0 * JUST, 160.0), (180.0, 0.0, 20.0, 30.0)),
+        (two_arms(300.0, 160.0), (180.0, 0.0, 20.0, 30.0)),
+        (two_arms(300.0, 0.0), (90.0, 90.0, 20.0, 30.0)),
     ),
     "Kin_Tripod_Rotary": (
         (rotary(260.0 * JUST, 140.0, 200.0), (180.0, 180.0, 180.0)),
@@ -129,6 +148,13 @@ PLACES: dict[str, tuple[tuple[Mapping[str, float], tuple[tuple[float, ...], ...]
             ((95.0, 0.0, 0.0), (0.0, 95.0, 0.0), (-95.0, 0.0, 0.0)),
         ),
     ),
+    "Softkin_Delta_C": (
+        (
+            delta(140.0, 250.0, 45.0),
+            tuple((95.0 * cos(radians(a)), 95.0 * sin(radians(a)), 0.0) for a in (0.0, 120.0, 240.0)),
+        ),
+    ),
+    "Softkin_DualScara": ((two_arms(350.0, 160.0), FIVE_BAR_PLACES),),
     "Kin_Tripod_Rotary": (
         (
             rotary(300.0, 140.0, 50.0),

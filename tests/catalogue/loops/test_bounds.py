@@ -65,6 +65,8 @@ BIGLIDE = {"arm_length_1": 200.0, "arm_length_2": 100.0}
 T_LAYOUT = {"azimuth_1": 0.0, "azimuth_2": 90.0, "azimuth_3": -90.0}
 WIDE = T_LAYOUT | {f"base_radius_{i}": 9000.0 for i in "123"}
 EVEN = {f"{name}_{i}": v for i in (1, 2, 3) for name, v in (("azimuth", 120.0 * i), ("base_radius", 700.0))}
+CARRIED = {"base_radius": 160.0, "arm_length": 240.0, "rod_length": 560.0, "plate_radius": 45.0}
+TWO_ARMS = {"base_distance": 140.0} | {f"{n}_length_{i}": s for i in "12" for n, s in (("arm", 200.0), ("rod", 260.0))}
 IMPOSSIBLE = {
     "a plate smaller than its joints": ("Kin_Tripod_Rotary", TRIPOD, {"stewart_radius": 19.99, "distance": 40.0},
         "stewart"),
@@ -96,6 +98,10 @@ IMPOSSIBLE = {
     "rods that meet two and two": ("Kin_Tripod_P3Z", {"arm_length": 140.0} | RAILS, {}, "reach the plate"),
     "arms that meet two and two": ("Kin_Delta_P3C_Type3", DELTA, EVEN, "reach the plate"),
     "upright rails too far apart": ("Kin_Tripod_Linear", UPRIGHT, {"outer_radius": 461.0}, "reach the plate"),
+    "a plate too small for the delta": ("Softkin_Delta_C", CARRIED, {"base_radius": 846.0}, "reach the plate"),
+    "a dual SCARA too wide": ("Softkin_DualScara", TWO_ARMS, {"base_distance": 921.0}, "span base_distance"),
+    "an arm 1 that stays away": ("Softkin_DualScara", TWO_ARMS, {"arm_length_1": 861.0}, "arm 2 must reach"),
+    "an arm 2 that stays away": ("Softkin_DualScara", TWO_ARMS, {"rod_length_2": 801.0}, "arm 1 must reach"),
     "two arms the same way": ("Kin_Delta_P3C_Type3", DELTA, {"azimuth_1": 0.0, "azimuth_2": 90.0, "azimuth_3": 90.0},
         "azimuth"),
 }  # fmt: skip

@@ -38,13 +38,13 @@ def test_the_grid(machines: tuple[LoopMachine, ...]) -> None:
     whole = {p.name: float(round(p.nominal, -1)) for p in nominal.mechanism.parameters}
     for machine in (*machines, loop_machine(nominal.mechanism, "round", whole)):
         axes = grid(machine)
-        positions, _, configurations, statuses = both_ways.forward(machine.robot, axes)
+        positions, rotations, configurations, statuses = both_ways.forward(machine.robot, axes)
         assert set(statuses.tolist()) <= {Status.OK, Status.IMPOSSIBLE}
         answered = statuses == Status.OK
         assert np.isnan(positions[~answered]).all()
         closes = np.isfinite(machine.closure.poses(axes)[0]).all(axis=1)
         here = axes[answered], positions[answered]
-        flat = np.tile(np.eye(3), (answered.sum(), 1, 1))
+        flat = rotations[answered]
         clear = plates(machine, *here) > LOST
         assert (closes[answered] | ~clear).all()
         for row in axes[closes & ~answered]:  # only at the very edge may Newton's method still find something

@@ -9,7 +9,7 @@ from softkin import KinematicsError, Status
 
 from derive.description.mechanism import Mechanism
 from tests.catalogue.closure import Array
-from tests.catalogue.loop_machines import LoopMachine
+from tests.catalogue.loop_machines import LoopMachine, facing, facings
 from tests.catalogue.loops.crossings import Crossing, crossing_of
 from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.units import compiled
@@ -18,7 +18,7 @@ LEAST, SINGULAR = 1e-3, 1e-3
 """The default of the least margin, and what `IsSingularity` calls singular."""
 BEFORE = 10.0 ** -np.arange(2.0, 10.5, 0.5)
 """How far before the crossing a path is looked at, as parts of the line."""
-NO_TURN = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+NO_TURN = np.eye(3)
 
 
 @pytest.fixture
@@ -32,6 +32,12 @@ def crossings(mechanism: Mechanism, machines: tuple[LoopMachine, ...]) -> list[C
     return found
 
 
+def rotation_of(machine: LoopMachine) -> list[list[float]]:
+    """The rotation that is commanded."""
+    turned = facing(machine.robot)
+    return (NO_TURN if turned is None else turned).tolist()
+
+
 def margin(machine: LoopMachine, axes: Array) -> float:
     assembly = machine.mechanism.assembly
     assert assembly is not None
@@ -41,7 +47,7 @@ def margin(machine: LoopMachine, axes: Array) -> float:
 def asked(robot: softkin.Mechanism, position: Array, configuration: tuple[int, ...], reference: Array) -> Array | None:
     """The axes; None where the scalar call says that they are out of reach."""
     try:
-        return np.array(robot.inverse((position, None), configuration, reference))
+        return np.array(robot.inverse((position, facing(robot)), configuration, reference))
     except KinematicsError as refusal:
         assert refusal.status is Status.UNREACHABLE
         return None
@@ -80,7 +86,8 @@ def test_a_path_is_stopped_before_the_crossing(crossings: list[Crossing]) -> Non
         last, stopped = line.axes, False
         for share, position in zip(shares, line.positions(shares), strict=True):
             axes = asked(machine.robot, position, line.configuration, last)
-            status, found = controller.inverse(tuple(position), NO_TURN, line.configuration, tuple(last))
+            turned = rotation_of(machine)
+            status, found = controller.inverse(tuple(position), turned, line.configuration, tuple(last))
             assert status == (UNREACHABLE if axes is None else OK)
             if axes is None:
                 stopped = True
@@ -89,7 +96,7 @@ def test_a_path_is_stopped_before_the_crossing(crossings: list[Crossing]) -> Non
             assert share < line.at
             np.testing.assert_allclose(found[: len(axes)], axes, rtol=1e-9, atol=1e-9)
             joints = machine.closure.joints(axes[None])
-            assert machine.miss(axes[None], position[None], np.eye(3)[None])[0] < 1e-12
+            assert machine.miss(axes[None], position[None], np.array([turned]))[0] < 1e-12
             assert machine.closure.side(joints, position[None])[0] > 0
             assert margin(machine, axes) >= LEAST * (1 - 1e-6)
             last = axes
@@ -125,13 +132,13 @@ def test_the_least_margin_is_sharp(machines: tuple[LoopMachine, ...]) -> None:
             for share, expected in ((1 - 1e-9, Status.OK), (1 + 1e-9, Status.UNREACHABLE)):
                 robot = machine.changed(min_type2_margin=there * share)
                 assert block.initialise(robot.parameters) == OK
-                status = block.inverse(position, NO_TURN, configuration, tuple(axes))[0]
+                status = block.inverse(position, rotation_of(machine), configuration, tuple(axes))[0]
                 assert status == expected.softmotion
-                assert robot.inverse_batch([position], None, configuration, axes)[1][0] == expected
+                assert robot.inverse_batch([position], facings(robot, 1), configuration, axes)[1][0] == expected
                 branches = configuration[: robot.BRANCHES]
                 (own,) = (
                     s
-                    for s in robot.inverse_all((position, None), axes)
+                    for s in robot.inverse_all((position, facing(robot)), axes)
                     if s.configuration[: robot.BRANCHES] == branches
                 )
                 assert own.status is expected
@@ -145,13 +152,13 @@ def test_the_other_assembly_mode_is_refused(machines: tuple[LoopMachine, ...]) -
     """Poses of the same machine assembled the other way: their very slot is refused, with the least margin off too."""
     for nominal, other in (machines[:2], machines[1::-1]):
         axes = other.draw(60, np.random.default_rng(4))
-        positions, _, configurations, _ = other.robot.forward_batch(axes)
+        positions, rotations, configurations, _ = other.robot.forward_batch(axes)
         for robot in (nominal.robot, nominal.changed(min_type2_margin=0.0)):
-            found, statuses = robot.inverse_batch(positions, None, configurations, axes)
+            found, statuses = robot.inverse_batch(positions, rotations, configurations, axes)
             assert (statuses == Status.UNREACHABLE).all()
             assert np.isnan(found).all()
             assert asked(robot, positions[0], tuple(configurations[0].tolist()), axes[0]) is None
-        assert (other.robot.inverse_batch(positions, None, configurations, axes)[1] == Status.OK).all()
+        assert (other.robot.inverse_batch(positions, rotations, configurations, axes)[1] == Status.OK).all()
 
 
 def test_forward_has_one_solution_a_side(machines: tuple[LoopMachine, ...]) -> None:
@@ -184,10 +191,9 @@ def test_forward_answers_where_the_loop_closes_and_nowhere_else(machines: tuple[
     for machine in machines:
         axes = machine.candidates(300, np.random.default_rng(8))
         expected = np.isfinite(machine.closure.poses(axes)[0]).all(axis=1)
-        positions, _, _, statuses = machine.robot.forward_batch(axes)
+        positions, rotations, _, statuses = machine.robot.forward_batch(axes)
         assert (statuses == np.where(expected, Status.OK, Status.IMPOSSIBLE)).all()
-        there = axes[expected], positions[expected]
-        assert machine.miss(*there, np.tile(np.eye(3), (expected.sum(), 1, 1))).max() < 1e-11
+        assert machine.miss(axes[expected], positions[expected], rotations[expected]).max() < 1e-11
         for row in axes[~expected][:5]:
             with pytest.raises(KinematicsError) as refused:
                 machine.robot.forward(row)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from itertools import product
 
+import numpy as np
 import pytest
 
 from derive.description.mechanism import Mechanism
+from tests.catalogue.closure import Closure
 from tests.catalogue.loops.edges import EDGES, OTHER_WAY_ROUND, PLACES
 from tests.catalogue.loops.test_bounds import IMPOSSIBLE
 from tests.text import (
@@ -107,6 +109,12 @@ def compare_offset(loop: Loop, place: tuple[float, ...], sample: Sample, data: B
         assert_same(loop.controller.inverse_offset(*asked_for), (status, expected), loop, *asked_for)
 
 
+def at_reference(loop: Loop, sample: Sample) -> np.ndarray:
+    """The rotation of the flange with the joints that turn it at the reference, where a point off it holds them."""
+    closure = Closure(loop.mechanism, loop.robot.parameters)
+    return closure.turns(closure.joints(np.array([sample.reference])))[0]
+
+
 def at_edges(mechanism: Mechanism) -> list[Loop]:
     """Machines at the end of what can be assembled, at the axis values of the end. Places that no leg can aim at are
     asked.
@@ -120,5 +128,5 @@ def at_edges(mechanism: Mechanism) -> list[Loop]:
             turned = (*data, *(0,) * len(loop.robot.PERIOD_AXES))
             compare_reason(loop, Command(place, NO_TURN, turned, sample.axes))
             compare(loop, place, sample, turned)
-            compare_offset(loop, tuple(p + o for p, o in zip(place, sample.offset, strict=True)), sample, turned)
+            compare_offset(loop, tuple(np.add(place, at_reference(loop, sample) @ sample.offset)), sample, turned)
     return found

@@ -1,0 +1,113 @@
+"""Equations of a turning loop that are rods: each says that two points keep their distance, however it is written.
+
+Let p = x + R t be a point of the platform and b one that joints move. |p - b|^2 - L^2, times a constant, has as
+coefficients: of x^2 that constant c, of x_i alone -2 c b_i, and of x_1 times the first row of R, 2 c t. What is left at
+R = 1, x = 0 is the square of L. The rod that is read in this way must have the equation that was stated: that is
+compared at random poses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import sympy as sp
+
+from derive.description.mechanism import Mechanism, Rod, Turning, on_plate, rod
+from derive.ir.constants import DEGREE
+from derive.ir.interpret import evaluate
+from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, real
+from derive.plate.legs import about_z, by_angles
+
+_POSES, _SAME, _ROUNDING = 16, 1e-9, 1e-12
+_LONG = 10**6
+
+
+def with_stated_rods(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with every closure equation of a turning platform that is a rod among its rods."""
+    if not mechanism.is_platform:
+        return mechanism
+    taken = {own.name for own in mechanism.rods}
+    found: list[Rod] = []
+    left: list[sp.Expr] = []
+    for number, equation in enumerate(mechanism.closure, 1):
+        name = str(number) if str(number) not in taken else f"closure_{number}"
+        read = _rod_of(mechanism, name, sp.sympify(equation))
+        if read is None:
+            left.append(equation)
+        else:
+            found.append(read)
+    return replace(mechanism, rods=(*found, *mechanism.rods), closure=tuple(left)) if found else mechanism
+
+
+def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
+    """The rod whose equation this is, but for a constant factor; None where there is none."""
+    is_flat = mechanism.task.turning is Turning.ABOUT_Z and "z" not in mechanism.task.position
+    size = 2 if is_flat else 3
+    coordinates = [real(c) for c in COORDINATE_NAMES[:size]]
+    names = [real(f"r{i + 1}{j + 1}") for i in range(size) for j in range(size)]
+    is_about_z = mechanism.task.turning is Turning.ABOUT_Z
+    exact = {number: sp.Rational(number) for number in equation.atoms(sp.Float)}
+    expanded = sp.expand(equation.xreplace(exact | (_about_z() if is_about_z else {})))
+    try:
+        form = sp.Poly(expanded, *coordinates, *names)
+    except sp.PolynomialError:
+        return None
+    factor = form.coeff_monomial(coordinates[0] ** 2)
+    if factor == 0 or factor.free_symbols & {j.symbol for j in mechanism.joints}:
+        return None
+    base = [-form.coeff_monomial(c) / (2 * factor) for c in coordinates]
+    arm = _arm(form, coordinates, size, is_about_z=is_about_z)
+    plate = on_plate(*(a / (2 * factor) for a in arm))
+    at_rest = dict(zip(ROTATION_ENTRIES, sp.eye(3), strict=True)) | {c: sp.Integer(0) for c in coordinates}
+    between = sp.Add(*[(p - b) ** 2 for p, b in zip(plate, base, strict=True)])
+    square = _without_rounding(between.xreplace(at_rest), (expanded / factor).xreplace(at_rest))
+    length = sp.powdenest(sp.sqrt(sp.factor(square)), force=True)
+    joints = {j.symbol for j in mechanism.joints}
+    if any(p.exp == sp.Rational(1, 2) and p.free_symbols & joints for p in length.atoms(sp.Pow)):
+        return None
+    read = rod(name, [_plain(v) for v in base], [_plain(v) for v in plate], _plain(length))
+    return read if not length.has(sp.I) and _is_same(mechanism, read.equation * factor, equation) else None
+
+
+def _without_rounding(one: sp.Expr, other: sp.Expr) -> sp.Expr:
+    """The difference, without the terms that rounding alone left."""
+    first, second = (sp.expand(e).as_coefficients_dict() for e in (one, other))
+    terms = [(m, first[m] - second[m], abs(first[m]) + abs(second[m])) for m in dict.fromkeys((*first, *second))]
+    return sp.Add(*[m * left for m, left, size in terms if abs(left) > _ROUNDING * size])
+
+
+def _plain(value: sp.Expr) -> sp.Expr:
+    """The value with long fractions as floating-point numbers again."""
+    return value.xreplace({r: sp.Float(r) for r in value.atoms(sp.Rational) if r.q > _LONG})
+
+
+def _about_z() -> dict[sp.Symbol, sp.Expr]:
+    """The entries of a rotation about z by two of them."""
+    return dict(zip(ROTATION_ENTRIES, about_z(real("r11"), real("r21")), strict=True))
+
+
+def _arm(form: sp.Poly, coordinates: Sequence[sp.Symbol], size: int, *, is_about_z: bool) -> list[sp.Expr]:
+    """The point of the platform, times twice the factor."""
+    first, second = coordinates[:2]
+    if not is_about_z:
+        return [form.coeff_monomial(first * real(f"r1{j + 1}")) for j in range(size)]
+    flat = [form.coeff_monomial(c * real("r11")) for c in (first, second)]
+    return flat if size == 2 else [*flat, sp.Integer(0)]  # a height is not told from one of the base
+
+
+def _is_same(mechanism: Mechanism, one: sp.Expr, other: sp.Expr) -> bool:
+    """Whether two equations agree at random poses, joints and parameters, as far as rounding allows."""
+    rng = np.random.default_rng(7)
+    words = [f"{f}_{a}" for a in ("roll", "pitch", "yaw") for f in ("cos", "sin")]
+    angles = dict.fromkeys(("roll", "pitch", "yaw"), np.zeros(_POSES))
+    turning = angles if mechanism.task.turning is Turning.FULL else ("yaw",)
+    angles |= {a: rng.uniform(-3.0, 3.0, _POSES) for a in turning}
+    turned = {w: (np.cos if w[:3] == "cos" else np.sin)(angles[w[4:]]) for w in words}
+    values = {n.name: evaluate(v, turned) for n, v in zip(ROTATION_ENTRIES, by_angles(), strict=True)}
+    values[DEGREE.name] = np.asarray(np.pi / 180.0)
+    for symbol in sorted(one.free_symbols | other.free_symbols, key=str):
+        values.setdefault(symbol.name, rng.uniform(0.5, 2.0, _POSES))
+    first, second = (np.broadcast_to(evaluate(e, values), (_POSES,)) for e in (one, other))
+    return bool(np.all(np.abs(first - second) <= _SAME * (1.0 + np.abs(second))))
