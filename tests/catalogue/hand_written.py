@@ -173,6 +173,14 @@ def _table_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return cc * q[0] + sc * y, cc * y - sc * q[0], z, rotation
 
 
+def _palletizer(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """Both arms by their angles against the base; the flange is level."""
+    ahead = p["shoulder_offset"] + p["link_length_1"] * np.sin(q[1]) + p["link_length_2"] * np.cos(q[2])
+    ahead = ahead + p["wrist_offset_x"]
+    z = p["base_height"] + p["link_length_1"] * np.cos(q[1]) - p["link_length_2"] * np.sin(q[2]) + p["wrist_offset_z"]
+    return ahead * np.cos(q[0]), ahead * np.sin(q[0]), z, q[0] + q[3]
+
+
 def _head_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     """The head leans to +X, the table turns the workpiece from X to Y."""
     cb, sb, cc, sc = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
@@ -199,6 +207,7 @@ FORMULAS: dict[str, Formula] = {
     "Kin_5Axes": _five_axes,
     "Softkin_HeadHead_CB": _head_head,
     "Softkin_HeadTable_BC": _head_table,
+    "Softkin_Palletizer": _palletizer,
     "Softkin_TableTable_AC": _table_table,
     "Kin_Ac6_TXTYTZRYRXRZ": _gantry_head,
     "Kin_Ac6_ThreeParallel": _three_parallel,

@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from softkin.p2x_type1 import P2XType1
     from softkin.p2x_type2 import P2XType2
     from softkin.p2y import P2Y
+    from softkin.palletizer import Palletizer
     from softkin.pcc import PCC
     from softkin.planar_3rrr import Planar3RRR
     from softkin.polar import Polar
@@ -111,6 +112,7 @@ __all__ = [
     "P2CType2",
     "P2XType1",
     "P2XType2",
+    "Palletizer",
     "Parameter",
     "Planar3RRR",
     "Polar",
@@ -165,6 +167,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_P2X_Type1": ("p2x_type1", "P2XType1"),
     "Kin_P2X_Type2": ("p2x_type2", "P2XType2"),
     "Kin_P2Y": ("p2y", "P2Y"),
+    "Softkin_Palletizer": ("palletizer", "Palletizer"),
     "Kin_PCC": ("pcc", "PCC"),
     "Softkin_Planar_3RRR": ("planar_3rrr", "Planar3RRR"),
     "Kin_Polar": ("polar", "Polar"),
