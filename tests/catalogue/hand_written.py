@@ -30,6 +30,11 @@ def _scara4(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return x, y, q[2] + climb * q[3], q[0] + q[1] + q[3]
 
 
+def _scara_on_rail(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    x, y = _arms((p["link_length_1"], p["link_length_2"]), (q[1], q[1] + q[2]))
+    return q[0] + x, y, q[3], q[1] + q[2] + q[4]
+
+
 def _scara3(word: str) -> Formula:
     def formula(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
         x, y = _arms((p[f"{word}_length_1"], p[f"{word}_length_2"]), (q[0], q[0] + q[1]))
@@ -208,6 +213,7 @@ FORMULAS: dict[str, Formula] = {
     "Softkin_HeadHead_CB": _head_head,
     "Softkin_HeadTable_BC": _head_table,
     "Softkin_Palletizer": _palletizer,
+    "Softkin_ScaraOnRail": _scara_on_rail,
     "Softkin_TableTable_AC": _table_table,
     "Kin_Ac6_TXTYTZRYRXRZ": _gantry_head,
     "Kin_Ac6_ThreeParallel": _three_parallel,

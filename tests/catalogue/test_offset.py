@@ -45,11 +45,15 @@ def regular(machine: Machine, axes: Array, offsets: Array) -> Array:
 
 
 def _moving(machine: Machine) -> list[int]:
-    """The axes that move: as many as coordinates are commanded, the last turning ones stay where the reference is."""
-    excess = _count(machine) - len(machine.closure.task)
-    turning = [i for i in range(_count(machine)) if machine.closure.angles[i]]
+    """The axes that move: as many as coordinates are commanded.
+
+    Held ones and, of the others, the last turning ones stay where the reference is.
+    """
+    solved = [i for i in range(_count(machine)) if machine.solved[i]]
+    excess = len(solved) - len(machine.closure.task)
+    turning = [i for i in solved if machine.closure.angles[i]]
     frozen = turning[len(turning) - excess :] if excess > 0 else []
-    return [i for i in range(_count(machine)) if i not in frozen]
+    return [i for i in solved if i not in frozen]
 
 
 def _count(machine: Machine) -> int:
@@ -219,11 +223,11 @@ def test_garbage(machines: tuple[Machine, ...]) -> None:
         for number in (float("nan"), float("inf"), 1e300, -1.1e9):
             for i in range(3):
                 wrong = [*point[:i], number, *point[i + 1 :]]
-                assert refusal(robot.inverse_offset, wrong, zero) is Status.BAD_INPUT
+                assert refusal(robot.inverse_offset, wrong, zero, None, axes) is Status.BAD_INPUT
                 offset = [number if k == i else 0.0 for k in range(3)]
-                assert refusal(robot.inverse_offset, point, offset) is Status.BAD_INPUT
+                assert refusal(robot.inverse_offset, point, offset, None, axes) is Status.BAD_INPUT
             assert refusal(robot.configuration_offset, [number] * len(axes), zero) is Status.BAD_INPUT
         for wrong in (None, 5, "123", (1.0, 2.0), (1.0, 2.0, 3.0, 4.0)):
-            assert refusal(robot.inverse_offset, wrong, zero) is Status.BAD_INPUT
-            assert refusal(robot.inverse_offset, point, wrong) is Status.BAD_INPUT
+            assert refusal(robot.inverse_offset, wrong, zero, None, axes) is Status.BAD_INPUT
+            assert refusal(robot.inverse_offset, point, wrong, None, axes) is Status.BAD_INPUT
             assert refusal(robot.configuration_offset, axes, wrong) is Status.BAD_INPUT

@@ -55,6 +55,7 @@ DIMENSIONS: dict[str, dict[str, float]] = {
         "base_height": 320.0, "shoulder_offset": 80.0, "link_length_1": 300.0, "link_length_2": 350.0,
         "wrist_offset_x": 60.0, "wrist_offset_z": -90.0,
     },
+    "Softkin_ScaraOnRail": {"link_length_1": 325.0, "link_length_2": 225.0},
     "Softkin_TableTable_AC": {"pivot_y": 40.0, "pivot_z": -60.0, "tool_length": 120.0},
     "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": {
         "d1": 615.0, "a1": 100.0, "a2": 705.0, "a3": 135.0, "d4": 755.0, "j6_offset_x": 60.0, "d6": 85.0,

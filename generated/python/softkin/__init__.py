@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     from softkin.scara4_cczc_zccoupled import Scara4CCZCZCcoupled
     from softkin.scara4_zccc import Scara4ZCCC
     from softkin.scara4_zccoupled_type1 import Scara4ZCcoupledType1
+    from softkin.scaraonrail import ScaraOnRail
     from softkin.sccc import SCCC
     from softkin.tabletable_ac import TableTableAC
     from softkin.tgantry2 import TGantry2
@@ -125,6 +126,7 @@ __all__ = [
     "Scara4CCZCZCcoupled",
     "Scara4ZCCC",
     "Scara4ZCcoupledType1",
+    "ScaraOnRail",
     "Singularity",
     "Solution",
     "Status",
@@ -180,6 +182,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Scara4_CCZC_ZCcoupled": ("scara4_cczc_zccoupled", "Scara4CCZCZCcoupled"),
     "Kin_Scara4_ZCCC": ("scara4_zccc", "Scara4ZCCC"),
     "Kin_Scara4_ZCcoupled_Type1": ("scara4_zccoupled_type1", "Scara4ZCcoupledType1"),
+    "Softkin_ScaraOnRail": ("scaraonrail", "ScaraOnRail"),
     "Kin_SCCC": ("sccc", "SCCC"),
     "Softkin_TableTable_AC": ("tabletable_ac", "TableTableAC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),
