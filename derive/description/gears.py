@@ -72,7 +72,8 @@ def _arguments(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
     if mechanism.chain is not None:
         return tuple(f.amount for f in mechanism.chain.factors if f.motion is Motion.TURN)
     functions = {f for e in mechanism.equations for f in sp.sympify(e).atoms(sp.sin, sp.cos)}
-    return tuple(f.args[0] for f in sorted(functions, key=sp.default_sort_key))
+    heading = () if mechanism.heading is None else (mechanism.heading,)
+    return (*(f.args[0] for f in sorted(functions, key=sp.default_sort_key)), *heading)
 
 
 def _form(argument: sp.Expr, symbols: Sequence[sp.Symbol]) -> sp.Expr | None:
@@ -202,6 +203,7 @@ def in_other_joints(mechanism: Mechanism, table: Table) -> Mechanism:
         mechanism,
         chain=chain,
         closure=all_of(mechanism.closure),
+        heading=None if mechanism.heading is None else of(mechanism.heading),
         rods=rods(mechanism.rods),
         bars=rods(mechanism.bars),
         assembly=None if assembly is None else replace(assembly, indicator=of(assembly.indicator)),

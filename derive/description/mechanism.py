@@ -288,6 +288,21 @@ class Mechanism:
         return tuple(j for j in self.joints if j.name not in names)
 
     @property
+    def all_notes(self) -> tuple[str, ...]:
+        """The stated notes, after what is to be known of every machine that holds joints."""
+        names = [joint.name for joint in self.held_joints]
+        if not names:
+            return self.notes
+        them = "it" if len(names) == 1 else "them"
+        told = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} held"
+        return (
+            f"{told}: inverse kinematics leaves {them} where the reference has {them} (aRef in a block), and solves "
+            "for the other axes. Margins tell how far these are from a singular pose; "
+            "the Jacobian has a column for every axis.",
+            *self.notes,
+        )
+
+    @property
     def is_platform(self) -> bool:
         """Whether a closed loop turns its platform, as the commanded rotation says: its forward kinematics iterates."""
         return self.is_turning_loop and self.heading is None

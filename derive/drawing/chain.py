@@ -58,6 +58,8 @@ class _Walker:
     """The shifts of the current body, with their labels."""
     _start: Array = field(default_factory=lambda: np.zeros(3))
     _last_axis: Array | None = None
+    _parallel: tuple[Array, sp.Expr] | None = None
+    """The axis of the last turns, as far as they are parallel, and the sum of these."""
 
     def pass_over(self, factor: Factor) -> None:
         """Compose the scene with one more factor."""
@@ -69,12 +71,31 @@ class _Walker:
         else:
             if moving:
                 self.finish_body(direction)
-                sense = int(np.sign(float(evaluate(sp.diff(factor.amount, moving[0].symbol), self.values))))
-                label = interface(self.mechanism, sense * _unsigned(self.mechanism, factor.amount))
+                amount_told = self._driven(factor.amount, direction)
+                driving = [j for j in moving if j.symbol in amount_told.free_symbols] or moving
+                rate = float(evaluate(sp.diff(amount_told, driving[0].symbol), self.values))
+                sense = -1 if rate < 0 else 1
+                label = interface(self.mechanism, sense * _unsigned(self.mechanism, amount_told))
                 self.turns.append(Turn(label, point(self.position), point(sense * direction)))
                 self._last_axis = direction
             angle = np.pi * amount if factor.motion is Motion.FLIP else amount
             self.rotation = self.rotation @ _turned(factor.axis, angle)
+
+    def _driven(self, amount: sp.Expr, direction: Array) -> sp.Expr:
+        """What drives the body behind a turn: the turn itself, or the sum of those about parallel axes up to it.
+
+        The sum, where one joint alone is left of it or none: bars from the base then give the body its direction.
+        """
+        if self._parallel is None or abs(self._parallel[0] @ direction) < 1.0 - _EXACT:
+            self._parallel = direction, sp.sympify(amount)
+            return sp.sympify(amount)
+        first, turned = self._parallel
+        alike = int(np.sign(first @ direction))
+        total = sp.expand(alike * turned + amount)
+        self._parallel = direction, total
+        joints = {j.symbol for j in self.mechanism.joints}
+        left, own = total.free_symbols & joints, amount.free_symbols & joints
+        return total if not left or (len(left) == 1 < len(own)) else sp.sympify(amount)
 
     def _shift(self, factor: Factor, direction: Array, amount: float, moving: list[Joint]) -> None:
         if not moving:

@@ -39,6 +39,7 @@ class Turn:
     """A rotary joint: its axis points where a positive turn is counter-clockwise seen against it."""
 
     label: sp.Expr
+    """Zero where bars turn the joint back: nothing drives it, and it has no arrow."""
     at: Point
     axis: Point
     toward: Point | None = None

@@ -30,6 +30,11 @@ def _scara4(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return x, y, q[2] + climb * q[3], q[0] + q[1] + q[3]
 
 
+def _scara_on_rail(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    x, y = _arms((p["link_length_1"], p["link_length_2"]), (q[1], q[1] + q[2]))
+    return q[0] + x, y, q[3], q[1] + q[2] + q[4]
+
+
 def _scara3(word: str) -> Formula:
     def formula(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
         x, y = _arms((p[f"{word}_length_1"], p[f"{word}_length_2"]), (q[0], q[0] + q[1]))
@@ -173,6 +178,14 @@ def _table_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return cc * q[0] + sc * y, cc * y - sc * q[0], z, rotation
 
 
+def _palletizer(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """Both arms by their angles against the base; the flange is level."""
+    ahead = p["shoulder_offset"] + p["link_length_1"] * np.sin(q[1]) + p["link_length_2"] * np.cos(q[2])
+    ahead = ahead + p["wrist_offset_x"]
+    z = p["base_height"] + p["link_length_1"] * np.cos(q[1]) - p["link_length_2"] * np.sin(q[2]) + p["wrist_offset_z"]
+    return ahead * np.cos(q[0]), ahead * np.sin(q[0]), z, q[0] + q[3]
+
+
 def _head_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     """The head leans to +X, the table turns the workpiece from X to Y."""
     cb, sb, cc, sc = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
@@ -199,6 +212,8 @@ FORMULAS: dict[str, Formula] = {
     "Kin_5Axes": _five_axes,
     "Softkin_HeadHead_CB": _head_head,
     "Softkin_HeadTable_BC": _head_table,
+    "Softkin_Palletizer": _palletizer,
+    "Softkin_ScaraOnRail": _scara_on_rail,
     "Softkin_TableTable_AC": _table_table,
     "Kin_Ac6_TXTYTZRYRXRZ": _gantry_head,
     "Kin_Ac6_ThreeParallel": _three_parallel,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, product
@@ -10,7 +10,7 @@ from itertools import combinations, product
 import numpy as np
 import sympy as sp
 
-from tests.catalogue.closure import Array
+from tests.catalogue.closure import Array, derivative
 from tests.catalogue.machines import Machine
 
 OFTEN = 0.9
@@ -20,6 +20,8 @@ OFTEN = 0.9
 SHIFTS = (0.0, 1e-12, -1e-9, 1e-6, -1e-4, 1e-3)
 """How far (radians) singular joints are from their places, where several singularities coincide."""
 POSES = 6
+PASSES, LONGEST, MET = 40, 0.4, 1e-14
+"""Of Newton's method: steps, the longest (radians), and the size of a quantity (of its largest) that is zero."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,9 +141,43 @@ def coinciding(one: Machine) -> Iterator[Array]:
                 shifts = list(product(SHIFTS, repeat=count)) if count < 3 else [(s,) * count for s in SHIFTS]
                 there = np.tile(axes, (len(shifts), 1))
                 columns = np.repeat(np.array(shifts), POSES, axis=0).T
-                for locus, column in sorted(zip(places, columns, strict=True), key=lambda pair: pair[0].joints):
+                ordered = sorted(zip(places, columns, strict=True), key=lambda pair: pair[0].joints)
+                for locus, column in ordered:
                     there = locus.moved(there, column, together=POSES)
+                if _disturb([locus for locus, _ in ordered]):
+                    there = _meeting([locus for locus, _ in ordered], there, [column for _, column in ordered])
                 yield there
+
+
+def _disturb(places: Sequence[Locus]) -> bool:
+    """Whether a later place is reached by a joint that an earlier quantity depends on."""
+    return any(
+        later.joint in _joints(first.machine, first.quantity)
+        for k, first in enumerate(places)
+        for later in places[k + 1 :]
+    )
+
+
+def _meeting(places: Sequence[Locus], axes: Array, shifts: Sequence[Array]) -> Array:
+    """Axis values where all quantities vanish, found by Newton's method from near, each then shifted by its joint.
+
+    A row from which none is found is replaced by one that has it, or stays where it is if there is none.
+    """
+    machine = places[0].machine
+    joints, quantities = machine.closure.joints(axes), [p.quantity for p in places]
+    for _ in range(PASSES):
+        values = machine.closure.at_joints(quantities, joints)
+        slopes = derivative(lambda q: machine.closure.at_joints(quantities, q), joints)
+        step = (np.linalg.pinv(slopes, rcond=1e-6) @ values[:, :, None])[:, :, 0]
+        joints -= step / np.maximum(1.0, np.abs(step).max(axis=1, keepdims=True) / LONGEST)
+    values = np.abs(machine.closure.at_joints(quantities, joints))
+    found = np.flatnonzero((values < MET * machine.largest[[p.branch for p in places]]).all(axis=1))
+    if not len(found):
+        return axes
+    joints = joints[np.resize(found, len(joints))]
+    for place, shift in zip(places, shifts, strict=True):
+        joints[:, place.joint] += shift
+    return machine.closure.axes(joints)
 
 
 def _first(machine: Machine, branch: int | None, quantity: sp.Expr, taken: set[int]) -> Locus:

@@ -81,7 +81,13 @@ class Machine:
         """Whether some positions are out of reach: not where slides move every coordinate, or where there are no
         branches.
         """
-        return self.robot.BRANCHES > 0 and int((~self.closure.angles).sum()) < len(self.closure.task)
+        return self.robot.BRANCHES > 0 and int((~self.closure.angles & self.solved).sum()) < len(self.closure.task)
+
+    @property
+    def solved(self) -> NDArray[np.bool_]:
+        """Which joints the inverse solves for: not those that are held."""
+        held = self.mechanism.held_joints
+        return np.array([j not in held for j in self.mechanism.joints])
 
     @property
     def branches_meet_together(self) -> bool:

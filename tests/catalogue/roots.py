@@ -19,8 +19,11 @@ STANDING = 1e-14
 """A step of Newton's method, in radians and lengths, that is next to nothing."""
 
 
-def solutions(machine: Machine, position: Array, rotation: Array) -> list[Array]:
-    """The joint values that reach a pose, angles in [-pi, pi), without the mirrors that the machine does not have."""
+def solutions(machine: Machine, position: Array, rotation: Array, held: Array) -> list[Array]:
+    """The joint values that reach a pose, angles in [-pi, pi), without the mirrors that the machine does not have.
+
+    Joints that are held stay where they are in `held`, of all joints.
+    """
     closure = machine.closure
     rng = np.random.default_rng(77)
     scale = np.where(closure.angles, 1.0, machine.reach)
@@ -29,6 +32,7 @@ def solutions(machine: Machine, position: Array, rotation: Array) -> list[Array]
     if machine.mechanism.is_platform and machine.robot.BRANCHES == 0:  # of many mirror images one is wanted
         where = np.tile(position, (starts, 1)), np.tile(machine.closure.reachable(rotation[None]), (starts, 1, 1))
         joints, _ = machine.closure.joints_at(*where, rng)
+    joints = np.where(machine.solved, joints, held)
     joints = principal(machine, solved_from(machine, joints, position, rotation), position, rotation)
     found: list[Array] = []
     for row in joints[machine.is_own(joints, position, rotation)]:
@@ -52,7 +56,7 @@ def ends_from(machine: Machine, joints: Array, position: Array, rotation: Array)
 def principal(machine: Machine, joints: Array, position: Array, rotation: Array) -> Array:
     """The same solutions with angles in [-pi, pi); an axis that carries another one along moves it back with it."""
     wrapped = joints.copy()
-    angles = machine.closure.angles
+    angles = machine.closure.angles & machine.solved
     wrapped[:, angles] = (joints[:, angles] + np.pi) % (2 * np.pi) - np.pi
     return _newton(machine, wrapped, position, rotation, 3)
 
@@ -76,7 +80,7 @@ def _newton(machine: Machine, joints: Array, position: Array, rotation: Array, s
         there = np.repeat(positions[moving], width + 1, axis=0), np.repeat(rotations[moving], width + 1, axis=0)
         equations = _equations(machine, shifted, *there)
         values = equations.reshape(len(moving), width + 1, equations.shape[1])
-        slopes = np.moveaxis(values[:, 1:].imag / STEP, 1, 2)
+        slopes = np.moveaxis(values[:, 1:].imag / STEP, 1, 2) * machine.solved
         normal = slopes.transpose(0, 2, 1) @ slopes
         damped = normal + 1e-12 * np.eye(width) * (1.0 + np.trace(normal, axis1=1, axis2=2))[:, None, None]
         step = np.linalg.solve(damped, slopes.transpose(0, 2, 1) @ values[:, 0].real[:, :, None])[:, :, 0]

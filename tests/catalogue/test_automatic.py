@@ -10,6 +10,7 @@ from softkin import Status
 from derive.description.mechanism import Role
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import LENGTHS, Machine
+from tests.catalogue.references import held_at
 from tests.catalogue.test_round_trip import slots
 
 SQUARE_DEGREES = 1e-6
@@ -57,7 +58,7 @@ def test_an_open_branch_is_the_nearest(machines: tuple[Machine, ...]) -> None:
         robot = machine.changed(check_limits=False)
         axes = machine.draw(300, np.random.default_rng(1))
         frames = machine.closure.poses(axes)
-        references = np.random.default_rng(2).uniform(-400, 400, axes.shape)
+        references = held_at(robot, axes, np.random.default_rng(2).uniform(-400, 400, axes.shape))
         answers = by_slot(machine, frames, references)
         distances = distances_of(machine, answers, references)
         nearest = np.choose(distances.argmin(axis=0)[:, None], answers)
@@ -121,7 +122,7 @@ def test_an_open_period_is_the_nearest_to_the_reference(machines: tuple[Machine,
     """Within half a turn: of the joint, where a coupling moves the axis with its neighbours."""
     for machine in machines:
         axes = machine.draw(300, np.random.default_rng(4))
-        references = np.random.default_rng(5).uniform(-3000, 3000, axes.shape)
+        references = held_at(machine.robot, axes, np.random.default_rng(5).uniform(-3000, 3000, axes.shape))
         turning = [i for i, j in enumerate(machine.mechanism.joints) if j.multi_turn]
         for found in by_slot(machine, machine.closure.poses(axes), references):
             solved = ~np.isnan(found).any(axis=1)
@@ -138,11 +139,11 @@ def test_where_nothing_is_open_the_reference_has_no_influence(machines: tuple[Ma
         configurations = machine.robot.forward_batch(axes)[2]
         answers = []
         for size in (0.0, 1.0, 1e3, 1e8):
-            references = rng.uniform(-size, size, axes.shape)
+            references = held_at(machine.robot, axes, rng.uniform(-size, size, axes.shape))
             answers.append(machine.robot.inverse_batch(*frames, configurations, references)[0])
             frame = frames[0][0], frames[1][0]
             scalar = machine.robot.inverse(frame, configurations[0].tolist(), references[0])
-            assert scalar == machine.robot.inverse(frame, configurations[0].tolist())
+            assert scalar == machine.robot.inverse(frame, configurations[0].tolist(), held_at(machine.robot, axes[0]))
         assert all((a == answers[0]).all() for a in answers)
 
 
@@ -155,8 +156,9 @@ def test_without_a_configuration_branch_1_and_the_nearest_turn(machines: tuple[M
         assert len(periods) == len(robot.PERIOD_AXES)
         axes = machine.draw(30, np.random.default_rng(7))
         frames = machine.closure.poses(axes)
-        first = by_slot(machine, frames, np.zeros_like(axes))[0]
-        assert np.array_equal(robot.inverse_batch(*frames)[0], first, equal_nan=True)
+        first = by_slot(machine, frames, held_at(robot, axes, np.zeros_like(axes)))[0]
+        found = robot.inverse_batch(*frames, references=held_at(robot, axes))[0]
+        assert np.array_equal(found, first, equal_nan=True)
         for row in np.flatnonzero(~np.isnan(first).any(axis=1))[:5]:
-            scalar = robot.inverse((frames[0][row], frames[1][row]))
+            scalar = robot.inverse((frames[0][row], frames[1][row]), reference=held_at(robot, axes[row]))
             assert np.abs(np.subtract(scalar, first[row])).max() < 1e-10

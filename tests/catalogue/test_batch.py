@@ -10,6 +10,7 @@ from softkin import KinematicsError, Status, _batch
 
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
+from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal
 
 ROWS = 120
@@ -91,7 +92,7 @@ def test_no_rows(machines: tuple[Machine, ...]) -> None:
     shapes = [part.shape for part in robot.forward_batch(np.zeros((0, width)))]
     assert shapes == [(0, 3), (0, 3, 3), (0, size), (0,)]
     for configurations in (None, np.zeros((0, size), int), [0] * size):
-        for references in (None, np.zeros((0, width)), [0.0] * width):
+        for references in (held_at(robot, np.zeros((0, width))), np.zeros((0, width)), [0.0] * width):
             found = robot.inverse_batch(np.zeros((0, 3)), np.zeros((0, 3, 3)), configurations, references)
             assert [part.shape for part in found] == [(0, width), (0,)]
 
@@ -100,6 +101,7 @@ def test_one_row_may_stand_for_all(machines: tuple[Machine, ...]) -> None:
     """One configuration and one reference may stand for all rows."""
     for machine in machines[:2]:
         axes = machine.draw(30, np.random.default_rng(2))
+        axes = held_at(machine.robot, np.tile(axes[0], (30, 1)), axes)
         positions, rotations = machine.closure.poses(axes)
         robot = machine.changed(check_limits=False)
         configuration, reference = robot.forward(axes[0])[1], axes[0]

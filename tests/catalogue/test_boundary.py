@@ -13,6 +13,7 @@ from tests.catalogue.both_ways import inverse
 from tests.catalogue.closure import Array
 from tests.catalogue.loci import Locus, loci
 from tests.catalogue.machines import LENGTHS, Machine
+from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal
 from tests.catalogue.self_motion import inward, is_free, twisted
 from tests.catalogue.test_round_trip import slots
@@ -51,6 +52,11 @@ def at_wrist_distance(machine: Machine, distance: float, count: int) -> tuple[Ar
     return positions, rotations
 
 
+def at_home(machine: Machine, count: int) -> Array | None:
+    """References at which a held joint is at zero: the base of the arm is then where positions are measured from."""
+    return held_at(machine.robot, np.tile(machine.closure.offsets, (count, 1)))
+
+
 def squared_sine(machine: Machine, position: Array, rotation: Array) -> Fraction:
     """Of the elbow, exactly, for a pose as it is in floating point."""
     first, second, third = (Fraction(v) for v in (*lengths(machine), 0.0)[:3])
@@ -76,7 +82,7 @@ def test_reach_and_hole(machines: tuple[Machine, ...]) -> None:
                 squares = [squared_sine(machine, p, r) for p, r in zip(*frames, strict=True)]
                 for slot in slots(machine):
                     configuration = slot + (0,) * len(machine.robot.PERIOD_AXES)
-                    found, statuses = inverse(machine.robot, *frames, configuration)
+                    found, statuses = inverse(machine.robot, *frames, configuration, at_home(machine, 6))
                     for square, status in zip(squares, statuses, strict=True):
                         if abs(square + BOUNDARY) > BOUNDARY / 10:
                             assert status == (Status.OK if square > -BOUNDARY else Status.UNREACHABLE), (
@@ -139,7 +145,7 @@ def test_far_away(machines: tuple[Machine, ...]) -> None:
     for machine in machines:
         rotations, _ = turned(machine, 4)
         positions = np.array([[1e9, 0, 0], [0, -1e9, 0], [1e6, 1e6, 0], [-7e8, 7e8, 0]])
-        _, statuses = machine.robot.inverse_batch(positions, rotations)
+        _, statuses = machine.robot.inverse_batch(positions, rotations, None, at_home(machine, 4))
         assert (statuses == (Status.UNREACHABLE if machine.has_a_reach else Status.OK)).all()
 
 
@@ -161,7 +167,8 @@ def test_the_plane_of_a_planar_machine(mechanism: Mechanism, machines: tuple[Mac
             assert (statuses == expected).all()
             assert np.isnan(found[statuses != Status.OK]).all()
             if expected is Status.UNREACHABLE:
-                assert refusal(machine.robot.inverse, (shifted[0], rotations[0])) is expected
+                near = held_at(machine.robot, axes[0])
+                assert refusal(machine.robot.inverse, (shifted[0], rotations[0]), None, near) is expected
 
 
 def test_a_tool_that_points_the_opposite_way(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
@@ -186,5 +193,6 @@ def test_a_tool_that_points_the_opposite_way(mechanism: Mechanism, machines: tup
         statuses = robot.inverse_batch(positions, lean @ opposite, own, axes)[1]
         assert (statuses == Status.OK).sum() >= (1 if lengths(machine)[2:] else 20)
         if turns:
-            assert refusal(machine.robot.inverse, (positions[0], opposite[0])) is Status.UNREACHABLE
+            near = held_at(machine.robot, axes[0])
+            assert refusal(machine.robot.inverse, (positions[0], opposite[0]), None, near) is Status.UNREACHABLE
             assert refusal(machine.robot.project, opposite[0]) is Status.UNREACHABLE

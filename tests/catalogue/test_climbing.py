@@ -9,6 +9,7 @@ from softkin import Status
 from derive.description.mechanism import Kind, Mechanism
 from tests.catalogue.machines import Machine
 from tests.catalogue.machines import machine as machine_of
+from tests.catalogue.references import held_at
 from tests.catalogue.test_limits import fitting, one_pose, outcome
 
 pytestmark = pytest.mark.serial
@@ -39,10 +40,10 @@ def test_an_axis_that_carries_another_is_always_limited(mechanism: Mechanism, ma
                 axes[i] = value
                 expected = Status.UNREACHABLE if ends and abs(value) > 720.0 else Status.OK
                 positions, rotations = machine.closure.poses(axes[None])
-                configuration = machine.robot.forward(axes)[1]
-                assert machine.robot.inverse_batch(positions, rotations, configuration)[1][0] == expected
+                configuration, near = machine.robot.forward(axes)[1], held_at(machine.robot, axes)
+                assert machine.robot.inverse_batch(positions, rotations, configuration, near)[1][0] == expected
                 unchecked = machine.changed(check_limits=False)
-                assert unchecked.inverse_batch(positions, rotations, configuration)[1][0] == Status.OK
+                assert unchecked.inverse_batch(positions, rotations, configuration, near)[1][0] == Status.OK
             axes[i] = 20.0
     assert (True in limited) == bool(helical)
 

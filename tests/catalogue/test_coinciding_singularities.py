@@ -18,6 +18,7 @@ from derive.description.mechanism import Mechanism
 from tests.catalogue.closure import Array
 from tests.catalogue.loci import Locus, coinciding, loci
 from tests.catalogue.machines import MECHANISMS, Machine, bare_machine, is_spatial, machine, machines_of
+from tests.catalogue.references import held_at
 from tests.catalogue.robots import ROBOTS
 from tests.catalogue.self_motion import is_free
 from tests.catalogue.test_boundary import alone
@@ -113,7 +114,7 @@ def test_every_pose_of_the_grid(one: Machine, around: str) -> None:
     axes = grid(one)
     assert len(axes) == (4096 if one.closure.angles.sum() == 6 else len({*map(tuple, axes.tolist())}))
     anywhere = np.random.default_rng(1).uniform(-180.0, 180.0, axes.shape)
-    check(one, axes, {"own": axes, "zero": 0 * axes, "anywhere": anywhere}[around])
+    check(one, axes, held_at(one.robot, axes, {"own": axes, "zero": 0 * axes, "anywhere": anywhere}[around]))
 
 
 def test_singularities_that_coincide(one: Machine) -> None:
@@ -124,4 +125,4 @@ def test_singularities_that_coincide(one: Machine) -> None:
     assert near.sum(axis=1).max() >= min(2, one.robot.BRANCHES)
     rng = np.random.default_rng(2)
     for references in (axes, rng.uniform(-180.0, 180.0, axes.shape)):
-        check(one, axes, references)
+        check(one, axes, held_at(one.robot, axes, references))

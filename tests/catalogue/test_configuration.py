@@ -10,6 +10,7 @@ from derive.description.mechanism import Mechanism
 from tests.catalogue.both_ways import forward, inverse
 from tests.catalogue.loci import loci
 from tests.catalogue.machines import Machine
+from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal
 
 TURNS = {1: (-180.0, 180.0), 2: (180.0, 540.0), 3: (540.0, 900.0), 4: (900.0, 1260.0),
@@ -56,7 +57,8 @@ def test_turns_are_counted_at_their_edges(machines: tuple[Machine, ...]) -> None
                 assert configurations[:, column].tolist() == [below, below, above, above, above, above, above]
                 regular = machine.is_regular(axes)
                 robot = machine.changed(check_limits=False)
-                found, statuses = inverse(robot, positions, rotations, configurations)
+                near = held_at(robot, axes)
+                found, statuses = inverse(robot, positions, rotations, configurations, near)
                 assert (statuses == Status.OK).all()
                 assert np.abs((found - axes)[regular]).max(initial=0.0) < 1e-9
                 again = forward(robot, found)[2]
@@ -75,6 +77,7 @@ def test_a_named_turn_is_where_the_axis_is_put(machines: tuple[Machine, ...]) ->
             nearest = axes.copy()
             nearest[:3] = 0.0
             nearest[2] = axes[2] + 1.0
+            nearest = held_at(robot, axes, nearest)
             found, statuses = inverse(robot, positions, rotations, configurations, nearest)
             regular = machine.is_regular(axes) & (statuses == Status.OK)
             assert (statuses == Status.OK).all()
@@ -88,7 +91,7 @@ def test_negative_bytes_may_be_given_unsigned(machines: tuple[Machine, ...]) -> 
         robot = machine.changed(check_limits=False)
         positions, rotations, configurations, _ = forward(robot, axes)
         unsigned = configurations.astype(np.uint8).astype(int)
-        found, statuses = inverse(robot, positions, rotations, unsigned)
+        found, statuses = inverse(robot, positions, rotations, unsigned, held_at(robot, axes))
         assert (statuses == Status.OK).all()
         assert np.abs(found - axes).max() < 1e-9
 
@@ -115,7 +118,7 @@ def test_wrong_bytes_are_refused(machines: tuple[Machine, ...]) -> None:
         robot = machine.robot
         axes = machine.draw(5, np.random.default_rng(6))
         positions, rotations = machine.closure.poses(axes)
-        frame = positions[0], rotations[0]
+        frame, near = (positions[0], rotations[0]), held_at(robot, axes, 0.0 * axes)
         size = len(robot.CONFIGURATION)
         own = machine.own(axes)
         good = own[2].tolist()
@@ -123,16 +126,16 @@ def test_wrong_bytes_are_refused(machines: tuple[Machine, ...]) -> None:
         if size:
             wrongs += [good[:-1], [300] * size, [-129] * size, [1.5] * size, ["1"] * size, "1" * size, [None] * size]
         for wrong in wrongs:
-            assert refusal(robot.inverse, frame, wrong) is Status.BAD_INPUT
+            assert refusal(robot.inverse, frame, wrong, near[0]) is Status.BAD_INPUT
         for branch in range(robot.BRANCHES):
             for byte in (4, 5, 100, 127, -1, -128, 255):
                 wrong = list(good)
                 wrong[branch] = byte
-                assert refusal(robot.inverse, frame, wrong) is Status.BAD_INPUT
+                assert refusal(robot.inverse, frame, wrong, near[0]) is Status.BAD_INPUT
                 table = own.astype(int)
                 table[2, branch] = byte
-                found, statuses = robot.inverse_batch(positions, rotations, table)
-                clean, expected = robot.inverse_batch(positions, rotations, own)
+                found, statuses = robot.inverse_batch(positions, rotations, table, near)
+                clean, expected = robot.inverse_batch(positions, rotations, own, near)
                 assert statuses[2] == Status.BAD_INPUT
                 assert np.isnan(found[2]).all()
                 assert (np.delete(statuses, 2) == np.delete(expected, 2)).all()

@@ -10,6 +10,7 @@ from softkin import Status
 
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
+from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal
 
 NUMBERS = (nan, inf, -inf, 1e300, -1e300, 1.1e9)
@@ -82,23 +83,23 @@ def test_positions_and_references_of_no_reasonable_size(machines: tuple[Machine,
     """Positions and references that are no numbers of reasonable size are refused, row by row."""
     machine, axes, positions, rotations = some(machines)
     robot = machine.robot
-    own = machine.own(axes)
-    clean = robot.inverse_batch(positions, rotations, own)[0]
+    own, near = machine.own(axes), held_at(robot, axes, 0.0 * axes)
+    clean = robot.inverse_batch(positions, rotations, own, near)[0]
     for i in range(3):
         for number in NUMBERS:
             wrong = positions.copy()
             wrong[2, i] = number
-            assert refusal(robot.inverse, (wrong[2], rotations[2])) is Status.BAD_INPUT
-            found = robot.inverse_all((wrong[2], rotations[2]))
+            assert refusal(robot.inverse, (wrong[2], rotations[2]), None, near[2]) is Status.BAD_INPUT
+            found = robot.inverse_all((wrong[2], rotations[2]), near[2])
             assert [s.status for s in found] == [Status.BAD_INPUT] * 2**robot.BRANCHES
             assert all(s.axes is None for s in found)
-            got, statuses = robot.inverse_batch(wrong, rotations, own)
+            got, statuses = robot.inverse_batch(wrong, rotations, own, near)
             assert statuses.tolist() == [0, 0, Status.BAD_INPUT, 0, 0, 0, 0]
             assert np.isnan(got[2]).all()
             assert (np.delete(got, 2, axis=0) == np.delete(clean, 2, axis=0)).all()
     for i, joint in enumerate(machine.mechanism.joints):
         for number in NUMBERS:
-            references = np.zeros_like(axes)
+            references = near.copy()
             references[4, i] = number
             statuses = robot.inverse_batch(positions, rotations, own, references)[1]
             read = statuses[4] == Status.BAD_INPUT
@@ -113,28 +114,30 @@ def test_frames_that_are_no_rotation(machines: tuple[Machine, ...], what: str) -
     """Refused where the rotation is read; accepted where it is not."""
     machine, axes, positions, rotations = some(machines)
     robot, own = machine.robot, machine.own(axes)
+    near = held_at(robot, axes, 0.0 * axes)
     wrongs = [NO_ROTATIONS[what] @ rotations[3]] if what in NO_ROTATIONS else []
     if not wrongs:
         for i in range(9):
             entries = rotations[3].copy()
             entries.flat[i] = float(what)
             wrongs.append(entries)
-    clean = robot.inverse_batch(positions, rotations, own)[0]
+    clean = robot.inverse_batch(positions, rotations, own, near)[0]
     for wrong in wrongs:
         table = rotations.copy()
         table[3] = wrong
-        got, statuses = robot.inverse_batch(positions, table, own)
+        got, statuses = robot.inverse_batch(positions, table, own, near)
         if robot.READS_ROTATION:
             assert statuses.tolist() == [0, 0, 0, Status.BAD_INPUT, 0, 0, 0]
             assert np.isnan(got[3]).all()
-            assert refusal(robot.inverse, (positions[3], wrong)) is Status.BAD_INPUT
+            assert refusal(robot.inverse, (positions[3], wrong), None, near[3]) is Status.BAD_INPUT
             if machine.closure.follows_turn:
                 assert refusal(robot.project, wrong) is Status.BAD_INPUT
             assert (np.delete(got, 3, axis=0) == np.delete(clean, 3, axis=0)).all()
         else:
             assert (statuses == Status.OK).all()
             assert (got == clean).all()
-            assert np.allclose(robot.inverse((positions[3], wrong), own[3].tolist()), clean[3], rtol=0, atol=1e-10)
+            found = robot.inverse((positions[3], wrong), own[3].tolist(), near[3])
+            assert np.allclose(found, clean[3], rtol=0, atol=1e-10)
 
 
 def test_whether_the_rotation_is_read_is_said(machines: tuple[Machine, ...]) -> None:
@@ -143,8 +146,9 @@ def test_whether_the_rotation_is_read_is_said(machines: tuple[Machine, ...]) -> 
     robot, own = machine.robot, machine.own(axes)
     assert machine.closure.follows_rotation == robot.READS_ROTATION
     if robot.READS_ROTATION:
-        assert refusal(robot.inverse_batch, positions) is Status.BAD_INPUT
-        assert refusal(robot.inverse, (positions[0], None)) is Status.BAD_INPUT
+        near = held_at(robot, axes)
+        assert refusal(robot.inverse_batch, positions, None, None, near) is Status.BAD_INPUT
+        assert refusal(robot.inverse, (positions[0], None), None, None if near is None else near[0]) is Status.BAD_INPUT
     else:
         assert (robot.inverse_batch(positions, None, own)[1] == Status.OK).all()
         code = own[0].tolist()
@@ -153,12 +157,12 @@ def test_whether_the_rotation_is_read_is_said(machines: tuple[Machine, ...]) -> 
 
 def test_what_has_not_the_form_of_a_frame(machines: tuple[Machine, ...]) -> None:
     """An argument without the form of a frame raises BAD_INPUT."""
-    machine, _, positions, rotations = some(machines)
-    robot = machine.robot
+    machine, axes, positions, rotations = some(machines)
+    robot, near = machine.robot, axes[0]
     p, r = positions[0], rotations[0]
     wrongs: list[object] = [None, 5, "frame", (), (p,), (p, r, r), (p[:2], r), ([*p, 0], r), (None, r), ("123", r)]
     if robot.READS_ROTATION:
         wrongs += [(p, r[:2]), (p, r.ravel()), (p, r[:, :2]), (p, 5), (p, "123456789"), (p, [["1"] * 3] * 3)]
     for wrong in wrongs:
-        for call in (robot.inverse, robot.inverse_all):
-            assert refusal(call, wrong) is Status.BAD_INPUT
+        assert refusal(robot.inverse, wrong, None, near) is Status.BAD_INPUT
+        assert refusal(robot.inverse_all, wrong, near) is Status.BAD_INPUT

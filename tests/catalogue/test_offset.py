@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from softkin import KinematicsError, Status
 
 from derive.description.mechanism import Mechanism, Role, Turning
 from tests.catalogue.closure import Array
+from tests.catalogue.loci import loci
 from tests.catalogue.machines import Machine
 from tests.catalogue.refusals import refusal
 
 POSES = 150
+POINTS = 12
 ROUND_TRIP = 1e-8
 REGULAR = 0.03
 """How much the point moves at least, in reaches per radian or per length, whichever way."""
@@ -41,11 +45,15 @@ def regular(machine: Machine, axes: Array, offsets: Array) -> Array:
 
 
 def _moving(machine: Machine) -> list[int]:
-    """The axes that move: as many as coordinates are commanded, the last turning ones stay where the reference is."""
-    excess = _count(machine) - len(machine.closure.task)
-    turning = [i for i in range(_count(machine)) if machine.closure.angles[i]]
+    """The axes that move: as many as coordinates are commanded.
+
+    Held ones and, of the others, the last turning ones stay where the reference is.
+    """
+    solved = [i for i in range(_count(machine)) if machine.solved[i]]
+    excess = len(solved) - len(machine.closure.task)
+    turning = [i for i in solved if machine.closure.angles[i]]
     frozen = turning[len(turning) - excess :] if excess > 0 else []
-    return [i for i in range(_count(machine)) if i not in frozen]
+    return [i for i in solved if i not in frozen]
 
 
 def _count(machine: Machine) -> int:
@@ -134,20 +142,23 @@ def test_zero_offset_is_the_inverse(machines: tuple[Machine, ...]) -> None:
 
 
 def test_an_effective_link_that_is_too_short_cannot_be_aimed(machines: tuple[Machine, ...]) -> None:
-    """The point on the axis of the last joint that moves: nothing turns it, unless it is more than
-    1e-9 of a link away.
+    """The point on the axis of the last joint that moves: nothing turns it, unless it is over 1e-9 of a link away.
+
+    Where bars keep the flange level that joint shifts every point of the flange, and each is aimed.
     """
     for machine in offered(machines):
         if machine.robot.BRANCHES == 0 or machine.mechanism.chain is None:
             continue
         first = next(machine.robot.parameters[p.name] for p in machine.mechanism.parameters if p.role is Role.LENGTH)
         values = machine.draw(1, np.random.default_rng(5))
-        last = [i for i in _moving(machine) if machine.closure.angles[i]][-1]
-        fixed, away = on_the_axis(machine, values, last)
-        for excess, expected in ((0.0, False), (0.3e-9 * first, False), (1e-6 * first, True), (1e-3 * first, True)):
+        moving = [i for i in _moving(machine) if machine.closure.angles[i]]
+        turning = [i for i in moving if turns_the_flange(machine, values, i)]
+        shifts = turning[-1] != moving[-1]
+        fixed, away = on_the_axis(machine, values, turning[-1])
+        for excess, is_aimed in ((0.0, False), (0.3e-9 * first, False), (1e-6 * first, True), (1e-3 * first, True)):
             offset = fixed + excess * away
             point = points(machine, values, offset[None])[0]
-            if expected:
+            if is_aimed or shifts:
                 configuration = machine.robot.configuration_offset(values[0], offset)
                 found = machine.robot.inverse_offset(point, offset, configuration, values[0])
                 there = points(machine, np.array([found]), offset[None])[0]
@@ -155,6 +166,41 @@ def test_an_effective_link_that_is_too_short_cannot_be_aimed(machines: tuple[Mac
             else:
                 own = machine.robot.forward(values[0])[1]
                 assert refusal(machine.robot.inverse_offset, point, offset, own, values[0]) is Status.UNREACHABLE
+
+
+def test_a_point_beside_the_first_axis_of_a_stretched_arm(machines: tuple[Machine, ...]) -> None:
+    """At two edges at once: the point is as near to the axis as the arm passes it, and the arm is straight."""
+    for machine in offered(machines):
+        for axes, offsets in beside_the_first_axis(machine):
+            robot = machine.changed(check_limits=False)
+            for values, offset, point in zip(axes, offsets, points(machine, axes, offsets), strict=True):
+                configuration = robot.configuration_offset(values, offset)
+                found = np.array([robot.inverse_offset(point, offset, configuration, values)])
+                missed = (points(machine, found, offset[None])[0] - point)[machine.closure.task]
+                assert np.abs(missed).max() < 1e-10 * machine.reach
+
+
+def beside_the_first_axis(machine: Machine) -> Iterator[tuple[Array, Array]]:
+    """Axis values of an arm in space where branches meet, and points of its flange straight beside its first axis."""
+    if not machine.is_spatial or machine.robot.BRANCHES < 2 or machine.mechanism.chain is None:
+        return
+    axes = machine.draw(POINTS, np.random.default_rng(11), farthest=170.0)
+    aside = np.random.default_rng(12).uniform(-0.3, 0.3, (POINTS, 2)) * machine.reach
+    for locus in loci(machine):
+        there = locus.moved(axes, 0.0)
+        positions, rotations = machine.closure.poses(there)
+        heading = machine.closure.joints(there)[:, 0]
+        across = np.stack([-np.sin(heading), np.cos(heading), 0.0 * heading], axis=1)
+        wanted = across * aside[:, :1] + np.array([0.0, 0.0, 1.0]) * (positions[:, 2:] + aside[:, 1:])
+        yield there, np.einsum("nji,nj->ni", rotations, wanted - positions)
+
+
+def turns_the_flange(machine: Machine, values: Array, joint: int) -> bool:
+    """Whether the rotation of the flange changes with a joint."""
+    turned = np.repeat(machine.closure.joints(values), 2, axis=0)
+    turned[1, joint] += 1.0
+    before, after = machine.closure.frames(turned)[1]
+    return bool(np.abs(after - before).max() > 1e-9)
 
 
 def on_the_axis(machine: Machine, values: Array, joint: int) -> tuple[Array, Array]:
@@ -177,11 +223,11 @@ def test_garbage(machines: tuple[Machine, ...]) -> None:
         for number in (float("nan"), float("inf"), 1e300, -1.1e9):
             for i in range(3):
                 wrong = [*point[:i], number, *point[i + 1 :]]
-                assert refusal(robot.inverse_offset, wrong, zero) is Status.BAD_INPUT
+                assert refusal(robot.inverse_offset, wrong, zero, None, axes) is Status.BAD_INPUT
                 offset = [number if k == i else 0.0 for k in range(3)]
-                assert refusal(robot.inverse_offset, point, offset) is Status.BAD_INPUT
+                assert refusal(robot.inverse_offset, point, offset, None, axes) is Status.BAD_INPUT
             assert refusal(robot.configuration_offset, [number] * len(axes), zero) is Status.BAD_INPUT
         for wrong in (None, 5, "123", (1.0, 2.0), (1.0, 2.0, 3.0, 4.0)):
-            assert refusal(robot.inverse_offset, wrong, zero) is Status.BAD_INPUT
-            assert refusal(robot.inverse_offset, point, wrong) is Status.BAD_INPUT
+            assert refusal(robot.inverse_offset, wrong, zero, None, axes) is Status.BAD_INPUT
+            assert refusal(robot.inverse_offset, point, wrong, None, axes) is Status.BAD_INPUT
             assert refusal(robot.configuration_offset, axes, wrong) is Status.BAD_INPUT

@@ -10,6 +10,7 @@ from softkin import Status
 from derive.description.mechanism import Mechanism
 from tests.catalogue.cornered import APART, CANDIDATES, KR6_D3, PAIRED, SPECIAL, places, poses
 from tests.catalogue.corners import factor_program
+from tests.catalogue.references import held_at
 from tests.catalogue.robots import UR5
 
 UR5_IN_METRES = {"d1": 0.089159, "a2": -0.425, "a3": -0.39225, "d4": 0.10915, "d5": 0.09465, "d6": 0.0823}
@@ -45,7 +46,8 @@ def test_no_pose_is_lost(paired: Mechanism) -> None:
         robot, axes = one.changed(check_limits=False), poses(one, corner)
         positions, rotations, own, _ = robot.forward_batch(axes)
         own[:, robot.BRANCHES :] = 0
-        for references in (axes, 0.0 * axes, rng.uniform(-180.0, 180.0, axes.shape)):
+        for any_references in (axes, 0.0 * axes, rng.uniform(-180.0, 180.0, axes.shape)):
+            references = held_at(robot, axes, any_references)
             for configurations in (own, 0 * own):
                 found, statuses = robot.inverse_batch(positions, rotations, configurations, references)
                 lost = axes[statuses != Status.OK]
@@ -68,7 +70,7 @@ def test_one_pose_at_a_time(paired: Mechanism) -> None:
             position, rotation = np.array([frame.position]), np.array([frame.rotation])
             branches = own[: robot.BRANCHES]
             opened = (0,) * (len(own) - robot.BRANCHES)
-            for near in (row, reference):
+            for near in (row, held_at(robot, row, reference)):
                 for configuration in ((*branches, *opened), (0,) * len(own)):
                     found = np.array([robot.inverse(frame, configuration, near)])
                     assert one.miss(found, position, rotation)[0] < BOUND

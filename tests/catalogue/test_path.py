@@ -13,6 +13,7 @@ from derive.description.mechanism import Mechanism
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
 from tests.catalogue.paths import straight, tour
+from tests.catalogue.references import held_at
 
 pytestmark = pytest.mark.serial
 
@@ -26,6 +27,7 @@ def follow(
 ) -> Iterator[tuple[int, Array | None]]:
     """Every step's result: axis values, or None where it was refused. The reference is the last result.
 
+    A held axis is commanded along the way by its reference.
     Branches are those of the first pose, where they are not given.
     """
     if branches is None:
@@ -36,7 +38,7 @@ def follow(
     last = tuple(axes[0])
     for k, frame in enumerate(frames):
         try:
-            last = robot.inverse(frame, configuration, last)
+            last = robot.inverse(frame, configuration, held_at(robot, axes[k], last))
         except KinematicsError as error:
             assert error.status is Status.UNREACHABLE
             yield k, None

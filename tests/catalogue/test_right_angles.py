@@ -11,6 +11,7 @@ from softkin import Status
 from tests.catalogue.both_ways import inverse
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine, machine
+from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal
 from tests.catalogue.test_round_trip import slots
 
@@ -95,7 +96,7 @@ def test_every_pose_is_solved_on_every_slot(grid: tuple[Machine, Array]) -> None
     robot = chosen.changed(check_limits=False)
     answers = np.zeros(len(axes), dtype=int)
     for slot in slots(chosen):
-        found, statuses = robot.inverse_batch(*frames, slot + (0,) * len(robot.PERIOD_AXES))
+        found, statuses = robot.inverse_batch(*frames, slot + (0,) * len(robot.PERIOD_AXES), held_at(robot, axes))
         answered = chosen.answers(statuses)
         answers += answered
         assert chosen.miss(found[answered], *(f[answered] for f in frames)).max(initial=0.0) < SINGULAR

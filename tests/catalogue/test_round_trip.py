@@ -9,6 +9,7 @@ from softkin import Status
 
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
+from tests.catalogue.references import held_at
 
 POSES = 500
 AXES = 1e-9
@@ -22,8 +23,8 @@ def slots(machine: Machine) -> list[tuple[int, ...]]:
 
 
 def strangers(machine: Machine, axes: Array) -> Array:
-    """References that have nothing to do with the axes."""
-    return np.random.default_rng(99).uniform(-900, 900, axes.shape)
+    """References that have nothing to do with the axes, but for what is held."""
+    return held_at(machine.robot, axes, np.random.default_rng(99).uniform(-900, 900, axes.shape))
 
 
 def test_the_configuration_selects_the_same_axes(machines: tuple[Machine, ...]) -> None:
@@ -56,10 +57,10 @@ def test_every_slot_satisfies_the_closure(machines: tuple[Machine, ...]) -> None
     for machine in machines:
         axes = machine.draw(POSES, np.random.default_rng(4))
         frames = machine.closure.poses(axes)
-        answers = np.zeros(len(axes), dtype=int)
+        answers, near = np.zeros(len(axes), dtype=int), held_at(machine.robot, axes, axes * 0.01)
         for slot in slots(machine):
             configuration = slot + (0,) * len(machine.robot.PERIOD_AXES)
-            found, statuses = machine.robot.inverse_batch(*frames, configuration, axes * 0.01)
+            found, statuses = machine.robot.inverse_batch(*frames, configuration, near)
             answered = machine.answers(statuses)
             answers += answered
             found = found[answered]

@@ -12,6 +12,7 @@ from tests.catalogue.both_ways import inverse
 from tests.catalogue.closure import Array
 from tests.catalogue.loci import Locus, loci
 from tests.catalogue.machines import Machine
+from tests.catalogue.references import held_at
 from tests.catalogue.self_motion import is_free
 from tests.catalogue.test_boundary import alone
 from tests.catalogue.test_round_trip import slots
@@ -64,7 +65,7 @@ def test_a_singular_pose_is_an_answer(machines: tuple[Machine, ...], around: str
         }
         for locus in loci(machine):
             there = np.concatenate([locus.moved(axes, shift) for shift in shifts(locus)])
-            near = np.tile(references[around], (len(shifts(locus)), 1))
+            near = held_at(robot, there, np.tile(references[around], (len(shifts(locus)), 1)))
             positions, rotations = machine.closure.poses(there)
             answers = []
             for configuration in configurations(machine, there):
@@ -86,7 +87,9 @@ def test_regular_poses_are_met_to_rounding(machines: tuple[Machine, ...]) -> Non
     for machine in machines:
         axes = machine.draw(2000, np.random.default_rng(4))
         frames = machine.closure.poses(axes)
-        found, _ = machine.robot.inverse_batch(*frames, machine.robot.forward_batch(axes)[2])
+        found, _ = machine.robot.inverse_batch(
+            *frames, machine.robot.forward_batch(axes)[2], held_at(machine.robot, axes)
+        )
         assert machine.miss(found, *frames).max() < REGULAR
 
 
@@ -158,12 +161,13 @@ def test_a_free_axis_stays_at_the_reference(machines: tuple[Machine, ...]) -> No
             free = free_axes(locus)
             count += len(free)
             there = locus.moved(axes, 0.0)
+            near = held_at(robot, there, references)
             frames = machine.closure.poses(there)
             for configuration in configurations(machine, there):
                 configuration[:, robot.BRANCHES :] = 0
-                found, statuses = inverse(robot, *frames, configuration, references)
+                found, statuses = inverse(robot, *frames, configuration, near)
                 assert (statuses == Status.OK).all()
-                assert np.abs(found - references)[:, free].max(initial=0.0) < 1e-9
+                assert np.abs(found - near)[:, free].max(initial=0.0) < 1e-9
     on_the_axis = {"Kin_Polar": 1, "Kin_Polar_Z": 1, "Kin_Crane": 4}.get(machines[0].mechanism.name, 0)
     assert count == on_the_axis * len(machines) + machines[0].robot.BRANCHES
 
@@ -183,7 +187,7 @@ def test_the_reference_decides_where_something_is_free_in_space(machines: tuple[
             moves = is_free(machine, there)
             configurations = robot.forward_batch(there)[2]
             configurations[:, robot.BRANCHES :] = 0
-            references = there + np.random.default_rng(8).uniform(-150.0, 150.0, there.shape)
+            references = held_at(robot, there, there + np.random.default_rng(8).uniform(-150.0, 150.0, there.shape))
             found, statuses = inverse(robot, *frames, configurations, references)
             assert (statuses == Status.OK).all()
             assert machine.miss(found, *frames).max(initial=0.0) < NEAR

@@ -7,16 +7,17 @@ from softkin import Status
 
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
+from tests.catalogue.references import held_at
 from tests.catalogue.roots import SAME, distance, principal, solutions
 
 POSES = 2
 
 
-def compare(machine: Machine, position: Array, rotation: Array) -> int:
-    """Hold the slots of a pose against the roots of the closure; how many there are."""
-    roots = solutions(machine, position, rotation)
+def compare(machine: Machine, position: Array, rotation: Array, axes: Array) -> int:
+    """Hold the slots of a pose against the roots of the closure, with held axes where they are; how many there are."""
+    roots = solutions(machine, position, rotation, machine.closure.joints(axes[None])[0])
     robot = machine.changed(min_type2_margin=0.0) if machine.mechanism.rods else machine.robot
-    found = robot.inverse_all((position, rotation))
+    found = robot.inverse_all((position, rotation), held_at(robot, axes))
     slots = [s.axes for s in found if s.status is Status.OK]
     assert len(slots) == len(roots)
     assert all(s.status in (Status.OK, Status.UNREACHABLE) for s in found)
@@ -32,8 +33,8 @@ def test_the_slots_are_the_roots_of_the_closure(machines: tuple[Machine, ...]) -
     counts = set()
     for machine in machines:
         axes = machine.draw(POSES, np.random.default_rng(31))
-        for position, rotation in zip(*machine.closure.poses(axes), strict=True):
-            counts.add(compare(machine, position, rotation))
+        for values, position, rotation in zip(axes, *machine.closure.poses(axes), strict=True):
+            counts.add(compare(machine, position, rotation, values))
     most = 2 ** machines[0].robot.BRANCHES
     assert min(counts) >= 1
     assert max(counts) == most or machines[0].mechanism.rods
@@ -48,9 +49,9 @@ def test_where_the_closure_has_no_root_no_slot_answers(machines: tuple[Machine, 
     for machine in machines[::2]:
         axes = machine.draw(3, np.random.default_rng(32))
         scales = (0.05, 0.6, 2.2)
-        for position, rotation, scale in zip(*machine.closure.poses(axes), scales, strict=True):
+        for values, position, rotation, scale in zip(axes, *machine.closure.poses(axes), scales, strict=True):
             beyond = np.array([0.0, 2.0 * machine.reach, 0.0]) if machine.mechanism.is_platform and scale > 1.0 else 0.0
-            counts.add(compare(machine, scale * position + beyond, rotation))
+            counts.add(compare(machine, scale * position + beyond, rotation, values))
     most = 2 ** machines[0].robot.BRANCHES
     if machines[0].branches_meet_together:
         assert counts == ({0, most} if machines[0].has_a_reach else {most})

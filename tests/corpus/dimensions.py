@@ -51,6 +51,11 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     "Kin_5Axes": {"tool_length": 90.0},
     "Softkin_HeadHead_CB": {"fork_offset": 25.0, "head_offset": -15.0, "pivot_length": 260.0},
     "Softkin_HeadTable_BC": {"head_offset": 35.0, "pivot_length": 240.0},
+    "Softkin_Palletizer": {
+        "base_height": 320.0, "shoulder_offset": 80.0, "link_length_1": 300.0, "link_length_2": 350.0,
+        "wrist_offset_x": 60.0, "wrist_offset_z": -90.0,
+    },
+    "Softkin_ScaraOnRail": {"link_length_1": 325.0, "link_length_2": 225.0},
     "Softkin_TableTable_AC": {"pivot_y": 40.0, "pivot_z": -60.0, "tool_length": 120.0},
     "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": {
         "d1": 615.0, "a1": 100.0, "a2": 705.0, "a3": 135.0, "d4": 755.0, "j6_offset_x": 60.0, "d6": 85.0,
@@ -133,6 +138,7 @@ ALSO: dict[str, tuple[dict[str, float], ...]] = {
     "Kin_Scara3_CCZ": ({"link_length_2": 325.0},),
     "Kin_Scara4_ZCcoupled_Type1": ({"pitch_zc": 0.0}, {"link_length_2": 325.0}),
     "Kin_Scara4_CCZC_ZCcoupled": ({"flange_down": 0.0, "gear_coupling": 0.2, "pitch_zc": 0.0},),
+    "Softkin_Palletizer": ({"shoulder_offset": 0.0, "wrist_offset_x": 0.0, "link_length_2": 300.0},),
     "Kin_SCCC": ({"link_length_3": 0.0}, {"link_length_2": 300.0, "coupling_12": 0.0, "coupling_13": 0.0}),
     "Kin_PCC": ({"link_length_2": 300.0},),
     "Kin_Wrist2": ({"tool_side": -1.0},),

@@ -71,7 +71,8 @@ def _regular(one: Robot, chosen: list[Axes], rng: np.random.Generator) -> Iterat
         yield {"call": "forward", "kind": "regular", "axes": list(turned), "jacobian": number < 3}
         frame, configuration = one.made.forward(turned)
         reference = (None, list(turned), _near(one, axes, rng), _far(one, axes, rng))[number % 4]
-        yield inverse(one, frame, reference, _configurations(one, frame, configuration, number), "regular")
+        chosen_bytes = _configurations(one, frame, configuration, number, _held_at(one, turned))
+        yield inverse(one, frame, reference, chosen_bytes, "regular")
         if one.made.READS_ROTATION:
             tilted = (frame.position, poses.rotation(rng).tolist())
             yield inverse(one, tilted, list(axes), [_open(one)], "any rotation", trusted=False)
@@ -143,27 +144,32 @@ def _out_of_reach(one: Robot, chosen: list[Axes], rng: np.random.Generator) -> I
         ways = (rng.normal(size=3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]))
         for way in ways[: 4 // min(2, _fewer(one))]:
             step = one.reach * way / np.linalg.norm(way)
-            end = _end(one, frame, step)
+            end = _end(one, frame, step, _held_at(one, axes))
             for factor in (1.0 - 1e-6, 1.0 + 1e-6, 1.001, 2.0) if end is not None else (0.3, 1e4):
                 place = (np.array(frame.position) + (end or 1.0) * factor * step).tolist()
                 yield inverse(one, (place, frame.rotation), list(axes), [configuration, _open(one)], "reach")
 
 
-def _end(one: Robot, frame: softkin.Frame, step: Any) -> float | None:
+def _end(one: Robot, frame: softkin.Frame, step: Any, near: Axes | None) -> float | None:
     """How many steps it takes until other slots answer; None where this is far away."""
-    own = _answering(one, frame, 0.0 * step)
+    own = _answering(one, frame, 0.0 * step, near)
     good, bad = 0.0, 3.0
-    if _answering(one, frame, bad * step) == own:
+    if _answering(one, frame, bad * step, near) == own:
         return None
     for _ in range(52):
         middle = (good + bad) / 2.0
-        good, bad = (middle, bad) if _answering(one, frame, middle * step) == own else (good, middle)
+        good, bad = (middle, bad) if _answering(one, frame, middle * step, near) == own else (good, middle)
     return bad
 
 
-def _answering(one: Robot, frame: softkin.Frame, shift: Any) -> list[int]:
+def _answering(one: Robot, frame: softkin.Frame, shift: Any, near: Axes | None) -> list[int]:
     place = (np.array(frame.position) + shift).tolist()
-    return [int(solution.status) for solution in one.made.inverse_all((place, frame.rotation))]
+    return [int(solution.status) for solution in one.made.inverse_all((place, frame.rotation), near)]
+
+
+def _held_at(one: Robot, axes: Axes) -> Axes | None:
+    """A reference for a machine that holds joints; the others need none."""
+    return axes if getattr(one.made, "HELD", ()) else None
 
 
 def _parameters(one: Robot) -> Iterator[Question]:
@@ -198,10 +204,10 @@ def _offsets(one: Robot, axes: Axes, frame: softkin.Frame, number: int) -> Itera
         }
 
 
-def _configurations(one: Robot, frame: softkin.Frame, own: Any, number: int) -> list[Any]:
+def _configurations(one: Robot, frame: softkin.Frame, own: Any, number: int, near: Axes | None) -> list[Any]:
     """The pose's own bytes, all open, other turns, "both coincide", some branches open; of some poses every branch."""
     branches = [i for i, byte in enumerate(one.made.CONFIGURATION) if byte.kind == "branch"]
-    slots = [found.configuration for found in one.made.inverse_all(frame)]
+    slots = [found.configuration for found in one.made.inverse_all(frame, near)]
     named = [[byte if i in branches else 0 for i, byte in enumerate(slot)] for slot in slots]
     other = [byte if i in branches else (2, -1, -3, 1, 127)[(number + i) % 5] for i, byte in enumerate(own)]
     coinciding = [3 if i in branches else byte for i, byte in enumerate(own)]

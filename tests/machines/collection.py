@@ -224,6 +224,17 @@ ONE_ROOT = {
     ),
 }
 
+_SWING = (branch("side", sin(A2), right=+1, left=-1), branch("lean", cos(A2), up=+1, down=-1))
+
+CONSTANT_RADIUS = {
+    "jib that swings on a hoist": _machine(
+        "Jib", (A1, A2, Z), Tz(Z) * Rz(A1) * Ry(A2) * Tz(L1), (L1,), Task("xyz"), _SWING
+    ),
+    "jib with a number for its length": _machine(
+        "JibNumber", (A1, A2, Z), Tz(Z) * Rz(A1) * Ry(A2) * Tz(Integer(300)), (), Task("xyz"), _SWING
+    ),
+}
+
 OTHERS = {
     "palletizer with both motors at the base": _machine(
         "Palletizer",
@@ -376,6 +387,7 @@ MACHINES: Mapping[str, Mechanism] = {
     **ACROSS,
     **HALF_TURNS,
     **ALONG_A_DIRECTION,
+    **CONSTANT_RADIUS,
     **THREE_LENGTHS,
     **SQUARES_WITH_LENGTHS,
     **PARAMETERS_DECIDE,

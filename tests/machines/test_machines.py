@@ -49,6 +49,8 @@ EXPECTED = {
     "SCARA that bends to the left alone": 1,
     "numbers for lengths": 2,
     "flange that turns against two axes": 4,
+    "jib that swings on a hoist": 4,
+    "jib with a number for its length": 4,
     "palletizer with both motors at the base": 4,
     "arm whose wrist goes sideways": 8,
     "arm in metres with a bent wrist and a shoulder beside its axis": 8,
@@ -263,6 +265,17 @@ def test_parallel_slides_are_refused_when_the_machine_is_set_up(name: str, lean:
     assert refusal.value.status is Status.NOT_INITIALIZED
     controller = machine.controller()
     assert controller.initialise({**machine.robot.parameters, "lean": lean}) != OK
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1e3])
+def test_a_radius_that_an_arm_swings_has_margins_without_a_unit(unit: float) -> None:
+    """The polar radius is the arm times a sine: its margin is the sine, and its angle is free at 1e-11 of the arm."""
+    robot = type(made("jib that swings on a hoist").robot)(link_1=300.0 * unit)
+    for angle in (90.0, 30.0, -0.01):
+        found = robot.singularity((20.0, angle, 5.0 * unit)).margins
+        assert found["side"] == pytest.approx(np.sin(np.radians(angle)), rel=1e-9)
+    frame, configuration = robot.forward((20.0, 1e-6, 5.0 * unit))
+    assert robot.inverse(frame, configuration, (0.0, 0.0, 0.0)) == pytest.approx((20.0, 1e-6, 5.0 * unit), abs=1e-6)
 
 
 def test_a_machine_with_a_held_joint_carries_an_orientation_kinematics() -> None:

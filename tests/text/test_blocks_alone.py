@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from derive.description.mechanism import Turning
+from tests.catalogue.references import held_at
 from tests.text.controller import OK, UNREACHABLE
 from tests.text.limits import EXACTLY_A_TURN, has_limits, is_inside
 from tests.text.serial_pairs import SerialPair
@@ -35,7 +36,8 @@ def test_inverse_kinematics_finds_the_axes_of_a_pose(serial_pairs: tuple[SerialP
             status, pose = one.controller.forward(sample.axes)
             assert status == OK
             position, rotation, data = pose
-            status, axes = one.controller.inverse(position, rotation, data, sample.reference)
+            near = held_at(one.robot, sample.axes, sample.reference)
+            status, axes = one.controller.inverse(position, rotation, data, near.tolist())
             assert status == OK, f"{one} {sample}"
             count = len(sample.axes)
             worst = max(abs(a - b) for a, b in zip(axes, sample.axes, strict=False))
@@ -49,7 +51,8 @@ def test_limits_refuse_what_is_beyond_them_and_nothing_else(serial_pairs: tuple[
         inside = is_inside(one.machine, np.array([sample.axes for sample in one.regular]))
         for sample, is_allowed in zip(one.regular, inside, strict=True):
             _, (position, rotation, data) = one.controller.forward(sample.axes)
-            status, _ = one.controller.inverse(position, rotation, data, sample.reference)
+            near = held_at(one.robot, sample.axes, sample.reference)
+            status, _ = one.controller.inverse(position, rotation, data, near.tolist())
             assert status == (OK if is_allowed or not one.robot.checks_limits else UNREACHABLE), f"{one} {sample}"
         assert set(inside) == ({True, False} if is_limited(one) else {True})
 

@@ -133,6 +133,7 @@ def run_the_tests(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) ->
     test_garbage.test_a_pose_that_cannot_be_assembled(serial_pairs)
     test_garbage.test_what_is_no_rotation(serial_pairs)
     test_singular_poses.test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs[:3])
+    test_singular_poses.test_a_point_beside_the_first_axis_of_a_stretched_arm(serial_pairs[:3])
     test_singular_poses.test_a_point_far_off_the_flange_is_out_of_reach(serial_pairs[:3])
     provoke(serial_pairs[1], serial_pairs[1].regular[0])
     if mechanism.constraints:

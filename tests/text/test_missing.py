@@ -14,6 +14,7 @@ from derive.description.mechanism import Mechanism, Rod, X, Y, Z
 from derive.ir.constants import (
     DEGREE,
 )
+from tests.catalogue.references import held_at
 from tests.mechanisms import catalogue
 from tests.text.samples import NO_TURN
 
@@ -44,9 +45,10 @@ def nominal(mechanism: Mechanism, **changes: float) -> softkin.Mechanism:
 
 def said(robot: softkin.Mechanism, position: tuple[float, ...], rotation: object = NO_TURN) -> Diagnosis:
     """What is said of a position on the default branches, which the inverse refuses for the same reason."""
-    found = robot.diagnose((position, rotation))
+    near = held_at(robot, [0.0] * len(robot.AXES))
+    found = robot.diagnose((position, rotation), None, near)
     try:
-        robot.inverse((position, rotation))
+        robot.inverse((position, rotation), None, near)
     except KinematicsError as error:
         assert error.status == found.status
     else:

@@ -10,6 +10,7 @@ import pytest
 from derive.description.mechanism import Mechanism
 from tests.catalogue.cornered import KR6_D3, PAIRED, places, poses
 from tests.catalogue.machines import machine
+from tests.catalogue.references import held_at
 from tests.text.controller import OK
 from tests.text.serial_pairs import serial_pair
 
@@ -34,7 +35,8 @@ def test_no_pose_is_lost(paired: Mechanism) -> None:
             opened = (0,) * len(one.robot.CONFIGURATION)
             branches = (*own[: one.robot.BRANCHES], *opened[one.robot.BRANCHES :])
             references = (row, [0.0] * len(row), rng.uniform(-180.0, 180.0, len(row)).tolist())
-            for reference in references:
+            for any_reference in references:
+                reference = held_at(one.robot, row, any_reference).tolist()
                 for configuration in (branches, opened):
                     status, found = pair.controller.inverse(position, rotation, configuration, reference)
                     assert status == OK, f"{pair} {corner.names} {row} {configuration} {reference}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tests.catalogue.machines import Array, Machine
+from tests.catalogue.references import held_at
 from tests.text.closeness import asked, assert_same
 from tests.text.controller import OK, UNREACHABLE
 from tests.text.limits import draw_inside, has_limits, is_inside
@@ -62,6 +63,7 @@ def follow(one: SerialPair, line: Array, allowed: Array) -> int:
     tolerance = CLOSE * (one.machine.reach + 360.0)
     for step, (axes, is_allowed) in enumerate(zip(line, allowed, strict=True)):
         position, rotation, _ = one.controller.forward(axes.tolist())[1]
+        last = tuple(held_at(one.robot, axes, last).tolist())
         found = one.controller.inverse(position, rotation, configuration, last)
         status, answer = asked(one.robot.inverse, (position, rotation), configuration, last)
         assert_same((found[0], found[1] and found[1][: len(axes)]), (status, answer), one, axes, last)

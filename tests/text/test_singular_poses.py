@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests.catalogue.machines import bare_machine
-from tests.catalogue.test_offset import on_the_axis
+from tests.catalogue.test_offset import beside_the_first_axis, on_the_axis, turns_the_flange
 from tests.text.closeness import asked, assert_same
 from tests.text.comparisons import COMPARISONS, assert_same_pose, point_at
 from tests.text.controller import OK, UNREACHABLE
@@ -81,6 +81,17 @@ def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs: tuple[Seria
                 COMPARISONS["CartesianToAxes_Offset"](one, replace(sample, offset=offset))
 
 
+def test_a_point_beside_the_first_axis_of_a_stretched_arm(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """Branches meet at two edges of the workspace at once."""
+    for one in serial_pairs:
+        if "cartesiantoaxes_offset" not in one.controller.block.routines:
+            continue
+        sample = one.regular[0]
+        for axes, offsets in beside_the_first_axis(one.machine):
+            for values, offset in zip(axes.tolist(), offsets.tolist(), strict=True):
+                COMPARISONS["CartesianToAxes_Offset"](one, replace(sample, axes=tuple(values), offset=tuple(offset)))
+
+
 def test_a_point_far_off_the_flange_is_out_of_reach(serial_pairs: tuple[SerialPair, ...]) -> None:
     """In one direction or another: then the place is nearer to an axis than the arm passes it."""
     for one in serial_pairs:
@@ -99,14 +110,16 @@ def test_a_point_far_off_the_flange_is_out_of_reach(serial_pairs: tuple[SerialPa
 
 
 def fixed_points(one: SerialPair, sample: Sample) -> Iterator[tuple[float, ...]]:
-    """For every rotary axis, the point of the flange about which it turns the flange."""
+    """For every rotary axis that turns the flange, the point of the flange about which it does."""
     jacobian, rotation = one.robot.jacobian(sample.axes), one.robot.orientation(sample.axes)
     for index, joint in enumerate(one.mechanism.joints):
         if joint.is_angle and not one.machine.is_spatial:
             arm = (-jacobian[1][index], jacobian[0][index], 0.0)
             yield tuple(sum(row[i] * v for row, v in zip(rotation, arm, strict=True)) for i in range(3))
         elif joint.is_angle and one.mechanism.chain is not None:
-            yield tuple(on_the_axis(one.machine, np.array([sample.axes]), index)[0].tolist())
+            values = np.array([sample.axes])
+            if turns_the_flange(one.machine, values, index):
+                yield tuple(on_the_axis(one.machine, values, index)[0].tolist())
 
 
 def test_a_tie_goes_to_the_first_branch(serial_pairs: tuple[SerialPair, ...]) -> None:

@@ -83,7 +83,8 @@ class Machine:
         arrows = [list(slide_arrow(s, self._rails[s], view, is_beside=bool(scene.segments))) for s in scene.slides]
         sheet.draw(mark for marks in (*arrows, *(m for _, m in (*base, *tool))) for mark in marks)
         for turn, at, radius in joints:
-            name_turn(sheet, view, turn, self._spelled(turn.label), at, radius)
+            if turn.label != 0:
+                name_turn(sheet, view, turn, self._spelled(turn.label), at, radius)
         for slide, marks in zip(scene.slides, arrows, strict=True):
             tips = [np.array(mark.points[0]) for mark in marks if isinstance(mark, Area)]
             name_slide(

@@ -76,7 +76,7 @@ def _angle(x: Vector, y: Vector, toward: Sequence[float]) -> float:
 
 
 def turning(turn: Turn, at: Vector, radius: float, view: View) -> list[Mark]:
-    """A rotary joint: its body, its axis, and an arrow in its positive direction."""
+    """A rotary joint: its body, its axis, and an arrow in its positive direction where something drives it."""
     if view.is_planar:
         r = style.JOINT_RADIUS - 2.0
         marks: list[Mark] = [
@@ -84,12 +84,13 @@ def turning(turn: Turn, at: Vector, radius: float, view: View) -> list[Mark]:
             area(_circle(at, 2.0), style.TURN, style.TURN),
         ]
         marks += _reference(turn, turn.zero or turn.toward, at, radius + 14.0, view)
-        return [*marks, *arrow(arc(turn, at, radius, view), style.TURN, 2.2)]
+        return [*marks, *(arrow(arc(turn, at, radius, view), style.TURN, 2.2) if turn.label != 0 else ())]
     z = view.axes @ np.array(turn.axis)
     marks = [line([at - 34.0 * z, at + 44.0 * z], style.TURN, 1.0, (9.0, 3.0, 2.0, 3.0))]
     marks += _cylinder(turn, at, view)
     marks += _reference(turn, turn.zero, at, 3.0 * radius, view)
-    return [*marks, *arrow(arc(turn, at + 22.0 * z, radius * 0.85, view), style.TURN, 2.2)]
+    around = arc(turn, at + 22.0 * z, radius * 0.85, view)
+    return [*marks, *(arrow(around, style.TURN, 2.2) if turn.label != 0 else ())]
 
 
 def _reference(turn: Turn, direction: Sequence[float] | None, at: Vector, length: float, view: View) -> list[Mark]:

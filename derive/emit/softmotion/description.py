@@ -83,7 +83,7 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
         singularities=list(_singularities(kinematics)),
         workspace=list(_workspace(kinematics)),
         costs=list(_costs(costs_of(kinematics), block)),
-        notes=[line for note in kinematics.mechanism.notes for line in _item(respelled(note, names))],
+        notes=[line for note in mechanism.all_notes for line in _item(respelled(note, names))],
         verification=list(_verification(kinematics)),
     )
     return text.rstrip("\n")

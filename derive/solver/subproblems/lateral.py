@@ -18,6 +18,7 @@ from derive.equations.problem import Binding, Conditioning, Equation, Legs, Prob
 from derive.ir.constants import (
     BOUNDARY,
     FREE_ANGLE,
+    ROUNDING,
 )
 from derive.ir.primitives import (
     Root,
@@ -96,7 +97,7 @@ def _beside(
     sin_value = (across * beside + along * ahead) / divisor
     statements: tuple[Statement, ...] = (
         *naming.lets,
-        Let(rounding, BOUNDARY * shortest**2, "rounding error of a squared length"),
+        Let(rounding, (ROUNDING * problem.scale) ** 2, "rounding error of a squared length"),
         Let(square, (distance - beside) * (distance + beside), "Pythagoras: square of the distance ahead of the axis"),
         Require(sp.Ge(square, -BOUNDARY * distance**2 - rounding), Status.UNREACHABLE, reason=reason),
         Let(ahead, determinant.sigma * Root(square), _AHEAD),

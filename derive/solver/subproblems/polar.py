@@ -2,12 +2,14 @@
 
 v is the polar angle of (sigma a, sigma b), and f = sigma |(a, b)| the polar radius. Two roots, or one where f is known
 to be positive. Determinant f: its sign is the branch. Where |(a, b)| vanishes v is free (degenerate case); it is the
-conditioning. f is an unknown length, or a product with the sine or cosine of another angle, which then becomes known.
+conditioning. f is an unknown length, or a product with the sine or cosine of another angle, which then becomes known:
+of an unknown length, or of a known one, such as an arm that this other angle swings.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import permutations
 
 import sympy as sp
@@ -34,7 +36,42 @@ def polar(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding
                 continue
             if {angle, cosine(angle), sine(angle)} & in_cosine[0].free_symbols:
                 continue
-            yield _solve(problem, angle, in_cosine[0], (first, in_cosine[1]), (second, in_sine[1]))
+            unit = _unit(problem, first, in_cosine)
+            radius = _Radius(in_cosine[0], unit)
+            a, b = (cancelled(unit / constant) * value for _, constant, value in (in_cosine, in_sine))
+            yield _solve(problem, angle, radius, (first, a), (second, b))
+
+
+_Part = tuple[sp.Expr, sp.Expr, sp.Expr]
+"""(f, c, a) of an equation c * f * function = a: a product f of unknowns, known c and a."""
+
+
+@dataclass(frozen=True)
+class _Radius:
+    """The polar radius: a product of unknowns, times a known length where none of them is a length."""
+
+    unknown: sp.Expr
+    unit: sp.Expr
+
+    @property
+    def value(self) -> sp.Expr:
+        """The radius itself."""
+        return self.unit * self.unknown
+
+    def is_positive(self, problem: Problem) -> bool:
+        """Whether the machine says so."""
+        return bool(self.unit.is_positive) and problem.is_positive(self.unknown)
+
+
+def _unit(problem: Problem, equation: Equation, part: _Part) -> sp.Expr:
+    """The known factor that makes the radius a length in an equation of lengths: an arm that is only turned.
+
+    Divided by it the radius would be a sine, and be compared with lengths of the machine.
+    """
+    unknown, constant, _ = part
+    if not equation.is_length or unknown.free_symbols & set(problem.lengths):
+        return sp.Integer(1)
+    return -constant if constant.could_extract_minus_sign() else constant
 
 
 def _unknown_terms(problem: Problem, equation: Equation) -> list[set[sp.Symbol]]:
@@ -49,8 +86,8 @@ def _is_in_all(function: sp.Symbol, terms: list[set[sp.Symbol]]) -> bool:
     return bool(terms) and all(function in symbols for symbols in terms)
 
 
-def _radius(problem: Problem, equation: Equation, function: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | None:
-    """(f, a) where the equation is f * function = a with known a and a product f of unknowns; else None."""
+def _radius(problem: Problem, equation: Equation, function: sp.Symbol) -> _Part | None:
+    """The parts of the equation where it is such a product; else None."""
     linear = linear_coefficients(equation.expression, (function,))
     if linear is None or problem.unknowns_of(linear[1]):
         return None
@@ -60,23 +97,23 @@ def _radius(problem: Problem, equation: Equation, function: sp.Symbol) -> tuple[
     constant = cancelled(factor / unknown)
     if not problem.unknowns_of(unknown) or not problem.is_never_zero(constant):
         return None
-    return unknown, -rest / constant
+    return unknown, constant, -rest
 
 
 def _solve(
     problem: Problem,
     angle: sp.Symbol,
-    radius: sp.Expr,
+    polar_radius: _Radius,
     along: tuple[Equation, sp.Expr],
     across: tuple[Equation, sp.Expr],
 ) -> Binding:
-    naming = Naming(problem, along[0].lets + across[0].lets)
+    naming, radius = Naming(problem, along[0].lets + across[0].lets), polar_radius.value
     a = naming.named(along[1], f"{along[0].label}_of_{angle.name}")
     b = naming.named(across[1], f"{across[0].label}_of_{angle.name}")
     distance = naming.length(f"radius_{angle.name}", a, b, note=f"polar coordinates: the radius at angle {angle.name}")
     note = f"polar coordinates: angle {angle.name} from the {along[0].label} and {across[0].label} equations"
     sigma, determinant = sp.Integer(1), None
-    if not _is_positive(problem, radius):
+    if not polar_radius.is_positive(problem):
         determinant = StepDeterminant(angle, radius, problem.scale_of(along[0]))
         sigma = determinant.sigma
     known = direction(
@@ -107,7 +144,3 @@ def _conditioning(
     if len(functions) == 0 or len(functions) == len(sp.Mul.make_args(radius)):
         return Conditioning(angle, distance, scale)
     return Conditioning(angle, sp.Mul(*functions), sp.Integer(1))
-
-
-def _is_positive(problem: Problem, radius: sp.Expr) -> bool:
-    return problem.is_positive(radius)

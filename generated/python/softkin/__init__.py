@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from softkin.p2x_type1 import P2XType1
     from softkin.p2x_type2 import P2XType2
     from softkin.p2y import P2Y
+    from softkin.palletizer import Palletizer
     from softkin.pcc import PCC
     from softkin.planar_3rrr import Planar3RRR
     from softkin.polar import Polar
@@ -65,6 +66,7 @@ if TYPE_CHECKING:
     from softkin.scara4_cczc_zccoupled import Scara4CCZCZCcoupled
     from softkin.scara4_zccc import Scara4ZCCC
     from softkin.scara4_zccoupled_type1 import Scara4ZCcoupledType1
+    from softkin.scaraonrail import ScaraOnRail
     from softkin.sccc import SCCC
     from softkin.tabletable_ac import TableTableAC
     from softkin.tgantry2 import TGantry2
@@ -115,6 +117,7 @@ __all__ = [
     "P2CType2",
     "P2XType1",
     "P2XType2",
+    "Palletizer",
     "Parameter",
     "Planar3RRR",
     "Polar",
@@ -127,6 +130,7 @@ __all__ = [
     "Scara4CCZCZCcoupled",
     "Scara4ZCCC",
     "Scara4ZCcoupledType1",
+    "ScaraOnRail",
     "Singularity",
     "Solution",
     "Status",
@@ -171,6 +175,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_P2X_Type1": ("p2x_type1", "P2XType1"),
     "Kin_P2X_Type2": ("p2x_type2", "P2XType2"),
     "Kin_P2Y": ("p2y", "P2Y"),
+    "Softkin_Palletizer": ("palletizer", "Palletizer"),
     "Kin_PCC": ("pcc", "PCC"),
     "Softkin_Planar_3RRR": ("planar_3rrr", "Planar3RRR"),
     "Kin_Polar": ("polar", "Polar"),
@@ -183,6 +188,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Scara4_CCZC_ZCcoupled": ("scara4_cczc_zccoupled", "Scara4CCZCZCcoupled"),
     "Kin_Scara4_ZCCC": ("scara4_zccc", "Scara4ZCCC"),
     "Kin_Scara4_ZCcoupled_Type1": ("scara4_zccoupled_type1", "Scara4ZCcoupledType1"),
+    "Softkin_ScaraOnRail": ("scaraonrail", "ScaraOnRail"),
     "Kin_SCCC": ("sccc", "SCCC"),
     "Softkin_TableTable_AC": ("tabletable_ac", "TableTableAC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),

@@ -72,7 +72,7 @@ class Constants:
         self.lowest_a5, self.highest_a5, self.single_a5, self.mid_a5 = machine._window("a5")
         self.lowest_a6, self.highest_a6, self.single_a6, self.mid_a6 = machine._window("a6")
         machine_scale = abs(a2) + abs(a3)  # characteristic length of the machine
-        rounding_q1 = 1e-34 * machine_scale * machine_scale  # rounding error of a squared length
+        rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
         size_q1_for_q3 = 2.0 * abs(a2 * a3)
         machine_scale_times_free_angle = 1e-11 * machine_scale
         size_q1_for_q3_times_rounding = 1e-12 * size_q1_for_q3

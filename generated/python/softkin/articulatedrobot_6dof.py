@@ -72,7 +72,7 @@ class Constants:
         self.lowest_a6, self.highest_a6, self.single_a6, self.mid_a6 = machine._window("a6")
         machine_scale = a1 + a2 + a3 + d4  # characteristic length of the machine
         effective_q3 = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
-        rounding_q1 = 1e-34 * machine_scale * machine_scale  # rounding error of a squared length
+        rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
         size_q1_for_q3 = 2.0 * abs(effective_q3) * a2
         size_q1_for_q3_times_rounding = 1e-12 * size_q1_for_q3
         machine_scale_times_free_angle = 1e-11 * machine_scale

@@ -60,7 +60,7 @@ class Constants:
         self.lowest_a3, self.highest_a3, self.single_a3, self.mid_a3 = machine._window("a3")
         machine_scale = a1 + a2 + a3 + d4  # characteristic length of the machine
         effective_q3_2 = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
-        rounding_q1 = 1e-34 * machine_scale * machine_scale  # rounding error of a squared length
+        rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
         size_q1_for_q3_2 = 2.0 * abs(effective_q3_2) * a2
         a2_squared = a2 * a2
         size_q1_for_q3_2_times_rounding = 1e-12 * size_q1_for_q3_2

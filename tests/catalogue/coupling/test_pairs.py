@@ -10,6 +10,7 @@ from softkin import KinematicsError, Status
 from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.coupling.determined import is_determined
 from tests.catalogue.coupling.parts import ORIENTATIONS, POSITIONS, Part, frames, orientation_parts, position_part
+from tests.catalogue.references import held_at
 from tests.text.samples import tilted
 
 POSES = 6
@@ -59,7 +60,7 @@ def _goes_round(coupled: softkin.Coupled, first: Part, second: Part) -> None:
         scalar = coupled.inverse(frame, configuration, values)
         assert scalar == pytest.approx(values, abs=1e-8) and scalar == pytest.approx(tuple(back[k]), abs=1e-8)
         opened = (0,) * len(configuration)
-        near = tuple(v + 1e-3 for v in values)
+        near = held_at(coupled, values, [v + 1e-3 for v in values])
         assert coupled.inverse(frame, opened, near) == pytest.approx(values, abs=1e-8)
         _every_slot(coupled, first, second, frame, values)
         _what_cannot_be_had(coupled, second, turns[k], rotations[k], frame, configuration, values, rng)

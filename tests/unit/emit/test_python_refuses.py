@@ -12,6 +12,7 @@ from softkin import KinematicsError, Status
 
 from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism
+from tests.catalogue.references import held_at
 
 MECHANISMS = [m for _, m in catalogue()]
 LENGTHS = {"arm_length_1": 300.0, "arm_length_2": 200.0}
@@ -39,7 +40,8 @@ def test_the_error_has_the_diagnosis(mechanism: Mechanism) -> None:
     refused = 0
     for _ in range(40):
         frame = tuple(rng.uniform(-size, size, 3).tolist()), NO_TURN
-        error, found = raised(robot.inverse, frame), robot.diagnose(frame)
+        near = held_at(robot, np.zeros(len(robot.AXES)))
+        error, found = raised(robot.inverse, frame, None, near), robot.diagnose(frame, None, near)
         assert (error is None) == (found.status is Status.OK)
         if error is not None:
             refused += 1

@@ -1,0 +1,23 @@
+"""The references of calls: what is held stays where the pose has it, everything else is as far away as a test likes."""
+
+from __future__ import annotations
+
+import numpy as np
+import softkin
+from numpy.typing import ArrayLike
+
+from tests.catalogue.closure import Array
+
+
+def held_at(robot: softkin.Mechanism, axes: ArrayLike, references: ArrayLike | None = None) -> Array | None:
+    """References for poses at axis values, rows or one; of a machine that holds no joint those that are given, or none.
+
+    Where nothing is held the reference may be left out, and is: then the tests of that go on. A held joint keeps the
+    value that the reference has, so that only one which has it where the pose has it leads back to the pose.
+    """
+    if not robot.HELD:
+        return None if references is None else np.asarray(references, dtype=float)
+    there = np.asarray(axes, dtype=float)
+    found = np.array(np.broadcast_to(0.0 if references is None else references, there.shape), dtype=float)
+    found[..., list(robot.HELD)] = there[..., list(robot.HELD)]
+    return found
