@@ -237,7 +237,7 @@ CONSTANT_RADIUS = {
 
 OTHERS = {
     "palletizer with both motors at the base": _machine(
-        "Palletizer",
+        "BaseMotors",
         (A1, A2, A3, A4),
         Tz(HEIGHT) * Rz(A1) * Tx(PIVOT_X) * Ry(A2) * Tz(L2) * Ry(A3 - A2) * Tx(L3) * Ry(-A3) * Tx(L4) * Rz(A4),
         (HEIGHT, PIVOT_X, L2, L3, L4),
