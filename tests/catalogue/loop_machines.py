@@ -77,11 +77,11 @@ class LoopClosure(Closure):
 
     def by_position(self, joints: Array, positions: Array) -> Array:
         """A = ∂Φ/∂x: equations by commanded coordinates."""
-        return derivative(lambda p: self._stated(joints, p), positions)[:, :, self.task]
+        return derivative(lambda p, q: self._stated(q, p), positions, joints)[:, :, self.task]
 
     def by_joints(self, joints: Array, positions: Array) -> Array:
         """B = ∂Φ/∂q: equations by joint values."""
-        return derivative(lambda q: self._stated(q, positions), joints)
+        return derivative(self._stated, joints, positions)
 
     def side(self, joints: Array, positions: Array) -> Array:
         """Positive in the assembly mode of this machine."""
