@@ -65,6 +65,8 @@ SHARED_BY_A_FILE = (
 )
 """Tests that share more with those of their file than with those of their mechanism: all units compiled together, a
 grammar."""
+WITH_THEIR_MECHANISM = ("unit/drawing/",)
+"""Units that need all programs of a mechanism, which its other tests have built."""
 PATHS = {
     "Kin_Scara4_ZCcoupled_Type1": "a serial arm in a plane, with turns and a coupled axis",
     "Kin_Pos_RRR": "a serial arm in space",
@@ -88,8 +90,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if is_quick and item.get_closest_marker("slow") is None and not place.startswith(SWEEPS):
             item.add_marker("quick")
         if is_shared_out:
-            by_file = not names or not folders or place.startswith(SHARED_BY_A_FILE)
+            by_file = not names or not folders or _is_shared_by_its_file(place)
             item.add_marker(pytest.mark.xdist_group(str(item.path.relative_to(ROOT)) if by_file else names[0]))
+
+
+def _is_shared_by_its_file(place: str) -> bool:
+    return place.startswith(SHARED_BY_A_FILE) and not place.startswith(WITH_THEIR_MECHANISM)
 
 
 def mechanisms_of(item: pytest.Item, folders: tuple[str, ...]) -> list[str]:
