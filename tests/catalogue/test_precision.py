@@ -49,6 +49,7 @@ Numbers = Mapping[str, Number]
 
 @cache
 def built(name: str) -> Kinematics:
+    """All programs of the mechanism of that name."""
     return kinematics_of(named(name))
 
 
@@ -90,6 +91,7 @@ class Exact:
         return given | run_exactly(self.kinematics.setup, given)[0]
 
     def jittered(self, value: Number) -> Number:
+        """The value, changed by at most half a unit in the last place of a double."""
         return value * (1 + Number(float(self.rng.uniform(-1.0, 1.0))) * DIGIT)
 
     def at(self, name: str, inputs: Numbers, exactly: Numbers) -> tuple[Numbers, dict[str, float]] | None:

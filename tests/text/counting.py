@@ -66,6 +66,7 @@ class _Instrument(ast.NodeTransformer):
         self.depth = 0
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
+        """An operation, as a call that counts it."""
         if _is_test(node) or type(node.op) not in _OPERATORS:
             return self.generic_visit(node)
         self.depth += 1

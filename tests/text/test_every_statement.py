@@ -125,6 +125,7 @@ def libraries(mechanism: Mechanism) -> list[Library]:
 
 
 def compare_all(one: SerialPair, sample: Sample, methods: Collection[str] = COMPARISONS.keys()) -> None:
+    """Every one of these methods that the block has answers as Python at a sample."""
     for method, compare in COMPARISONS.items():
         if method in methods and method.lower() in one.controller.block.routines:
             compare(one, sample)

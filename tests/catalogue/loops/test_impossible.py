@@ -26,6 +26,7 @@ TYPE_12 = {
 
 
 def delta(radius: float) -> dict[str, float]:
+    """A delta with arms of 100 and 200, whose drives are at this radius and whose plate has a radius of 40."""
     found = {f"azimuth_{i}": a for i, a in enumerate((0.0, 120.0, 240.0), 1)}
     for i in (1, 2, 3):
         found |= {f"base_radius_{i}": radius, f"inner_arm_{i}": 100.0, f"outer_arm_{i}": 200.0, f"tcp_radius_{i}": 40.0}
@@ -33,6 +34,7 @@ def delta(radius: float) -> dict[str, float]:
 
 
 def rails(radius: float) -> dict[str, float]:
+    """Rods of 250, and three vertical rails at this radius."""
     found = {"arm_length": 250.0}
     for i, azimuth in enumerate(np.radians((90.0, 210.0, 330.0)), 1):
         found |= {f"rail_x_{i}": radius * np.cos(azimuth), f"rail_y_{i}": radius * np.sin(azimuth)}

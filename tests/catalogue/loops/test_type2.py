@@ -33,6 +33,7 @@ def crossings(mechanism: Mechanism, machines: tuple[LoopMachine, ...]) -> list[C
 
 
 def margin(machine: LoopMachine, axes: Array) -> float:
+    """The size of the type 2 margin at axis values."""
     assembly = machine.mechanism.assembly
     assert assembly is not None
     return abs(machine.robot.singularity(axes).margins[assembly.margin])
