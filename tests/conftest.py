@@ -6,6 +6,7 @@ is made once; and `make quick` runs all units, and of the catalogue one mechanis
 
 from __future__ import annotations
 
+import gc
 import re
 from functools import cache
 from pathlib import Path
@@ -17,6 +18,9 @@ from tests.mechanisms import catalogue
 
 settings.register_profile("softkin", deadline=None, derandomize=True)
 settings.load_profile("softkin")
+# What is derived and compiled for a mechanism lives as long as its process: looking for garbage among it after every
+# 700 new objects took a fifth of the time.
+gc.set_threshold(50_000, 20, 100)
 
 ROOT = Path(__file__).parent
 ALL_OF_THEM_QUICK = (("unit",), ("harness",))
@@ -61,6 +65,8 @@ SHARED_BY_A_FILE = (
 )
 """Tests that share more with those of their file than with those of their mechanism: all units compiled together, a
 grammar."""
+WITH_THEIR_MECHANISM = ("unit/drawing/",)
+"""Units that need all programs of a mechanism, which its other tests have built."""
 PATHS = {
     "Kin_Scara4_ZCcoupled_Type1": "a serial arm in a plane, with turns and a coupled axis",
     "Kin_Pos_RRR": "a serial arm in space",
@@ -84,8 +90,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if is_quick and item.get_closest_marker("slow") is None and not place.startswith(SWEEPS):
             item.add_marker("quick")
         if is_shared_out:
-            by_file = not names or not folders or place.startswith(SHARED_BY_A_FILE)
+            by_file = not names or not folders or _is_shared_by_its_file(place)
             item.add_marker(pytest.mark.xdist_group(str(item.path.relative_to(ROOT)) if by_file else names[0]))
+
+
+def _is_shared_by_its_file(place: str) -> bool:
+    return place.startswith(SHARED_BY_A_FILE) and not place.startswith(WITH_THEIR_MECHANISM)
 
 
 def mechanisms_of(item: pytest.Item, folders: tuple[str, ...]) -> list[str]:

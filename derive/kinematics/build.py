@@ -3,55 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
 from derive.description.gears import with_gears
-from derive.description.mechanism import (
-    DescriptionError,
-    Mechanism,
-    Turning,
-)
+from derive.description.mechanism import DescriptionError, Mechanism, Parameter, Turning
 from derive.description.numbers import almost_right_angles, with_named_numbers
 from derive.equations.axes import finite
 from derive.equations.choices import with_choices
 from derive.equations.closure import flange_rotation, heading_of
 from derive.equations.conditions import with_conditions
 from derive.equations.limits import limits_program
-from derive.equations.pose_at_axes import (
-    Forward,
-)
+from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import Conditioning
 from derive.equations.windows import windows
 from derive.geometry.pose import pose_of
 from derive.ir.interpret import run
 from derive.ir.passes import hoist, normalise
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Statement,
-    shared,
-)
-from derive.ir.symbols import (
-    BASE_AXIS,
-    FLANGE_AXIS,
-    OFFSET,
-    ROTATION_ENTRIES,
-    START_POSITION,
-    START_ROTATION,
-    real,
-)
+from derive.ir.program import Let, Output, Program, Statement, shared
+from derive.ir.symbols import BASE_AXIS, FLANGE_AXIS, OFFSET, ROTATION_ENTRIES, START_POSITION, START_ROTATION, real
 from derive.ir.types import Type, output_types
 from derive.ir.verify import BrokenProgram
 from derive.kinematics.assembly import Assembled, assembled, assembly_checks, bound_checks, mirror_checks
 from derive.kinematics.branch_assignment import Assignment, assign, margin_lets, with_branch_signs
-from derive.kinematics.coupling import (
-    coupling_programs,
-)
+from derive.kinematics.coupling import coupling_programs
 from derive.kinematics.differential import (
     Factor,
     factor_of,
@@ -61,13 +39,7 @@ from derive.kinematics.differential import (
     singularity_program,
     twist_program,
 )
-from derive.kinematics.forward import (
-    at_point,
-    derivation_at_axes,
-    forward_program,
-    orientation_program,
-    pose_at_axes,
-)
+from derive.kinematics.forward import at_point, derivation_at_axes, forward_program, orientation_program, pose_at_axes
 from derive.kinematics.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics.kinematics import Freedom, Kinematics, Margin
 from derive.kinematics.no_pose import near_home
@@ -116,9 +88,7 @@ def _built(mechanism: Mechanism) -> Kinematics:
     at_axes = derivation_at_axes(mechanism, inverse, forward)
     margins = margin_lets(mechanism, assignments)
     jacobian = jacobian_program(mechanism, forward)
-    told: list[Assignment | Conditioning] = [*assignments, *inverse.derivation.conditionings]
-    factors = [factor_of(mechanism, found) for found in told]
-    factors += [Factor(closed.name, closed.margin)] if closed.margin is not None else []
+    factors = _factors(mechanism, closed, inverse, assignments)
     statements = with_branch_signs(inverse.derivation.statements, assignments)
     at_home = joints_at_home(mechanism, statements) if mechanism.is_platform else ()
     at_poses = _samples(mechanism, inverse, at_home, jacobian)
@@ -133,17 +103,35 @@ def _built(mechanism: Mechanism) -> Kinematics:
         jacobian,
         _image_program(mechanism),
     ]
+    programs += _further_programs(mechanism, closed, inverse, margins)
+    return _finished(mechanism, programs, kept, at_home)
+
+
+def _factors(
+    mechanism: Mechanism, closed: Assembled, inverse: Inverse, assignments: Sequence[Assignment]
+) -> list[Factor]:
+    """What the determinants of the two Jacobians are products of: a factor for each way of being singular."""
+    told: list[Assignment | Conditioning] = [*assignments, *inverse.derivation.conditionings]
+    factors = [factor_of(mechanism, found) for found in told]
+    return [*factors, Factor(closed.name, closed.margin)] if closed.margin is not None else factors
+
+
+def _further_programs(
+    mechanism: Mechanism, closed: Assembled, inverse: Inverse, margins: tuple[Let, ...]
+) -> list[Program]:
+    """The programs that only some mechanisms have."""
+    programs = []
     if mechanism.task.turning is not Turning.NONE:
         programs.append(_projection_program(mechanism))
     if mechanism.is_platform:
         programs.append(_forward_from(mechanism, inverse, margins))
     if _turns_in_a_coupling(mechanism):
-        programs.append(twist_program(mechanism, forward))
+        programs.append(twist_program(mechanism, closed.forward))
     if mechanism.is_orientation:
         programs += coupling_programs(mechanism)
     elif mechanism.offset_interface and not mechanism.followed_turns:  # nothing is carried behind a pitch
         programs += _offset_programs(mechanism, closed, inverse.derivation.conditions)
-    return _finished(mechanism, programs, kept, at_home)
+    return programs
 
 
 def _samples(
@@ -191,11 +179,21 @@ def _scanned(mechanism: Mechanism) -> Kinematics:
     return replace(finished, tried_branches=len(both.trial_branches))
 
 
-def _finished(
-    mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...], at_home: Sequence[Statement] = ()
-) -> Kinematics:
-    """The bundle of all programs, with the values that depend on parameters alone moved into the setup."""
-    parameters = machine_parameters(mechanism)
+@dataclass(frozen=True)
+class _Hoisted:
+    """All programs, with the values that depend on parameters alone moved into the setup."""
+
+    setup: Program
+    setup_less_windows: Program | None
+    derived_branch: Program
+    """The branch before the lowering."""
+    programs: tuple[Program, ...]
+
+
+def _hoisted(
+    mechanism: Mechanism, parameters: tuple[Parameter, ...], programs: Sequence[Program], at_home: Sequence[Statement]
+) -> _Hoisted:
+    """The programs as they are lowered; refuses what none of them may read or answer."""
     constants = [o.name for o in setup_program(mechanism, parameters, at_home=at_home).outputs]
     unsettled = {o.name for window in windows(mechanism) for o in window.outputs}  # drives may change these later
     settled = [name for name in constants if name not in unsettled]
@@ -210,19 +208,28 @@ def _finished(
         if mechanism.period_joints
         else None
     )
-    finished = {program.name: program for program in shorter}
     called = {program.name for program in shared(shorter)}
     for program in (p for p in shorter if p.name not in called):  # a caller gives what those read
         _check_inputs(mechanism, program, {o.name for o in setup.outputs})
         _check_outputs(program)
+    return _Hoisted(setup, settable, derived, tuple(shorter))
+
+
+def _finished(
+    mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...], at_home: Sequence[Statement] = ()
+) -> Kinematics:
+    """The bundle of all programs."""
+    parameters = machine_parameters(mechanism)
+    moved = _hoisted(mechanism, parameters, programs, at_home)
+    finished = {program.name: program for program in moved.programs}
     return Kinematics(
         mechanism=mechanism,
         parameters=parameters,
-        setup=setup,
+        setup=moved.setup,
         forward=finished["forward"],
         orientation=finished["orientation"],
         branch=finished["branch"],
-        derived_branch=derived,
+        derived_branch=moved.derived_branch,
         limits=finished["limits"],
         singularity=finished["singularity"],
         jacobian=finished["jacobian"],
@@ -234,7 +241,7 @@ def _finished(
         margins=margins,
         freedom=_freedom(mechanism),
         reads_rotation=mechanism.task.turning is not Turning.NONE,
-        setup_less_windows=settable,
+        setup_less_windows=moved.setup_less_windows,
         forward_from=finished.get("forward_from"),
         search_given=finished.get("search_given"),
         from_joints=finished.get("from_joints"),

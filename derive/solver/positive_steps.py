@@ -18,6 +18,8 @@ from derive.ir.program import Statement, rewritten
 
 def known_signs(problem: Problem, determinants: Sequence[StepDeterminant]) -> Mapping[StepDeterminant, int]:
     """The steps whose determinant has one sign in this machine, with the sign."""
+    if not problem.positive:
+        return {}
     found = ((step, _sign(problem, step.value)) for step in determinants)
     return {step: sign for step, sign in found if sign}
 

@@ -119,17 +119,13 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     not_zero: list[sp.Expr] = []
     while problem.angles or problem.lengths or problem.pending:
         if problem.is_overdetermined and not problem.equations and not left:
-            for condition in conditions(problem):
-                binding = record.commit(Binding("rotation", (), condition.lets, residual=condition.expression))
-                left += [binding.residual] if binding.residual is not None else []
+            left += _residuals(problem, record)
         problem, binding, sums = _next(problem, sums, arguments)
         binding = record.commit(binding)
         rules.append(binding.rule)
         not_zero += binding.conditions
-        plain = [a for a in binding.unknowns if any(a in e.expression.free_symbols for e in problem.equations)]
-        for angle in plain:
-            if angle not in problem.lengths:
-                record.append(resolve_angle(angle))
+        for angle in _read_plainly(problem, binding.unknowns):
+            record.append(resolve_angle(angle))
         problem = _without(problem, binding, record)
     statements = record.statements
     if not problem.is_overdetermined:
@@ -146,6 +142,19 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         tuple(not_zero),
         with_known_signs(record.statements, signs),
     )
+
+
+def _residuals(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
+    """The expressions that vanish where the commanded rotation agrees with the positions."""
+    bindings = (Binding("rotation", (), c.lets, residual=c.expression) for c in conditions(problem))
+    found = [record.commit(binding).residual for binding in bindings]
+    return [residual for residual in found if residual is not None]
+
+
+def _read_plainly(problem: Problem, unknowns: Sequence[sp.Symbol]) -> list[sp.Symbol]:
+    """The angles that an equation reads outside sines and cosines."""
+    read = {symbol for equation in problem.equations for symbol in equation.expression.free_symbols}
+    return [u for u in unknowns if u in read and u not in problem.lengths]
 
 
 def _next(

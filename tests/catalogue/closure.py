@@ -76,7 +76,7 @@ class Closure:
             return self.frames(joints)
         positions = np.zeros((len(axes), 3))
         for _ in range(3):  # Newton's method: one step where the position is affine
-            by_pose = derivative(lambda p: self._stated(joints, p), positions)[:, :, self.task]
+            by_pose = derivative(lambda p, q: self._stated(q, p), positions, joints)[:, :, self.task]
             steps = np.linalg.solve(by_pose, self._stated(joints, positions)[:, :, None])
             positions[:, self.task] -= steps[:, :, 0]
         return positions, self.turns(joints)
@@ -166,9 +166,9 @@ class Closure:
     def jacobian(self, axes: Array, positions: Array) -> Array:
         """Rows of the task by axes, per radian for an axis in degrees."""
         if self.mechanism.chain is None:
-            by_axes = derivative(lambda a: self._stated(self.joints(a), positions), axes)
+            by_axes = derivative(lambda a, p: self._stated(self.joints(a), p), axes, positions)
             joints = self.joints(axes)
-            by_pose = derivative(lambda p: self._stated(joints, p), positions)[:, :, self.task]
+            by_pose = derivative(lambda p, q: self._stated(q, p), positions, joints)[:, :, self.task]
             by_position = -np.linalg.solve(by_pose, by_axes)
             if self.mechanism.heading is None:
                 return by_position / self.units
@@ -298,14 +298,17 @@ def formulas_of(mechanism: Mechanism) -> Formulas:
     return Formulas(mechanism)
 
 
-def derivative(function: Callable[[Array], Array], at: Array) -> Array:
-    """∂ outputs / ∂ inputs of every row, by complex steps."""
-    columns = []
-    for i in range(at.shape[1]):
-        shifted = at.astype(complex)
-        shifted[:, i] += 1j * STEP
-        columns.append(np.imag(function(shifted)) / STEP)
-    return np.stack(columns, axis=2)
+def derivative(function: Callable[..., Array], at: Array, *fixed: Array) -> Array:
+    """∂ outputs / ∂ inputs of every row, by complex steps in one call: of a function of the inputs, and of further
+    values by row.
+    """
+    count, width = at.shape
+    shifted = np.tile(at.astype(complex), (width, 1, 1))
+    for i in range(width):
+        shifted[i, :, i] += 1j * STEP
+    repeated = [np.tile(values, (width, *(1 for _ in values.shape[1:]))) for values in fixed]
+    found = np.imag(function(shifted.reshape(width * count, width), *repeated)) / STEP
+    return np.ascontiguousarray(np.moveaxis(found.reshape(width, count, found.shape[1]), 0, 2))
 
 
 def _swings(first: Array, second: Array) -> Array:

@@ -81,11 +81,11 @@ class LoopClosure(Closure):
 
     def by_position(self, joints: Array, positions: Array) -> Array:
         """A = ∂Φ/∂x: equations by commanded coordinates."""
-        return derivative(lambda p: self._stated(joints, p), positions)[:, :, self.task]
+        return derivative(lambda p, q: self._stated(q, p), positions, joints)[:, :, self.task]
 
     def by_joints(self, joints: Array, positions: Array) -> Array:
         """B = ∂Φ/∂q: equations by joint values; last the heading, where joints tell it."""
-        return derivative(lambda q: np.hstack([self._stated(q, positions), *self._heading(q)]), joints)
+        return derivative(lambda q, p: np.hstack([self._stated(q, p), *self._heading(q)]), joints, positions)
 
     def _heading(self, joints: Array) -> list[Array]:
         return [] if self.mechanism.heading is None else [self.at_joints([self.mechanism.heading], joints)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cache
+from typing import Any
 
 import mpmath
 import sympy as sp
@@ -27,6 +28,7 @@ from derive.ir.program import (
     Require,
     Status,
 )
+from derive.kept import kept_by_identity
 
 DIGITS = 60
 Number = mpmath.mpf
@@ -48,79 +50,108 @@ _FUNCTIONS: dict[type[sp.Basic], Callable[..., object]] = {
     sp.Abs: abs,
     Root: lambda x: mpmath.sqrt(max(x, Number(0))),
     Atan2: lambda y, x: mpmath.atan2(y, x) if x or y else Number(0),
-    Select: lambda condition, first, second: first if condition else second,
     NearestPeriod: _nearest_period,
     NearestOnArc: _nearest_on_arc,
-    sp.Le: lambda a, b: a <= b,
-    sp.Lt: lambda a, b: a < b,
-    sp.Ge: lambda a, b: a >= b,
-    sp.Gt: lambda a, b: a > b,
-    sp.Eq: lambda a, b: a == b,
-    sp.Ne: lambda a, b: a != b,
-    sp.Not: lambda c: not c,
     ToReal: lambda n: n,
     Wrap: lambda angle: angle - 2 * mpmath.pi * mpmath.ceil(angle / (2 * mpmath.pi) - Number(1) / 2),
-    sp.And: lambda *c: all(c),
-    sp.Or: lambda *c: any(c),
-    sp.Add: lambda *t: sum(t, Number(0)),
-    sp.Mul: lambda *t: mpmath.fprod(t),
-    sp.Pow: lambda b, e: b ** int(e),
 }
-_NAME, _NUMBER = "a name", "a number"
+_OPERATORS: dict[type[sp.Basic], str] = {
+    sp.Le: "<=",
+    sp.Lt: "<",
+    sp.Ge: ">=",
+    sp.Gt: ">",
+    sp.Eq: "==",
+    sp.Ne: "!=",
+    sp.And: "and",
+    sp.Or: "or",
+    sp.Add: "+",
+    sp.Mul: "*",
+}
+_Run = Callable[[Mapping[str, Number]], tuple[dict[str, Number], Status]]
+
+
+class _Text:
+    """Python text of expressions, whose values stand in a dictionary `known`; numbers have names of their own."""
+
+    def __init__(self) -> None:
+        self.names: dict[str, object] = {kind.__name__: function for kind, function in _FUNCTIONS.items()}
+        self.names["power"] = mpmath.power
+
+    def of(self, expression: sp.Basic) -> str:
+        """The text of an expression."""
+        if isinstance(expression, sp.Symbol) and expression != DEGREE:
+            return f"known[{expression.name!r}]"
+        if (number := _number(expression)) is not None:
+            name = f"number_{len(self.names)}"
+            self.names[name] = number
+            return name
+        parts = [self.of(argument) for argument in expression.args]
+        if isinstance(expression, sp.Pow):
+            whole = expression.exp.is_Integer
+            return f"({parts[0]} ** {int(expression.exp)})" if whole else f"power({parts[0]}, {parts[1]})"
+        if isinstance(expression, Select):
+            return f"({parts[1]} if {parts[0]} else {parts[2]})"
+        if isinstance(expression, sp.Not):
+            return f"(not {parts[0]})"
+        operator = _OPERATORS.get(type(expression))
+        if operator is not None:
+            return f"({f' {operator} '.join(parts)})"
+        if type(expression) not in _FUNCTIONS:
+            raise TypeError(f"{type(expression).__name__} has no value")
+        return f"{type(expression).__name__}({', '.join(parts)})"
+
+
+def _number(expression: sp.Basic) -> object:
+    """A number with all digits; None for what is none."""
+    if expression == sp.pi:
+        return +mpmath.pi
+    if expression == DEGREE:
+        return mpmath.pi / 180
+    if expression in (sp.true, sp.false):
+        return bool(expression)
+    if isinstance(expression, sp.Rational):
+        return Number(int(expression.p)) / int(expression.q)
+    # A constant of the product is the double that stands in every language.
+    return Number(float(expression)) if isinstance(expression, sp.Number) else None
+
+
+@kept_by_identity(100)
+def _compiled(program: Program) -> _Run:
+    """The program as a Python function. Straight-line programs alone: no loop, no system of equations."""
+    text = _Text()
+    lines = ["def run(known):", "    known, status = dict(known), ok"]
+    for statement in program.body:
+        if isinstance(statement, Let):
+            lines.append(f"    known[{statement.name.name!r}] = {text.of(statement.value)}")
+        elif isinstance(statement, Require):
+            holds = text.of(statement.condition)
+            lines.append(f"    status = {statement.otherwise.name} if status is ok and not {holds} else status")
+        else:
+            raise TypeError(f"{type(statement).__name__} is no statement of a straight line")
+    outputs = ", ".join(f"{o.name!r}: {text.of(o.value)}" for o in program.outputs)
+    lines.append(f"    return {{{outputs}}}, status")
+    return _function("\n".join(lines), text)
+
+
+def _function(lines: str, text: _Text) -> Callable[..., Any]:
+    names: dict[str, Any] = text.names | {"ok": Status.OK} | {s.name: s for s in Status}
+    exec(lines, names)
+    return names["run"]  # type: ignore[no-any-return]
 
 
 @cache
-def _code(expression: sp.Basic) -> tuple[object, ...]:
-    """The expression as nested tuples, which are walked faster than SymPy's trees; its numbers have all digits."""
-    with mpmath.workdps(DIGITS):
-        return _read(expression)
-
-
-def _read(expression: sp.Basic) -> tuple[object, ...]:
-    if expression == sp.pi:
-        return (_NUMBER, +mpmath.pi)
-    if isinstance(expression, sp.Pow) and not expression.exp.is_Integer:
-        return (mpmath.power, _code(expression.base), _code(expression.exp))
-    if isinstance(expression, sp.Symbol):
-        return (_NUMBER, mpmath.pi / 180) if expression == DEGREE else (_NAME, expression.name)
-    if expression in (sp.true, sp.false):
-        return (_NUMBER, expression == sp.true)
-    if isinstance(expression, sp.Rational):
-        return (_NUMBER, Number(int(expression.p)) / int(expression.q))
-    if isinstance(expression, sp.Number):
-        return (
-            _NUMBER,
-            Number(float(expression)),
-        )  # a constant of the product is the double that stands in every language
-    return (_FUNCTIONS[type(expression)], *(_code(a) for a in expression.args))
-
-
-def _value(code: tuple[object, ...], values: Mapping[str, object]) -> object:
-    head = code[0]
-    if head is _NAME:
-        return values[code[1]]  # type: ignore[index]
-    if head is _NUMBER:
-        return code[1]
-    return head(*[_value(argument, values) for argument in code[1:]])  # type: ignore[arg-type, operator]
+def _evaluated(expression: sp.Basic) -> Callable[[Mapping[str, Number]], Number]:
+    text = _Text()
+    return _function(f"def run(known):\n    return {text.of(expression)}", text)
 
 
 def run_exactly(program: Program, values: Mapping[str, Number]) -> tuple[dict[str, Number], Status]:
     """Outputs and status of one call. Straight-line programs alone: no loop, no system of equations."""
     with mpmath.workdps(DIGITS):
-        known: dict[str, object] = dict(values)
-        status = Status.OK
-        for statement in program.body:
-            if isinstance(statement, Let):
-                known[statement.name.name] = _value(_code(statement.value), known)
-            elif isinstance(statement, Require):
-                holds = _value(_code(statement.condition), known)
-                status = statement.otherwise if status is Status.OK and not holds else status
-            else:
-                raise TypeError(f"{type(statement).__name__} is no statement of a straight line")
-        return {o.name: _value(_code(o.value), known) for o in program.outputs}, status  # type: ignore[misc]
+        return _compiled(program)(values)
 
 
 def evaluate_exactly(expression: sp.Basic, values: Mapping[str, Number]) -> Number:
     """An expression of a description, its symbols by their names."""
     with mpmath.workdps(DIGITS):
-        return _value(_code(expression), values)  # type: ignore[return-value]
+        return _evaluated(expression)(values)

@@ -41,6 +41,7 @@ NO_ROTATIONS = {
 
 
 def some(machines: tuple[Machine, ...]) -> tuple[Machine, Array, Array, Array]:
+    """The last machine with a few axis values, and their positions and rotations."""
     machine = machines[-1]
     axes = machine.draw(7, np.random.default_rng(1))
     return (machine, axes, *machine.closure.poses(axes))

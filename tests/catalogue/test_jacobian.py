@@ -18,6 +18,7 @@ TURNS = {
 
 
 def jacobians(machine: Machine, axes: Array) -> Array:
+    """The Jacobians that the package computes one by one."""
     return np.array([machine.robot.jacobian(row) for row in axes])
 
 
@@ -34,6 +35,7 @@ def of_solved(machine: Machine, axes: Array) -> Array:
 
 
 def margins(machine: Machine, axes: Array) -> Array:
+    """The margins at axis values, a column each."""
     found = [machine.robot.singularity(row).margins for row in axes]
     return np.array([[m[name] for name in machine.robot.MARGINS] for m in found])
 

@@ -34,6 +34,7 @@ def poses(machine: Machine, seed: int) -> Array:
 
 
 def one_pose(machine: Machine, seed: int) -> Array:
+    """Axis values of a random pose."""
     return poses(machine, seed)[0]
 
 

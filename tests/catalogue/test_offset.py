@@ -22,10 +22,12 @@ WITHOUT = ("Kin_Polar", "Kin_Polar_Z", "Kin_Scara3_Z", "Softkin_Planar_3RRR")
 
 
 def offered(machines: tuple[Machine, ...]) -> tuple[Machine, ...]:
+    """The machines, if the mechanism answers for a point off the flange."""
     return machines if machines[0].mechanism.offset_interface else ()
 
 
 def points(machine: Machine, axes: Array, offsets: Array) -> Array:
+    """Where the points of the flange are, by the closure."""
     positions, rotations = machine.closure.poses(axes)
     return positions + np.einsum("nij,nj->ni", rotations, offsets)
 

@@ -20,6 +20,7 @@ def some_rotations(count: int, seed: int) -> Array:
 
 
 def about_z(angle: Array) -> Array:
+    """Rotations about z, by angles in radians."""
     c, s, o = np.cos(angle), np.sin(angle), 0 * angle
     return np.moveaxis(np.array([[c, -s, o], [s, c, o], [o, o, o + 1]]), 2, 0)
 
@@ -32,10 +33,12 @@ def swing(source: Array, target: Array) -> Array:
 
 
 def projected(machine: Machine, rotations: Array) -> Array:
+    """The rotations that the machine would take for these."""
     return np.array([machine.robot.project(r) for r in rotations])
 
 
 def turning(machines: tuple[Machine, ...]) -> list[Machine]:
+    """The machines that follow a commanded turn about z."""
     return [m for m in machines if m.closure.follows_turn]
 
 

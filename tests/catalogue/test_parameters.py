@@ -13,6 +13,7 @@ from tests.catalogue.machines import LENGTHS, Machine
 
 
 def refused(machine: Machine, name: str, **given: object) -> None:
+    """A change of parameters is refused, and the message names the mechanism and what is wrong."""
     with pytest.raises(KinematicsError) as error:
         machine.changed(**given)
     message = str(error.value)

@@ -47,6 +47,7 @@ def follow(
 
 
 def chosen(machines: tuple[Machine, ...], label: str) -> Machine:
+    """The machine with that label."""
     (found,) = (m for m in machines if m.label == label)
     return found
 

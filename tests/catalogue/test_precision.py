@@ -7,7 +7,7 @@ formula that squares lengths and then subtracts loses the square of their ratio,
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import cache
+from functools import cache, cached_property
 from itertools import islice
 
 import mpmath
@@ -49,6 +49,7 @@ Numbers = Mapping[str, Number]
 
 @cache
 def built(name: str) -> Kinematics:
+    """All programs of the mechanism of that name."""
     return kinematics_of(named(name))
 
 
@@ -75,29 +76,37 @@ class Exact:
     def __init__(self, kinematics: Kinematics, robot: softkin.Mechanism, rng: np.random.Generator) -> None:
         self.kinematics, self.rng = kinematics, rng
         self.fixed = {p.name for p in kinematics.parameters if p.role in (Role.FLAG, Role.SIGN)}
-        given = {n: Number(v) for n, v in robot.parameters.items()}
-        self.machine = self._with_constants(given)
-        self.others = [self._with_constants({n: v if n in self.fixed else self.jittered(v) for n, v in given.items()})
-                       for _ in range(PERTURBED)]  # fmt: skip
+        self.given = {n: Number(v) for n, v in robot.parameters.items()}
+        self.machine = self._with_constants(self.given)
+
+    @cached_property
+    def others(self) -> list[dict[str, Number]]:
+        """Machines whose parameters differ in their last place; made where the machine itself gives an answer."""
+        return [
+            self._with_constants({n: v if n in self.fixed else self.jittered(v) for n, v in self.given.items()})
+            for _ in range(PERTURBED)
+        ]
 
     def _with_constants(self, given: dict[str, Number]) -> dict[str, Number]:
         return given | run_exactly(self.kinematics.setup, given)[0]
 
     def jittered(self, value: Number) -> Number:
+        """The value, changed by at most half a unit in the last place of a double."""
         return value * (1 + Number(float(self.rng.uniform(-1.0, 1.0))) * DIGIT)
 
     def at(self, name: str, inputs: Numbers, exactly: Numbers) -> tuple[Numbers, dict[str, float]] | None:
         """The outputs of a program, and how far each moves; None where it refuses one of them."""
         program = getattr(self.kinematics, name)
-        runs = [run_exactly(program, {**self.machine, **inputs, **exactly})]
-        runs += [
+        truth, status = run_exactly(program, {**self.machine, **inputs, **exactly})
+        if status is not Status.OK:
+            return None
+        runs = [
             run_exactly(program, {**m, **{n: self.jittered(v) for n, v in inputs.items()}, **exactly})
             for m in self.others
         ]
         if any(status is not Status.OK for _, status in runs):
             return None
-        truth = runs[0][0]
-        return truth, {n: float(max(abs(other[n] - v) for other, _ in runs[1:])) for n, v in truth.items()}
+        return truth, {n: float(max(abs(other[n] - v) for other, _ in runs)) for n, v in truth.items()}
 
 
 @pytest.mark.parametrize("name", [*NAMES, *(pytest.param(n, marks=pytest.mark.slow) for n in OTHERS)])

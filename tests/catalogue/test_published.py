@@ -23,6 +23,7 @@ SIX_DIGITS = 1e-5
 
 
 def about_z(degrees: float) -> tuple[tuple[float, ...], ...]:
+    """A rotation about z."""
     c, s = cos(radians(degrees)), sin(radians(degrees))
     return ((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))
 
@@ -51,6 +52,7 @@ def test_three_axis_scara_of_linuxcnc() -> None:
 
 
 def sample() -> softkin.Mechanism:
+    """The SCARA of the published example."""
     offsets = dict(zip(("offset_a1", "offset_a2", "offset_a3", "offset_a4"), (5.0, -10.0, 12.5, 15.0), strict=True))
     return softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0, pitch_zc=20.0, **offsets)
 

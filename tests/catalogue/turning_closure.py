@@ -96,7 +96,7 @@ class TurningClosure(Closure):
         moving = np.arange(len(joints))
         for _ in range(PASSES):
             there = positions[moving], rotations[moving]
-            slopes = derivative(lambda q: self._stated(q, *there), joints[moving])  # noqa: B023 - called at once
+            slopes = derivative(self._stated, joints[moving], *there)
             step = np.linalg.pinv(slopes) @ self._stated(joints[moving], *there)[:, :, None]
             step = np.clip(step[:, :, 0], -longest, longest)
             joints[moving] -= step
@@ -122,14 +122,14 @@ class TurningClosure(Closure):
     def by_pose(self, joints: Array, positions: Array, rotations: Array) -> Array:
         """A = ∂Φ/∂pose: equations by the rows of the twist."""
 
-        def moved(twist: Array) -> Array:
+        def moved(twist: Array, joints: Array, positions: Array, rotations: Array) -> Array:
             there = positions.astype(complex)
             turned = rotations.astype(complex)
             self._move(there, turned, twist)
             return self._stated(joints, there, turned)
 
         width = len(self.task) + len(self.axes_of_turn)
-        return derivative(moved, np.zeros((len(joints), width)))
+        return derivative(moved, np.zeros((len(joints), width)), joints, positions, rotations)
 
     def side(self, joints: Array, positions: Array, rotations: Array) -> Array:
         """det A, positive in the assembly mode of this machine, with moments per reach."""
@@ -158,7 +158,7 @@ class TurningClosure(Closure):
     def jacobian(self, axes: Array, positions: Array) -> Array:
         """Rows of the task by axes, per radian for an axis in degrees, at the poses of these axes."""
         rotations = self.poses(axes)[1]
-        by_axes = derivative(lambda a: self._stated(self.joints(a), positions, rotations), axes)
+        by_axes = derivative(lambda a, p, r: self._stated(self.joints(a), p, r), axes, positions, rotations)
         return -np.linalg.solve(self.by_pose(self.joints(axes), positions, rotations), by_axes) / self.units
 
     def indicators(self, joints: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ast import Module
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -34,11 +35,11 @@ def compile_st(
     order: str = "rows",
     matrix_size: int = 72,
     max_config_data: int = 31,
-    instrument: Callable[[str], str] | None = None,
+    instrument: Callable[[str], Module] | None = None,
 ) -> Library:
     """Parse, check and translate texts (name -> Structured Text). Raises StError.
 
-    `instrument` may change the translated source, so that running it can be watched.
+    `instrument` may read the translated source and change it, so that running it can be watched.
     """
     translated = _translated(tuple(texts.items()), matrix_size, max_config_data)
     return Library(translated, stubs.MatrixAccess(order), matrix_size, instrument)
@@ -104,11 +105,11 @@ class Library:
         translated: Translated,
         access: stubs.MatrixAccess,
         matrix_size: int,
-        instrument: Callable[[str], str] | None = None,
+        instrument: Callable[[str], Module] | None = None,
     ) -> None:
         # Typed loosely: what a declaration has depends on its kind, and a test knows the kind.
         self.objects: dict[str, Any] = {declaration.name: declaration for declaration in translated.own}
-        self.python = instrument(translated.python) if instrument else translated.python
+        self.python = translated.python
         self.origin = Origin(translated.filename, translated.source.places)
         self._translated, self._universe = translated, translated.universe
         self._access = access
@@ -118,8 +119,8 @@ class Library:
         self._names["class_smc_matrix3"] = type("Matrix3", (Matrix,), {"__slots__": (), "size": matrix_size})
         for name, function in stubs.natives(access).items():
             self._names["function_" + name] = function
-        code = compile(self.python, translated.filename, "exec") if instrument else translated.code
-        exec(code, self._names)
+        changed = instrument and compile(instrument(self.python), translated.filename, "exec")
+        exec(changed or translated.code, self._names)
         self._list_routines()
 
     def _list_routines(self) -> None:
@@ -169,15 +170,11 @@ class Library:
 
     def watched(self, ran: list[bool]) -> AbstractContextManager[None]:
         """While this is open, every statement that runs sets the flag of its line in the translation, from 1."""
-        return marked(self._names, self._marked_code(), ran)
+        return marked(self._names, self._translated.marked_code, ran)
 
     def flags(self) -> list[bool]:
         """A flag for every line of the translation, from 1: none ran."""
         return [False] * (len(self.origin.places) + 1)
-
-    def _marked_code(self) -> dict[str, CodeType]:
-        is_its_own = self.python is not self._translated.python
-        return marked_code(self.python, self.origin.filename) if is_its_own else self._translated.marked_code
 
     def constant(self, name: str) -> Any:
         """The value of a global variable or constant."""

@@ -39,8 +39,10 @@ def _mark(node: ast.AST) -> None:
 
 
 def _note(statement: ast.stmt) -> ast.stmt:
-    flag = ast.Subscript(ast.Name(RAN, ast.Load()), ast.Constant(statement.lineno), ast.Store())
-    return ast.fix_missing_locations(ast.copy_location(ast.Assign([flag], ast.Constant(True)), statement))
+    at = {name: getattr(statement, name) for name in ("lineno", "col_offset", "end_lineno", "end_col_offset")}
+    line = ast.Constant(statement.lineno, **at)
+    flag = ast.Subscript(ast.Name(RAN, ast.Load(), **at), line, ast.Store(), **at)
+    return ast.Assign([flag], ast.Constant(True, **at), **at)
 
 
 def _collect(code: CodeType, found: dict[str, CodeType]) -> None:

@@ -51,6 +51,7 @@ def initialize(pair: SerialPair, sample: Sample) -> None:
 
 
 def name(pair: SerialPair, sample: Sample) -> None:
+    """GetKinematicsName returns the title of the mechanism."""
     expected = pair.mechanism.title or pair.mechanism.block_name
     assert pair.controller.block.call("GetKinematicsName") == expected
 
@@ -107,6 +108,7 @@ def drive_around(value: float, joint: Joint, rng: np.random.Generator) -> Range:
 
 
 def forward(pair: SerialPair, sample: Sample) -> None:
+    """AxesToCartesian writes the pose and the configuration that Python gives, or refuses with the same status."""
     status, answer = asked(pair.robot.forward, sample.axes)
     expected = (*answer[0], padded(answer[1])) if status == OK else None
     assert_same(pair.controller.forward(sample.axes), (status, expected), pair, sample)
@@ -118,6 +120,7 @@ def _is_spatial(pair: SerialPair) -> bool:
 
 
 def inverse(pair: SerialPair, sample: Sample) -> None:
+    """CartesianToAxes gives the axis values of Python; where branches coincide, axis values of the same pose."""
     for command, (status, answer) in solved(pair.machine, sample):
         frame = command.position, command.rotation
         expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
@@ -164,21 +167,25 @@ def assert_same_pose(pair: SerialPair, found: Answer, expected: Answer, command:
 
 
 def diagnose(pair: SerialPair, sample: Sample) -> None:
+    """Diagnose gives the reason of Python for every command of the sample."""
     for command, (status, _) in solved(pair.machine, sample):
         compare_reason(pair, command, status)
 
 
 def orientation(pair: SerialPair, sample: Sample) -> None:
+    """AxesToOrientation writes the rotation that Python gives."""
     expected = asked(pair.robot.orientation, sample.axes)
     assert_same(pair.controller.orientation(sample.axes), expected, pair, sample)
 
 
 def singularity(pair: SerialPair, sample: Sample) -> None:
+    """IsSingularity answers as Python."""
     expected = pair.robot.singularity(sample.axes).is_singular
     assert pair.controller.is_singular(sample.axes) == expected, f"{pair} {sample}"
 
 
 def jacobian(pair: SerialPair, sample: Sample) -> None:
+    """Jacobian writes the matrix of Python, and zeros in all other places."""
     status, rows = asked(pair.robot.jacobian, sample.axes)
     expected = None
     if status == OK:
@@ -188,6 +195,7 @@ def jacobian(pair: SerialPair, sample: Sample) -> None:
 
 
 def image(pair: SerialPair, sample: Sample) -> None:
+    """The methods without a commanded rotation write the orientations that Python gives."""
     for method in ("GetOrientationImage", "GetFlangeOrientationImageTotal"):
         if method.lower() in pair.controller.block.routines:
             expected = pair.robot.orientation_image()
@@ -221,6 +229,7 @@ def configuration_offset(pair: SerialPair, sample: Sample) -> None:
 
 
 def inverse_offset(pair: SerialPair, sample: Sample) -> None:
+    """CartesianToAxes_Offset answers as Python: branches named and open, references near and far, and out of reach."""
     robot, far = pair.robot, sample.reference
     if asked(robot.forward, sample.axes)[0] != OK:
         return
@@ -252,10 +261,12 @@ def point_at(pair: SerialPair, sample: Sample, offset: Iterable[float]) -> tuple
 
 
 def configuration_size(pair: SerialPair, sample: Sample) -> None:
+    """GetConfigurationDataSize returns the number of bytes of the configuration."""
     assert pair.controller.block.call("GetConfigurationDataSize") == len(pair.robot.CONFIGURATION) == len(sample.data)
 
 
 def default_configuration(pair: SerialPair, sample: Sample) -> None:
+    """GetDefaultConfigurationData writes the default of Python."""
     found = pair.controller.configuration(sample.data)
     assert pair.controller.block.call("GetDefaultConfigurationData", cd=found) is True
     assert tuple(found.abyData) == padded(pair.robot.DEFAULT_CONFIGURATION)
@@ -281,6 +292,7 @@ def automatic_periods(pair: SerialPair, sample: Sample) -> None:
 
 
 def singular_configuration(pair: SerialPair, sample: Sample) -> None:
+    """IsConfigSingular tells where a branch byte says that branches coincide."""
     branches = pair.robot.BRANCHES
     for byte in range(5):
         data = (byte,) * branches + (3,) * (len(sample.data) - branches)

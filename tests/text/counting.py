@@ -66,16 +66,21 @@ class _Instrument(ast.NodeTransformer):
         self.depth = 0
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
+        """An operation, as a call that counts it."""
         if _is_test(node) or type(node.op) not in _OPERATORS:
             return self.generic_visit(node)
         self.depth += 1
         names = f"_l{self.depth}", f"_r{self.depth}"
         sides = [self.visit(node.left), self.visit(node.right)]
         self.depth -= 1
-        bound = [ast.NamedExpr(ast.Name(n, ast.Store()), side) for n, side in zip(names, sides, strict=True)]
-        left, right = (ast.Name(n, ast.Load()) for n in names)
-        kind = ast.Constant(_OPERATORS[type(node.op)])
-        return ast.Call(ast.Name("_binary", ast.Load()), [kind, *bound, ast.BinOp(left, node.op, right)], [])
+        at = {name: getattr(node, name) for name in ("lineno", "col_offset", "end_lineno", "end_col_offset")}
+        bound = [
+            ast.NamedExpr(ast.Name(n, ast.Store(), **at), side, **at) for n, side in zip(names, sides, strict=True)
+        ]
+        left, right = (ast.Name(n, ast.Load(), **at) for n in names)
+        kind = ast.Constant(_OPERATORS[type(node.op)], **at)
+        result = ast.BinOp(left, node.op, right, **at)
+        return ast.Call(ast.Name("_binary", ast.Load(), **at), [kind, *bound, result], [], **at)
 
 
 def _is_test(node: ast.BinOp) -> bool:
@@ -87,7 +92,8 @@ def _is_test(node: ast.BinOp) -> bool:
     )
 
 
-def _instrumented(source: str) -> str:
-    tree = ast.fix_missing_locations(_Instrument().visit(ast.parse(source)))
+def _instrumented(source: str) -> ast.Module:
+    tree: ast.Module = _Instrument().visit(ast.parse(source))
     head = f"from {__name__} import CountingMath as _CountingMath, binary as _binary\nmath = _CountingMath()\n"
-    return head + ast.unparse(tree)
+    tree.body[:0] = ast.parse(head).body
+    return tree

@@ -93,9 +93,11 @@ class _Reader:
         return known
 
     def next_is(self, *words: str) -> bool:
+        """Whether the next token is one of these words."""
         return self.place < len(self.tokens) and self.tokens[self.place] in words
 
     def take(self) -> str:
+        """The next token, which is then behind."""
         self.place += 1
         return self.tokens[self.place - 1]
 

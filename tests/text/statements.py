@@ -17,9 +17,13 @@ class Statements:
     """
 
     def __init__(self, files: Iterable[str], libraries: Iterable[Library]) -> None:
-        self._files = frozenset(files)
         self._libraries = tuple(libraries)
         self._ran = [library.flags() for library in self._libraries]
+        self._numbers = _numbered(frozenset(files), self._libraries)
+        self._lines = [
+            [self._numbers.get(place, 0) if place else 0 for place in lib.origin.places] for lib in self._libraries
+        ]
+        """The number of the place that each line of a translation comes from."""
 
     @contextmanager
     def watched(self) -> Iterator[None]:
@@ -31,10 +35,15 @@ class Statements:
 
     def left_out(self) -> list[Place]:
         """Where the statements stand that did not run."""
-        every: set[Place] = set()
-        ran: set[Place] = set()
-        for library, flags in zip(self._libraries, self._ran, strict=True):
-            places = library.origin.places
-            every.update(place for place in places if place is not None and place.file in self._files)
-            ran.update(place for place in compress(places, flags[1:]) if place is not None)
-        return sorted(every - ran, key=lambda place: (place.file, place.line))
+        ran: set[int] = set()
+        for lines, flags in zip(self._lines, self._ran, strict=True):
+            ran.update(compress(lines, flags[1:]))
+        left = (place for place, number in self._numbers.items() if number not in ran)
+        return sorted(left, key=lambda place: (place.file, place.line))
+
+
+def _numbered(files: frozenset[str], libraries: Iterable[Library]) -> dict[Place, int]:
+    """A number, from 1, for every place in these files that has a statement."""
+    places = (place for library in libraries for place in library.origin.places if place is not None)
+    own = dict.fromkeys(place for place in places if place.file in files)
+    return {place: number for number, place in enumerate(own, 1)}

@@ -37,6 +37,7 @@ def at(mechanism: Mechanism, joint: Joint, value: float, **given: float) -> tupl
 
 
 def block_of(mechanism: Mechanism) -> Controller:
+    """A block of the mechanism."""
     return Controller(compiled(mechanism), mechanism)
 
 
@@ -56,6 +57,7 @@ def moved(block: Controller, robot: softkin.Mechanism, axes: Sequence[float], re
 
 
 def opened(robot: softkin.Mechanism, configuration: Sequence[int]) -> tuple[int, ...]:
+    """The configuration with every turn open."""
     turns = len(configuration) - robot.BRANCHES
     return (*configuration[: robot.BRANCHES], *(0,) * turns)
 
@@ -77,10 +79,12 @@ def counted(state: dict[str, object]) -> dict[str, object]:
 
 
 def of_axis(mechanism: Mechanism, joint: Joint, limits: Range) -> list[Range]:
+    """Limits of one axis, and none of all others."""
     return [limits if other is joint else None for other in mechanism.joints]
 
 
 def beside(axes: tuple[float, ...], index: int, value: float) -> tuple[float, ...]:
+    """The axis values with another value in one place."""
     return (*axes[:index], value, *axes[index + 1 :])
 
 

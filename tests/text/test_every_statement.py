@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -47,8 +48,8 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
         for one in (one for one in serial_pairs if one.machine.label in MACHINES):
             for sample in few(one.regular, FEW):
                 compare_all(one, sample)
-        for one, sample in singular(mechanism, serial_pairs):
-            compare_all(one, sample)
+        for one, sample, methods in singular(mechanism, serial_pairs):
+            compare_all(one, sample, methods)
         for one, sample in ((pair, pose) for pair in serial_pairs for pose in pair.grid):
             if not left_out(mechanism, statements):
                 break
@@ -56,13 +57,20 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
     assert left_out(mechanism, statements) == []
 
 
-def singular(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) -> Iterator[tuple[SerialPair, Sample]]:
-    """A few singular poses: of the machine with equal links, and where several singularities coincide."""
+def singular(
+    mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]
+) -> Iterator[tuple[SerialPair, Sample, Collection[str]]]:
+    """A few singular poses, of the machine with equal links and where several singularities coincide, with the methods
+    that `test_singular_poses` does not ask there.
+    """
     equal = (one for one in serial_pairs if one.machine.label == "equal")
-    yield from ((one, sample) for one in equal for sample in few(one.grid, A_FEW))
+    others = POSED - set(test_singular_poses.METHODS)
+    yield from ((one, sample, others) for one in equal for sample in few(one.grid, A_FEW))
     if serial_pairs[0].machine.is_spatial and mechanism.branches:
-        for one in (*serial_pairs[:3], serial_pair(bare_machine(mechanism))):
-            yield from ((one, sample) for sample in few(coinciding(one.machine), A_FEW))
+        asked = POSED - set(test_singular_poses.COINCIDING_METHODS)
+        bare = serial_pair(bare_machine(mechanism))
+        for one, methods in zip((*serial_pairs[:3], bare), (POSED, asked, POSED, asked), strict=True):
+            yield from ((one, sample, methods) for sample in few(coinciding(one.machine), A_FEW))
 
 
 def test_every_statement_of_the_shared_objects_runs() -> None:
@@ -90,12 +98,17 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
 
 def left_out(mechanism: Mechanism, statements: Statements) -> list[str]:
     """The statements of a unit that did not run, but for those that no input reaches."""
-    lines = text_of(mechanism).split("\n")
-    missing = {place.line for place in statements.left_out()}
-    missing = {
-        line for line in missing - unreachable(mechanism, lines) if not lines[line - 1].startswith("FUNCTION_BLOCK")
-    }
+    lines, dead = lines_of(mechanism)
+    missing = {place.line for place in statements.left_out()} - dead
     return [f"{line}: {lines[line - 1].strip()}" for line in sorted(missing)]
+
+
+@cache
+def lines_of(mechanism: Mechanism) -> tuple[list[str], set[int]]:
+    """The lines of a unit, and the numbers of those that no input reaches or that are no statement."""
+    lines = text_of(mechanism).split("\n")
+    heads = {number for number, line in enumerate(lines, 1) if line.startswith("FUNCTION_BLOCK")}
+    return lines, unreachable(mechanism, lines) | heads
 
 
 def few(samples: tuple[Sample, ...], count: int) -> tuple[Sample, ...]:
@@ -112,6 +125,7 @@ def libraries(mechanism: Mechanism) -> list[Library]:
 
 
 def compare_all(one: SerialPair, sample: Sample, methods: Collection[str] = COMPARISONS.keys()) -> None:
+    """Every one of these methods that the block has answers as Python at a sample."""
     for method, compare in COMPARISONS.items():
         if method in methods and method.lower() in one.controller.block.routines:
             compare(one, sample)

@@ -99,6 +99,7 @@ def test_garbage_in_what_is_written(pairs: tuple[Pair, ...]) -> None:
 
 
 def spoil(value: Any, garbage: float) -> None:
+    """Write garbage into every real number of a value."""
     for path in values.scalars(value):
         if isinstance(values.element(value, path), float):
             values.put(value, path, garbage)

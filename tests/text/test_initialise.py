@@ -70,6 +70,7 @@ def test_the_ends_of_a_range_belong_to_it(pairs: tuple[Pair, ...]) -> None:
 
 
 def as_integers(parameter: Parameter, given: dict[str, float]) -> dict[str, float]:
+    """The parameters, a sign among them as the integer that its input takes."""
     return given | {parameter.name: int(given[parameter.name])} if parameter.role is Role.SIGN else given
 
 
@@ -148,6 +149,7 @@ def test_inputs_have_no_influence_after_initialize(serial_pairs: tuple[SerialPai
 
 
 def spoiled(parameter: Parameter, value: float) -> float:
+    """A value that the machine does not have: the other side of a flag, the other sign, or no number."""
     if parameter.role is Role.FLAG:
         return 1.0 - value
     return -value if parameter.role is Role.SIGN else math.nan

@@ -25,6 +25,7 @@ def library(order: str, matrix_size: int) -> Library:
 
 
 def matrix(made: Library, rows: tuple[tuple[float, ...], ...]) -> Any:
+    """A rotation matrix of the controller."""
     value = made.new("SM3M.SMC_Matrix3")
     made.set_rotation(value, rows)
     return value

@@ -21,6 +21,7 @@ REMEDY = "choose another name for the mechanism, parameter, joint or branch that
 
 
 def block(name: str, variable: str = "x") -> tuple[Object, ...]:
+    """A block of that name, with one input."""
     return objects_of(
         f"FUNCTION_BLOCK {name}\nVAR_INPUT\n  {variable} : LREAL := 0.0;  // One\nEND_VAR\nEND_FUNCTION_BLOCK\n"
     )

@@ -28,14 +28,17 @@ INDEPENDENT = {
 
 
 def is_free(result: Any, before: State, after: State) -> bool:
+    """Whether the axis is said to have no limits."""
     return after["props"]["limits", "xUnlimited"] is True
 
 
 def is_unknown(result: Any, before: State, after: State) -> bool:
+    """Whether only the freedom of the orientation was written, as unknown."""
     return after["oriInfo"] == before["oriInfo"] | {("dof",): "three"}
 
 
 def is_automatic(result: Any, before: State, after: State) -> bool:
+    """Whether every byte leaves its branch or turn open."""
     return set(after["cd"].values()) == {0}
 
 
@@ -51,6 +54,7 @@ NEUTRAL: dict[str, Callable[[Any, State, State], bool]] = {
 
 
 def fresh(one: SerialPair) -> Controller:
+    """A block that was never initialised."""
     return Controller(one.library, one.mechanism)
 
 

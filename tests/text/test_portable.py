@@ -35,6 +35,7 @@ def library_names() -> frozenset[str]:
 
 
 def lint(text: str) -> list[Violation]:
+    """What a text has that is not portable."""
     return violations(text, enumerators(), set(library_names()))
 
 

@@ -29,10 +29,12 @@ radians = some.floats(-100.0, 100.0)
 
 @lru_cache
 def library(**options: Any) -> Library:
+    """The shared objects and the SCARA, compiled with options."""
     return compile_st({**TEXTS, SCARA.name: SCARA.read_text(encoding="utf-8")}, **options)
 
 
 def call(name: str, *values: Any) -> Any:
+    """What a shared function returns."""
     return library().function(f"Softkin_{name}")(*values)
 
 
@@ -142,6 +144,7 @@ def test_the_storage_order_is_found(order: str) -> None:
 
 
 def initialised(**options: Any) -> str:
+    """The status of Initialize of a SCARA."""
     kinematics = library(**options).new("Kin_Scara4_ZCcoupled_Type1")
     kinematics(dLinkLength1=325.0, dLinkLength2=225.0)
     return str(kinematics.call("Initialize"))

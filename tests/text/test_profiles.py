@@ -44,10 +44,12 @@ def files_of(profile: str | None, one: Kinematics) -> dict[str, str]:
 
 @lru_cache
 def rendered(profile: str | None) -> dict[str, str]:
+    """The files of a profile."""
     return files_of(profile, kinematics())
 
 
 def block(profile: str | None) -> ast.Block:
+    """The SCARA as a profile declares it."""
     files = {name: text for name, text in rendered(profile).items() if name.endswith(".st")}
     found = compile_st(files).objects["Kin_Scara4_ZCcoupled_Type1"]
     assert isinstance(found, ast.Block)

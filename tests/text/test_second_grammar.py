@@ -111,6 +111,7 @@ def test_what_is_the_same_to_a_grammar() -> None:
 
 
 def test_what_is_the_same_of_a_phrase() -> None:
+    """A phrase that was seen in parentheses, as an argument or as a whole counts as a name."""
     seen = Seen()
     assert abridged("x := (a + b)*c;", seen) == "x := (a + b) * c;"
     assert abridged("x := (b + (a + b)*c)*(a + b);", seen) == "n := (b + n * n) * (n);"
@@ -166,6 +167,7 @@ def test_a_wrong_statement_is_left(wrong: str) -> None:
 
 
 def test_a_right_statement_is_not() -> None:
+    """Nothing is left of a statement whose phrases are all known."""
     pieces()
     right = "IF x THEN\ny := x + 2.0*f(a := x, b := -y);\nEND_IF"
     short = abridged(f"METHOD PUBLIC Probe : BOOL\n{right}\nProbe := TRUE;\nEND_METHOD", KNOWN)

@@ -328,6 +328,7 @@ def test_relative_rotation() -> None:
 
 
 def rotations(count: int) -> list[np.ndarray]:
+    """Random rotations."""
     rng = np.random.default_rng(3)
     return [q * np.sign(np.linalg.det(q)) for q in (np.linalg.qr(rng.normal(size=(3, 3)))[0] for _ in range(count))]
 

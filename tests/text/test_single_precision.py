@@ -17,10 +17,12 @@ ROUNDING = 1e-9
 
 
 def rows(matrix: np.ndarray) -> Rows:
+    """A matrix as rows of plain numbers."""
     return tuple(map(tuple, matrix.tolist()))
 
 
 def offered(one: SerialPair) -> bool:
+    """Whether the block has the method that reads a commanded rotation."""
     return "getflangeorientationimagewithori" in one.controller.block.routines
 
 

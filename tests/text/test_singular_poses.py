@@ -21,6 +21,7 @@ from tests.text.serial_pairs import SerialPair, serial_pair
 MACHINES = ("equal", "random 1")
 """With equal links every singular pose exists; with random offsets none of them is at a round number."""
 METHODS = ("AxesToCartesian", "CartesianToAxes", "AxesToOrientation", "IsSingularity", "Jacobian")
+COINCIDING_METHODS = ("AxesToCartesian", "CartesianToAxes")
 OFFSET_METHODS = ("AxesToConfiguration_Offset", "CartesianToAxes_Offset")
 FEW = 12
 NEARLY = 1e-3
@@ -62,7 +63,7 @@ def test_singularities_that_coincide(serial_pairs: tuple[SerialPair, ...]) -> No
         return
     for one in (serial_pairs[1], serial_pair(bare_machine(serial_pairs[1].mechanism))):
         for sample in coinciding(one.machine):
-            for method in ("AxesToCartesian", "CartesianToAxes"):
+            for method in COINCIDING_METHODS:
                 COMPARISONS[method](one, sample)
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from textwrap import wrap
+from typing import Any
 
 from jinja2 import Environment
 
@@ -195,33 +196,39 @@ def _index(kin: Kinematics) -> dict[str, str]:
 def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     """The class of a mechanism, and its programs on arrays."""
     names = _index(kin)
-    scalar = methods(kin)
     arrays = [_untold(m) for m in (*shared(kin), *forwards(kin), branch(kin), limits(kin), *end_point_shift(kin))]
-    array_programs = _array_programs(kin)
+    lean = unrolled(kin) if is_unrolled(kin) else None
+    contexts = {
+        "": ("mechanism.py.j2", _class_context(kin, arrays, lean)),
+        "_array_programs/": ("arrays.py.j2", _array_context(kin, arrays)),
+        "_unrolled/": ("unrolled.py.j2", {"unrolled": lean}),
+    }
+    return {
+        f"softkin/{folder}{names['module']}.py": templates.get_template(template).render(names | context)
+        for folder, (template, context) in contexts.items()
+        if lean or folder != "_unrolled/"
+    }
+
+
+def _class_context(kin: Kinematics, arrays: Sequence[Method], lean: Unrolled | None) -> dict[str, Any]:
+    """What the text of the class reads; `lean` are the branches in a straight line, where it has them."""
+    scalar = methods(kin)
     reasons = explained(reasons_of(kin))
     bodies = [scalar_body(m, reasons) if m.is_explained else scalar_body(_untold(m)) for m in scalar]
-    lean = unrolled(kin) if is_unrolled(kin) else None
     trusted = trusted_branch(kin) if is_trusted(kin) else None
     setup_lines = setup.setup_body(kin, _constants_read(kin, (*scalar, *arrays), lean or trusted))
     types = _types(kin, scalar)
-    texts = (*bodies, setup_lines, trusted.body if trusted else ())
-    context = {
-        **names,
+    return {
         "kin": kin,
         "mechanism": kin.mechanism,
         "entries": entries,
         "keywords": setup.keywords(kin.parameters),
         "setup_body": setup_lines,
-        "array_programs": array_programs,
+        "array_programs": _array_programs(kin),
         "bases": _bases(kin),
         "core_types": sorted({"Image", "Mechanism", "Pose"}),
         "types": [name for name in types if name in _MADE],
         "checked_types": [name for name in types if name not in _MADE],
-        "primitives": primitives_in(line for body in texts for line in body),
-        "of_limits": [
-            n for n in ("beyond", "beyond_turn", "turn_inside") if any(f"{n}(" in line for b in bodies for line in b)
-        ],
-        "searches": any(map(has_search, kin.shared)),
         "lean": lean,
         "trusted": trusted,
         "slots": ("_all_trusted", "_constants", "_finish", "_one_trusted") if lean else ("_constants",),
@@ -236,28 +243,34 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "methods": [
             {"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)
         ],
+        **_called(kin, bodies, (*setup_lines, *(trusted.body if trusted else ()))),
     }
-    array_texts = [(_array_head(m), array_body(m)) for m in arrays]
-    array_lines = [line for head, body in array_texts for line in (head, *body)]
-    array_context = {
-        **names,
+
+
+def _called(kin: Kinematics, bodies: Sequence[Sequence[str]], further: Sequence[str]) -> dict[str, Any]:
+    """The functions of the package that the class calls, in its methods and in further lines."""
+    lines = [line for body in bodies for line in body]
+    return {
+        "primitives": primitives_in((*lines, *further)),
+        "of_limits": [n for n in ("beyond", "beyond_turn", "turn_inside") if any(f"{n}(" in line for line in lines)],
+        "searches": any(map(has_search, kin.shared)),
+    }
+
+
+def _array_context(kin: Kinematics, arrays: Sequence[Method]) -> dict[str, Any]:
+    """What the text of the programs on arrays reads."""
+    array_programs = _array_programs(kin)
+    texts = [(_array_head(m), array_body(m)) for m in arrays]
+    lines = [line for head, body in texts for line in (head, *body)]
+    return {
         "array_programs": array_programs,
-        "imports": _sorted({array_programs} | named_in(array_lines, CALLED)),
-        "types": _sorted(named_in(array_lines, TYPES)),
+        "imports": _sorted({array_programs} | named_in(lines, CALLED)),
+        "types": _sorted(named_in(lines, TYPES)),
         "methods": [
-            {"head": head, "summary": m.summary, "body": body}
-            for m, (head, body) in zip(arrays, array_texts, strict=True)
+            {"head": head, "summary": m.summary, "body": body} for m, (head, body) in zip(arrays, texts, strict=True)
         ],
         "searches": any(map(has_search, kin.shared)),
     }
-    files = {
-        f"softkin/{names['module']}.py": templates.get_template("mechanism.py.j2").render(context),
-        f"softkin/_array_programs/{names['module']}.py": templates.get_template("arrays.py.j2").render(array_context),
-    }
-    if lean:
-        unrolled_text = templates.get_template("unrolled.py.j2").render(**names, unrolled=lean)
-        files |= {f"softkin/_unrolled/{names['module']}.py": unrolled_text}
-    return files
 
 
 def _constants_read(kin: Kinematics, programs: Iterable[Method], lean: Unrolled | Function | None) -> set[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from jinja2 import Environment
@@ -96,24 +96,9 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
 
 def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterator[_Source]:
     known = contract.signatures
-    programs = {
-        "Initialize": setup_of(kinematics, has_settings=block.has_settings),
-        "AxesToCartesian": kinematics.forward,
-        "AxesToOrientation": kinematics.orientation,
-        "IsSingularity": kinematics.singularity,
-        "GetOrientationImage": kinematics.image,
-        "GetFlangeOrientationImageWithOri": kinematics.projection,
-        "AxesToConfiguration_Offset": kinematics.offset_configuration,
-        "Jacobian": kinematics.jacobian,
-        "IsCompatibleWithPosKin": kinematics.compatible,
-        "GetPositionFromOrientation3": kinematics.end_point_shift,
-        "GetOrientationImageTotal": kinematics.total_image,
-        "GetOrientationImageWithOri": kinematics.image if kinematics.total_image else kinematics.projection,
-    }
-    solved = {"CartesianToAxes": kinematics.branch, "CartesianToAxes_Offset": kinematics.offset_branch}
     names = _names(block, contract)
-    if "GetOrientationImage" not in names:
-        programs["GetFlangeOrientationImageTotal"] = kinematics.image
+    programs = _programs(kinematics, block, names)
+    solved = {"CartesianToAxes": kinematics.branch, "CartesianToAxes_Offset": kinematics.offset_branch}
     ready: set[str] = set()
     for name in names:
         program = solved.get(name)
@@ -136,6 +121,28 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
         yield from _shared(program, kinematics, contract, ready)
         if name == "CartesianToAxes":
             yield _Source(_explained(_check_limits(contract), turns=bool(block.periods)), kinematics.limits)
+
+
+def _programs(kinematics: Kinematics, block: Block, names: Sequence[str]) -> dict[str, Program | None]:
+    """The programs of the methods that compute one, by the name of the method; those of a branch have their own
+    method.
+    """
+    programs = {
+        "Initialize": setup_of(kinematics, has_settings=block.has_settings),
+        "AxesToCartesian": kinematics.forward,
+        "AxesToOrientation": kinematics.orientation,
+        "IsSingularity": kinematics.singularity,
+        "GetOrientationImage": kinematics.image,
+        "GetFlangeOrientationImageWithOri": kinematics.projection,
+        "AxesToConfiguration_Offset": kinematics.offset_configuration,
+        "Jacobian": kinematics.jacobian,
+        "IsCompatibleWithPosKin": kinematics.compatible,
+        "GetPositionFromOrientation3": kinematics.end_point_shift,
+        "GetOrientationImageTotal": kinematics.total_image,
+        "GetOrientationImageWithOri": kinematics.image if kinematics.total_image else kinematics.projection,
+    }
+    total = {} if "GetOrientationImage" in names else {"GetFlangeOrientationImageTotal": kinematics.image}
+    return {**programs, **total}
 
 
 def _quotable(text: str) -> str:

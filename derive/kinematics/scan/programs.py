@@ -127,27 +127,22 @@ def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tu
     errors = [Let(real(f"error_{k}"), v) for k, v in enumerate(_errors(), 1)]
     names = [let.name for let in errors]
     steps = tuple(real(f"step_{j.name}") for j in joints)
-    error, size, passes = real("error"), real("size"), count("passes")
-    taken = flag("taken")
+    error, passes, taken = real("error"), count("passes"), flag("taken")
     rates, jacobian = _named_entries(scaled, len(joints))
+    body = (
+        *composed.statements,
+        *pose,
+        *errors,
+        Let(error, Root(sp.Add(*[n**2 for n in names])), "pose error, in characteristic lengths and radians"),
+        *lets,
+        *rates,
+        *_shortest_step(jacobian, names, steps),
+        *_taken(steps, error, taken),
+    )
     loop = Iterate(
         state=(*joints, passes),
         start=(*start, _ZERO),
-        step=tuple(
-            s
-            for s in (
-                *composed.statements,
-                *pose,
-                *errors,
-                Let(error, Root(sp.Add(*[n**2 for n in names])), "pose error, in characteristic lengths and radians"),
-                *lets,
-                *rates,
-                *_shortest_step(jacobian, names, steps),
-                Let(size, sp.Add(*[s**2 for s in steps])),
-                Let(taken, sp.Le(size, error), "whether the error becomes smaller"),
-            )
-            if isinstance(s, Let | Solve)
-        ),
+        step=tuple(s for s in body if isinstance(s, Let | Solve)),
         following=(*(j + Select(taken, s, _ZERO) for j, s in zip(joints, steps, strict=True)), passes + 1),
         done=sp.Or(sp.Le(error, BOUNDARY / 100), sp.Ge(passes, IMPROVEMENTS), sp.Not(taken)),
         limit=IMPROVEMENTS + 1,
@@ -155,6 +150,15 @@ def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tu
         note="Newton's method on the closure",
     )
     return loop, tuple(jacobian)
+
+
+def _taken(steps: Sequence[sp.Symbol], error: sp.Symbol, taken: sp.Symbol) -> tuple[Let, Let]:
+    """The statements that tell whether a step is taken."""
+    size = real("size")
+    return (
+        Let(size, sp.Add(*[s**2 for s in steps])),
+        Let(taken, sp.Le(size, error), "whether the error becomes smaller"),
+    )
 
 
 def _named_entries(entries: Sequence[sp.Expr], width: int) -> tuple[list[Let], sp.Matrix]:

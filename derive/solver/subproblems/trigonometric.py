@@ -130,12 +130,7 @@ def _amplitude(
         return _Amplitude(
             naming, length, (), along / effective, across / effective, right, determinant, length, factors, told=told
         )
-    aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
-    divisor = real(f"divisor_{angle.name}")
-    guard = (
-        Require(aimable, Status.UNREACHABLE, reason=about_joint(angle, Why.TOO_SHORT)),
-        Let(divisor, Select(aimable, effective, sp.Integer(1))),
-    )
+    divisor, guard = _guarded(effective, common, angle)
     right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
     return _Amplitude(
         naming,
@@ -148,6 +143,16 @@ def _amplitude(
         equation.scales.get(angle, common * problem.scale_of(equation)),
         factors,
         told=told,
+    )
+
+
+def _guarded(effective: sp.Expr, common: sp.Expr, angle: sp.Symbol) -> tuple[sp.Symbol, tuple[Statement, ...]]:
+    """The effective length as a divisor, and the statements that refuse an arm that is too short to aim."""
+    aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
+    divisor = real(f"divisor_{angle.name}")
+    return divisor, (
+        Require(aimable, Status.UNREACHABLE, reason=about_joint(angle, Why.TOO_SHORT)),
+        Let(divisor, Select(aimable, effective, sp.Integer(1))),
     )
 
 

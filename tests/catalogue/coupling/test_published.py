@@ -14,6 +14,7 @@ ROOT = math.sqrt(0.5)
 
 
 def frame_of(robot: softkin.Mechanism, *axes: float) -> tuple[np.ndarray, np.ndarray]:
+    """Position and rotation of the flange at axis values."""
     frame, _ = robot.forward(axes)
     return np.array(frame.position), np.array(frame.rotation)
 

@@ -9,4 +9,5 @@ from tests.catalogue.hexapod.machines import NAMES, Machine, machines
 
 @pytest.fixture(params=NAMES)
 def machine(request: pytest.FixtureRequest) -> Machine:
+    """A hexapod by its label."""
     return machines()[request.param]

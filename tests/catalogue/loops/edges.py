@@ -12,6 +12,7 @@ Edge = tuple[Mapping[str, float], tuple[float, ...]]
 
 
 def azimuths(*values: float) -> dict[str, float]:
+    """The directions of the legs, in degrees, as parameters."""
     return {f"azimuth_{i}": v for i, v in enumerate(values, 1)}
 
 
@@ -21,28 +22,34 @@ def arms(**sizes: float) -> dict[str, float]:
 
 
 def rails(arm: float, *points: tuple[float, float]) -> dict[str, float]:
+    """Rods of one length, and vertical rails at these points."""
     named = {f"rail_{c}_{i}": v for i, point in enumerate(points, 1) for c, v in zip("xy", point, strict=True)}
     return {"arm_length": arm} | named
 
 
 def five_bar(inner: float, outer: float, displacement: float, plate: float) -> dict[str, float]:
+    """A five-bar: its arms, half the distance of its drives and half that of the joints on its plate."""
     return {"inner_arm": inner, "outer_arm": outer, "displacement": displacement, "tcp_displacement": plate}
 
 
 def linked(inner: float, outer: float, displacement: float, plate: float) -> dict[str, float]:
+    """The same five-bar with the distance of the joints on its plate as one parameter."""
     return {"inner_arm": inner, "outer_arm": outer, "displacement": displacement, "tcp_link_distance": 2 * plate}
 
 
 def links(*lengths: float) -> dict[str, float]:
+    """The five lengths of a type 12."""
     return {f"link_length_{i}": v for i, v in enumerate(lengths, 1)}
 
 
 def rotary(rod: float, drives: float, plate: float) -> dict[str, float]:
+    """A tripod with rotary drives: its rods, the radius of its drives and that of its plate."""
     sizes = {"arm_length_1": 200.0, "arm_length_2": rod, "arm_1_radius": drives, "stewart_radius": plate}
     return sizes | {"max_angle_ball_joint": 45.0}
 
 
 def inclined(rod: float, inner: float) -> dict[str, float]:
+    """A tripod with rails inclined by 30 degrees: its rods, and the radius of its plate."""
     sizes = {"outer_radius": 300.0, "inner_radius": inner, "arm_length": rod}
     return sizes | {"rail_angle": 30.0, "max_angle_ball_joint": 45.0}
 

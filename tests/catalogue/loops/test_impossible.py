@@ -11,6 +11,7 @@ from softkin import KinematicsError, Status
 
 from derive.description.reach import discs_meet
 from derive.geometry.vectors import vector
+from derive.ir.interpret import evaluate
 
 Array = NDArray[np.float64]
 ARM = {"inner_arm": 100.0, "outer_arm": 200.0}
@@ -25,6 +26,7 @@ TYPE_12 = {
 
 
 def delta(radius: float) -> dict[str, float]:
+    """A delta with arms of 100 and 200, whose drives are at this radius and whose plate has a radius of 40."""
     found = {f"azimuth_{i}": a for i, a in enumerate((0.0, 120.0, 240.0), 1)}
     for i in (1, 2, 3):
         found |= {f"base_radius_{i}": radius, f"inner_arm_{i}": 100.0, f"outer_arm_{i}": 200.0, f"tcp_radius_{i}": 40.0}
@@ -32,6 +34,7 @@ def delta(radius: float) -> dict[str, float]:
 
 
 def rails(radius: float) -> dict[str, float]:
+    """Rods of 250, and three vertical rails at this radius."""
     found = {"arm_length": 250.0}
     for i, azimuth in enumerate(np.radians((90.0, 210.0, 330.0)), 1):
         found |= {f"rail_x_{i}": radius * np.cos(azimuth), f"rail_y_{i}": radius * np.sin(azimuth)}
@@ -74,28 +77,35 @@ def test_steep_rails_can_be_as_far_apart_as_they_like() -> None:
     )
 
 
-def do_meet(centres: Array, radii: Array) -> bool:
-    """Every condition, with numbers for its steps."""
-    values: dict[sp.Symbol, sp.Expr] = {}
-    for constraint in discs_meet([vector(*map(sp.Float, c)) for c in centres], list(map(sp.Float, radii)), "they meet"):
+def do_meet(centres: Array, radii: Array) -> NDArray[np.bool_]:
+    """Every condition, with numbers for its steps: of centres (n, 3, 2) and radii (n, 3)."""
+    names = [vector(*sp.symbols(f"x{i} y{i}", real=True)) for i in range(3)]
+    sizes = sp.symbols("r0 r1 r2", nonnegative=True)
+    values = {f"r{i}": column for i, column in enumerate(radii.T)}
+    values |= {s.name: centres[:, i, k] for i, centre in enumerate(names) for k, s in enumerate(centre)}
+    holds = np.ones(len(radii), dtype=bool)
+    for constraint in discs_meet(names, sizes, "they meet"):
         for step in constraint.steps:
-            values[step.name] = step.value.subs(values)
-        if not constraint.condition.subs(values):
-            return False
-    return True
+            values[step.name.name] = evaluate(step.value, values)
+        holds &= evaluate(constraint.condition, values).astype(bool)
+    return holds
 
 
 def test_discs_that_meet() -> None:
-    """Against the smallest largest excess over a fine grid of points, on random discs of all sizes."""
+    """Against the smallest largest excess over a fine grid of points, on random discs of all sizes, and on discs of
+    which every two meet around a gap.
+    """
     rng = np.random.default_rng(8)
     grid = np.stack(np.meshgrid(np.linspace(-3, 3, 301), np.linspace(-3, 3, 301)), axis=-1).reshape(-1, 2)
+    drawn = [(rng.uniform(-1, 1, (3, 2)), rng.uniform(0.05, 1.5, 3)) for _ in range(100)]
+    for turned in rng.uniform(0.0, 2 * np.pi, 10):
+        angles = turned + np.radians((0.0, 120.0, 240.0))
+        drawn.append((np.stack([np.cos(angles), np.sin(angles)], axis=1), rng.uniform(0.88, 0.95, 3)))
     seen = set()
-    for _ in range(100):
-        centres, radii = rng.uniform(-1, 1, (3, 2)), rng.uniform(0.05, 1.5, 3)
+    for (centres, radii), found in zip(drawn, do_meet(*map(np.array, zip(*drawn, strict=True))), strict=True):
         excess = np.max(np.linalg.norm(grid[:, None] - centres, axis=2) - radii, axis=1).min()
         if abs(excess) < 0.02:
             continue  # too close for the grid
-        found = do_meet(centres, radii)
         assert found == (excess < 0), (centres, radii)
-        seen.add(found)
+        seen.add(bool(found))
     assert seen == {True, False}

@@ -22,11 +22,13 @@ def matrices(machine: LoopMachine, axes: Array) -> tuple[Array, Array]:
 
 
 def margins(machine: LoopMachine, axes: Array) -> dict[str, Array]:
+    """The margins of a machine at axis values, by their names."""
     found = [machine.robot.singularity(row).margins for row in axes]
     return {name: np.array([m[name] for m in found]) for name in machine.robot.MARGINS}
 
 
 def is_constant(ratios: Array) -> bool:
+    """Whether ratios differ by rounding alone."""
     return bool(np.ptp(ratios) < ROUNDING * np.abs(ratios).max())
 
 

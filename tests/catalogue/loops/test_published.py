@@ -10,6 +10,7 @@ IDENTITY = np.eye(3)
 
 
 def delta(azimuths: tuple[float, ...], **sizes: float) -> softkin.Mechanism:
+    """A delta with three equal legs in these directions."""
     given = {f"{name}_{i}": value for name, value in sizes.items() for i in (1, 2, 3)}
     return softkin.DeltaP3CType3(**given, **{f"azimuth_{i}": a for i, a in enumerate(azimuths, 1)})
 

@@ -20,6 +20,7 @@ existence."""
 
 
 def grid(machine: LoopMachine) -> Array:
+    """All combinations of right angles and of a few lengths, as axis values."""
     values = [ANGLES if is_angle else np.multiply(LENGTHS, machine.reach) for is_angle in machine.closure.angles]
     return np.array(list(product(*values))) + machine.closure.offsets
 

@@ -39,6 +39,7 @@ def rotation_of(machine: LoopMachine) -> list[list[float]]:
 
 
 def margin(machine: LoopMachine, axes: Array) -> float:
+    """The size of the type 2 margin at axis values."""
     assembly = machine.mechanism.assembly
     assert assembly is not None
     return abs(machine.robot.singularity(axes).margins[assembly.margin])

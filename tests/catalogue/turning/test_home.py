@@ -90,6 +90,7 @@ def _solved(machine: TurningMachine, position: Array, rotation: Array) -> list[A
 
 
 def test_the_margin_is_the_determinant_by_definition(machines: tuple[TurningMachine, ...]) -> None:
+    """The margin of dependent rods is the normalised determinant of the closure."""
     for machine in machines:
         axes = machine.draw(40, np.random.default_rng(5))
         expected = normalised(machine, axes, *machine.closure.poses(axes))
@@ -98,6 +99,7 @@ def test_the_margin_is_the_determinant_by_definition(machines: tuple[TurningMach
 
 
 def test_a_home_pose_out_of_reach_or_singular_is_refused(machines: tuple[TurningMachine, ...]) -> None:
+    """A machine whose home pose is out of reach or singular is refused."""
     machine = machines[0]
     points = [n for n in machine.given if n.startswith("platform_")]
     far = {n: 1e5 for n in machine.given if n == "home_y"}
@@ -125,6 +127,7 @@ def test_a_start_leads_to_the_pose_beside_it(machines: tuple[TurningMachine, ...
 
 
 def test_a_start_upside_down_has_no_heading(mechanism: Mechanism, machines: tuple[TurningMachine, ...]) -> None:
+    """Of a platform that turns about z, a start that is upside down is refused."""
     if len(machines[0].closure.axes_of_turn) == 1:
         axes = tuple(machines[0].draw(1, np.random.default_rng(1))[0])
         with pytest.raises(KinematicsError) as refused:

@@ -22,6 +22,7 @@ BOTH = pytest.mark.parametrize("make", [InPython, OnController])
 
 
 def named(mechanism: Mechanism) -> str:
+    """The name of a mechanism, for the name of a test."""
     return mechanism.name
 
 

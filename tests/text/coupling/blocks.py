@@ -115,14 +115,17 @@ class OrientationPair:
 
     @property
     def mechanism(self) -> Mechanism:
+        """The orientation kinematics."""
         return self.machine.mechanism
 
     @property
     def robot(self) -> softkin.Mechanism:
+        """The machine in Python."""
         return self.machine.robot
 
     @property
     def library(self) -> Library:
+        """What the block was compiled to."""
         return self.controller.library
 
     def __str__(self) -> str:

@@ -22,6 +22,7 @@ UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def rows(matrix: np.ndarray) -> Rows:
+    """A matrix as rows of plain numbers."""
     return tuple(map(tuple, matrix.tolist()))
 
 

@@ -30,6 +30,7 @@ ORDERS = ("rows", "columns")
 
 
 def rows_of(matrix: np.ndarray) -> Rows:
+    """A matrix as rows of plain numbers."""
     return tuple(tuple(row) for row in matrix.tolist())
 
 
@@ -91,6 +92,7 @@ def end_point(pair: OrientationPair, sample: Sample) -> None:
 
 
 def end_point_2(pair: OrientationPair, sample: Sample) -> None:
+    """GetPositionFromOrientation2 answers as the method with all arguments does, at the default configuration."""
     rng = np.random.default_rng(41)
     for image, _ in images(rng):
         expected = pair.controller.end_point(sample.rotation, image, pair.robot.DEFAULT_CONFIGURATION, (0.0,) * 6)
@@ -151,6 +153,7 @@ def with_orientation(pair: OrientationPair, sample: Sample) -> None:
 
 
 def initialised(pair: OrientationPair, sample: Sample) -> None:
+    """Initialize answers as Python; a block without axes is initialised from the start."""
     if pair.mechanism.joints:
         initialize(pair, sample)
     else:

@@ -50,14 +50,17 @@ class Loop:
 
     @property
     def mechanism(self) -> Mechanism:
+        """The mechanism of the loop."""
         return self.machine.mechanism
 
     @property
     def robot(self) -> softkin.Mechanism:
+        """The machine in Python."""
         return self.machine.robot
 
     @property
     def library(self) -> Library:
+        """What the block was compiled to."""
         return self.controller.library
 
     def __str__(self) -> str:

@@ -16,6 +16,7 @@ BYTES = (0, 1, 2, 3)
 
 
 def combinations(loop: Loop) -> list[Bytes]:
+    """All branch bytes, with open turns."""
     turns = (0,) * len(loop.robot.PERIOD_AXES)
     return [(*data, *turns) for data in product(BYTES, repeat=loop.robot.BRANCHES)]
 

@@ -54,6 +54,7 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
 
 
 def compare_all(loop: Loop, sample: Sample) -> None:
+    """Every method that the block has answers as Python at a sample."""
     for method, answer in COMPARISONS.items():
         if method.lower() in loop.controller.block.routines:
             answer(loop, sample)
