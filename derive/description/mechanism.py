@@ -192,12 +192,16 @@ class Mechanism:
     """A mechanism: its equations, and what its quantities mean. The derivation reads nothing else."""
 
     name: str
-    vendor: Vendor
-    family: str
-    source: str
-    summary: str
     joints: tuple[Joint, ...]
     task: Task
+    vendor: Vendor | None = None
+    """None for a machine of the user's own."""
+    family: str = "own"
+    """The folder of its block, beside those of other families."""
+    source: str = ""
+    """Where the geometry is published; empty where it is published nowhere."""
+    summary: str = ""
+    """What it is, in a sentence; empty: the names of its axes."""
     parameters: tuple[Parameter, ...] = ()
     chain: Chain | None = None
     closure: tuple[sp.Expr, ...] = ()
@@ -236,6 +240,8 @@ class Mechanism:
         held = {joint.name for joint in self.held}  # the reference has the turn of a held joint: it needs no byte
         joints = (replace(j, multi_turn=False) if j.name in held else j for j in self.joints)
         object.__setattr__(self, "joints", tuple(joints))
+        if not self.summary:
+            object.__setattr__(self, "summary", _axes_in_words(self.joints))
 
     @property
     def held_joints(self) -> tuple[Joint, ...]:
@@ -281,6 +287,12 @@ class Mechanism:
         """The multi-turn joints in the order of their configuration bytes."""
         turning = {j.name: j for j in self.joints if j.multi_turn}
         return tuple(turning[n] for n in self.periods) if self.periods is not None else tuple(turning.values())
+
+
+def _axes_in_words(joints: Sequence[Joint]) -> str:
+    if not joints:
+        return "A mechanism without axes."
+    return f"A machine with {'the axis' if len(joints) == 1 else 'the axes'} {', '.join(j.name for j in joints)}."
 
 
 def search(joint: Joint, *, where: Parameter) -> Search:

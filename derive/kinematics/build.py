@@ -51,6 +51,7 @@ from derive.kinematics.branch_assignment import Assignment, assign, margin_lets,
 from derive.kinematics.coupling import (
     coupling_programs,
 )
+from derive.kinematics.derived_branches import with_derived_branches
 from derive.kinematics.differential import (
     Factor,
     factor_of,
@@ -95,6 +96,7 @@ def build(mechanism: Mechanism) -> Kinematics:
     inverse = solve_pose(mechanism)
     mechanism = with_conditions(mechanism, inverse.derivation.conditions)
     refuse_shared_names(mechanism, (*forward.statements, *inverse.naming, *inverse.derivation.statements))
+    mechanism = with_derived_branches(mechanism, inverse, forward)
     assignments = assign(mechanism, inverse, forward)
     at_axes = derivation_at_axes(mechanism, inverse, forward)
     margins = margin_lets(mechanism, assignments)

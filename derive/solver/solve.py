@@ -60,6 +60,15 @@ class Unsolved(Exception):
 
 
 @dataclass(frozen=True)
+class Step:
+    """One step: the problem before it, what a rule found, and the same under the names that are recorded."""
+
+    problem: Problem
+    found: Binding
+    recorded: Binding
+
+
+@dataclass(frozen=True)
 class Derivation:
     """The solution as statements, with the determinants of its two-root steps, and the conditioning of every step
     whose angle may be free.
@@ -76,6 +85,8 @@ class Derivation:
     """Values of parameters that must not vanish."""
     plain: tuple[Statement, ...] = ()
     """The statements without `beyond_folds` and `within_reach`: the plain definitions of the names."""
+    steps: tuple[Step, ...] = ()
+    """The steps in their order, for a reader."""
 
 
 def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve) -> Derivation:
@@ -90,6 +101,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     record = DerivationRecord()
     sums: tuple[Sum, ...] = ()
     rules: list[str] = []
+    steps: list[Step] = []
     left: list[sp.Expr] = []
     not_zero: list[sp.Expr] = []
     while problem.angles or problem.lengths or problem.pending:
@@ -98,7 +110,8 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
                 binding = record.commit(Binding("rotation", (), condition.lets, residual=condition.expression))
                 left += [binding.residual] if binding.residual is not None else []
         problem, binding, sums = _next(problem, sums, arguments)
-        binding = record.commit(binding)
+        found, binding = binding, record.commit(binding)
+        steps.append(Step(problem, found, binding))
         rules.append(binding.rule)
         not_zero += binding.conditions
         plain = [a for a in binding.unknowns if any(a in e.expression.free_symbols for e in problem.equations)]
@@ -120,6 +133,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         tuple(left),
         tuple(not_zero),
         with_known_signs(record.statements, signs),
+        tuple(steps),
     )
 
 

@@ -55,7 +55,6 @@ TWELVE = rotary("A12", "a name too many")
 REFUSED = {
     "an indicator of nothing": (arm(branches=(branch("elbow", cos(A2), a=+1, b=-1),)), AGREES),
     "an indicator that is always positive": (arm(branches=(branch("elbow", 2 + sin(A2), a=+1, b=-1),)), AGREES),
-    "a branch without a name": (arm(branches=()), "no branch names the two solutions for a2"),
     "two names for one branch": (arm(branches=SAME), "branches 'elbow' and 'arm' name the same two solutions"),
     "a flip in the middle": (arm(chain=Rz(A1) * Tx(L1) * flip_x(1) * Rz(A2) * Tx(L2)), "a flip must stand at the end"),
     "a commanded turn of a chain that turns about x": (
