@@ -26,6 +26,7 @@ _FIELDS = (
     (r"offset_interface", ("offset_interface", "task")),
     (r"home", ("home",)),
     (r"assembly", ("assembly",)),
+    (r"two-root steps", ("assembly", "rods")),
     (r"needs a rod", ("rods", "closure")),
     (r"^constraint|break the constraint", ("constraints",)),
     (r"does not determine|no subproblem|must not vanish", ("chain", "closure", "rods")),

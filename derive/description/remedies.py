@@ -45,7 +45,6 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"the closure has \d+ equations, and", "state one equation for each commanded quantity"),
     (r"its indicator agrees with", f"{_EXPLAIN}: name a branch by an expression with the same sign, or leave it out"),
     (r"name the same two solutions", f"leave one of them out; {_EXPLAIN}"),
-    (r"no sampled pose is possible", "is positive=(…) true of the nominal machine, and does it reach anything?"),
     (r"one assembly names one", 'as in assembly("tcp", cross(ROD_1, ROD_2), margin="aligned", below=-1, above=+1)'),
     (r"a flip must stand at the end", "put it last in the chain"),
     (r"its rotation is not one turn about z", "command the Turning that the flange makes, or Turning.NONE"),

@@ -45,7 +45,10 @@ def _example(kinematics: Kinematics, index: int) -> str:
     sides = (", ".join(f"{name} {values[side]:.1f}" for name, *values in moved) for side in (0, 1))
     first, second = sides
     names = kinematics.branches[index].names
-    return f". For one frame of the nominal machine {names[0]} has {first}, and {names[1]} has {second}"
+    what = (
+        "orientation" if kinematics.mechanism.is_orientation else "frame" if kinematics.reads_rotation else "position"
+    )
+    return f". For one {what} of the nominal machine {names[0]} has {first}, and {names[1]} has {second}"
 
 
 def pair_at_one_frame(kinematics: Kinematics, index: int) -> tuple[Reals, Reals] | None:
