@@ -101,10 +101,11 @@ def each(files: Sequence[Path], work: Callable[[Path, Stages], None], keep_going
         try:
             stages.line(str(path))
             work(path, stages)
-        except (DescriptionError, GenerationError, ForeignFolder, OSError) as problem:
+        except Exception as problem:  # one bad file never stops another, whatever is wrong with it
+            is_told = isinstance(problem, DescriptionError | GenerationError | ForeignFolder | OSError)
             wrong.append(path)
             stages.line("  refused")
-            complain(str(problem))
+            complain(str(problem) if is_told else in_place(path, reason_of(problem)))
             if not keep_going:
                 break
     if len(files) > 1:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 import traceback
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
+from derive.description.fields import is_field
 from derive.description.mechanism import DescriptionError, Mechanism
-from derive.description.places import in_place
+from derive.description.places import in_place, line_of_field
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
 
@@ -54,6 +56,8 @@ def load(path: Path) -> Mechanism:
         return validate(mechanism)
     except DescriptionError as problem:
         raise DescriptionError(in_place(path, str(problem))) from None
+    except Exception as problem:  # what no check foresees is still about this file
+        raise DescriptionError(in_place(path, f"{type(problem).__name__}: {_text(problem)}")) from None
 
 
 def _executed(path: Path) -> ModuleType:
@@ -79,7 +83,9 @@ def _fault(problem: BaseException, path: Path) -> str:
         text = "the description ends the program"
     else:
         text = f"{type(problem).__name__}: {_text(problem)}"
-    return f"{_line_of(problem, path)}: {with_remedy(text)}"
+    field = re.match(r"(\w+) must", text)
+    place = f"{path}:{line_of_field(path, field[1])}" if field and is_field(field[1]) else _line_of(problem, path)
+    return f"{place}: {with_remedy(text)}"
 
 
 def _with_aliases(mechanism: Mechanism) -> tuple[Mechanism, ...]:

@@ -33,6 +33,7 @@ from derive.description.dimensions import (
     signed_length,
 )
 from derive.description.errors import DescriptionError
+from derive.description.fields import as_stated
 from derive.description.joints import (
     Interval,
     Joint,
@@ -186,6 +187,10 @@ class Task:
     position: str
     turning: Turning = Turning.NONE
 
+    def __post_init__(self) -> None:
+        if not isinstance(self.turning, Turning):
+            raise DescriptionError(f"task: {self.turning!r} is no Turning: as in task=Task('xyz', Turning.ABOUT_Z)")
+
 
 @dataclass(frozen=True)
 class Mechanism:
@@ -234,6 +239,8 @@ class Mechanism:
     """Sentences for the user's documentation: definitions of our own, and properties to know."""
 
     def __post_init__(self) -> None:
+        for name, value in as_stated(vars(self)).items():
+            object.__setattr__(self, name, value)
         object.__setattr__(self, "positive", tuple(sp.sympify(v) for v in self.positive))
         object.__setattr__(self, "closure", tuple(sp.sympify(v) for v in self.closure))
         object.__setattr__(self, "home", tuple(sp.sympify(v) for v in self.home))
@@ -309,6 +316,11 @@ def rod(
     plate_cone: sp.Expr | None = None,
 ) -> Rod:
     """A rigid rod between a point that joints move and a point of the plate."""
+    if len(base) != len(plate):
+        raise DescriptionError(
+            f"rod {name!r}: its ends have {len(base)} and {len(plate)} coordinates: give both in the plane, or both in "
+            "space"
+        )
     return Rod(
         name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length), base_cone, plate_cone
     )

@@ -56,6 +56,12 @@ def line_of(path: Path, problem: str) -> int:
     return next(named, next(said, stated.get("", 1)))
 
 
+def line_of_field(path: Path, field: str) -> int:
+    """The line of a field of the mechanism, else that of the mechanism."""
+    stated = _fields(ast.parse(path.read_text(encoding="utf-8")))
+    return stated.get(field, stated.get("", 1))
+
+
 def _fields(tree: ast.Module) -> dict[str, int]:
     """The lines of the fields of the mechanism, and under "" that of the mechanism."""
     found: dict[str, int] = {}

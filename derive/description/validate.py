@@ -39,6 +39,8 @@ _OF_BRANCHES = ("sigma", "branch", "sign")
 _RESERVED = {"check_limits", "machine_scale", "x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123")}
 """Names that programs need for other values."""
 
+_MARKS = ("(*", "*)", '"""', "\\")
+
 Expressions = tuple[tuple[str, sp.Basic], ...]
 
 
@@ -51,6 +53,7 @@ def validate(mechanism: Mechanism) -> Mechanism:
 
 def _problems(mechanism: Mechanism) -> Iterator[str]:
     yield from _names(mechanism)
+    yield from _texts(mechanism)
     taken = _taken(mechanism)
     for parameter in mechanism.parameters:
         yield from _parameter(parameter, taken)
@@ -61,6 +64,24 @@ def _problems(mechanism: Mechanism) -> Iterator[str]:
     yield from _shape(mechanism)
     yield from _symbols(mechanism)
     yield from _constraints(mechanism)
+
+
+def _texts(mechanism: Mechanism) -> Iterator[str]:
+    """Texts stand in comments and documentation: they end none of these, and are one line each."""
+    stated = [
+        *((f"the {word}", text) for word, text in (("summary", mechanism.summary), ("source", mechanism.source))),
+        *((f"parameter {p.name!r}", p.meaning) for p in mechanism.parameters),
+        *((f"joint {j.name!r}", j.meaning) for j in mechanism.joints),
+        *((f"limited quantity {q.name!r}", q.meaning) for q in mechanism.limited),
+        *(("a note", note) for note in mechanism.notes),
+        *(("the title", title) for title in (mechanism.title,) if title is not None),
+        *(("a constraint", c.message) for c in mechanism.constraints),
+    ]
+    for place, text in stated:
+        marks = [mark for mark in _MARKS if mark in text]
+        if marks or not text.isprintable():
+            shown = repr(marks[0]) if marks else "a line break, or a character that is not printed"
+            yield f"{place}: its text holds {shown}, which would end a comment or a text: write it without"
 
 
 def _names(mechanism: Mechanism) -> Iterator[str]:
@@ -81,6 +102,12 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
         for name, count in Counter(n.lower() for n in names).items():
             if count > 1:
                 yield f"{kind} {name!r} is given {count} times"
+    for branch in mechanism.branches:
+        yield from (
+            f"branch {branch.name!r}: {word!r} cannot name it, or a side of it: lower-case words joined by _"
+            for word in (branch.name, *branch.names)
+            if not _PARAMETER.match(word)
+        )
     for joint in mechanism.joints:
         if not _AXIS.match(joint.name):
             yield f"{joint.name!r} cannot name a joint: a capital letter, then letters and digits"
@@ -107,6 +134,15 @@ def _parameter(parameter: Parameter, taken: set[str]) -> Iterator[str]:
         yield f"{name!r} cannot name a parameter: lower-case words joined by _"
     if name.replace("_", "") in taken:
         yield f"{name!r} cannot name a parameter: programs of this mechanism have another value of that name"
+    stated = (
+        parameter.nominal,
+        parameter.low,
+        parameter.high,
+        *(() if parameter.default is None else (parameter.default,)),
+    )
+    if strange := [value for value in stated if not isinstance(value, int | float)]:
+        yield f"parameter {name!r}: {strange[0]!r} is not a number"
+        return
     if not parameter.low < parameter.high:
         yield f"parameter {name!r}: its range {_interval(parameter)} is empty"
     for word, value in (("nominal value", parameter.nominal), ("default", parameter.default)):

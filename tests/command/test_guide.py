@@ -130,16 +130,16 @@ def _residual(machine: Mechanism, given: Mapping[str, float]) -> Callable[[Seque
 def test_the_walk(folder: Folder) -> None:
     """The commands of the guide, in their order, and the path that is plotted at the end."""
     assert [c for c in COMMANDS if not c.startswith("pip")] == [
-        "softkin new my_machine.py",
-        "softkin check my_machine.py",
-        "softkin explain my_machine.py",
-        "softkin derive my_machine.py --out build",
+        "softkin new machines/my_machine.py",
+        "softkin check machines/my_machine.py",
+        "softkin explain machines/my_machine.py",
+        "softkin derive machines/my_machine.py --out build",
     ]
     for command in COMMANDS:
         program, *arguments = command.split()
         assert program == "softkin" and main(arguments) == 0 or program == "pip"
     plot = "import matplotlib; matplotlib.use('Agg')\n" + PROGRAMS["plot_path"]
-    python(plot, folder.path / "build/python")
+    python(plot, folder.path, folder.path / "build/python")  # as a script here finds its packages
     assert (folder.path / "path.png").stat().st_size > 5000
 
 

@@ -40,6 +40,21 @@ WRONG: dict[str, str] = {
     "defines no MECHANISM; assign the description": changed(ARM, ("MECHANISM =", "ARM =")),
     "the description ends the program; let the file define MECHANISM": ARM + "\nexit()\n",
     "branch '…' needs two names with the signs +1 and -1": changed(ARM, ("right=-1", "right=+1")),
+    "… must be a tuple, not a …: a comma makes the tuple": changed(ARM, ("held=(E1,)", "held=(E1)")),
+    "… must not be …: as in …": changed(ARM, ('Task("xy")', '"xy"')),
+    "… must not hold …: as in …": changed(ARM, ("joints=(E1, A1, A2)", 'joints=("E1", "A1", "A2")')),
+    "task: '…' is no Turning": changed(MILL, ("Turning.DIRECTION),", '"direction"),')),
+    "TypeError: …; take sin, cos and sqrt from sympy": changed(ARM, ("from sympy", "from math")),
+    "TypeError: …; a chain is a product": changed(ARM, ("Tx(L1) * Rz", "Tx(L1) + Rz")),
+    "TypeError: length() missing 1 required …; as in length(": changed(ARM, (", nominal=400.0", "")),
+    "parameter '…': '…' is not a number": changed(ARM, ("nominal=400.0", 'nominal="400"')),
+    "…: its text holds …, which would end a comment or a text": changed(ARM, ("Axis A1 to axis A2", "A1 (* to *) A2")),
+    "branch '…': '…' cannot name it, or a side of it: lower-case words": changed(ARM, ('"elbow"', '"my elbow"')),
+    "rod '…': its ends have 2 and 3 coordinates": changed(
+        FIVE_BAR, ('rod("1", KNEE_1, TOOL, ROD_1)', 'rod("1", KNEE_1, (X, Y, 0), ROD_1)')
+    ),
+    "… is taken by …: choose another name": changed(ARM, ('"ArmOnTrack"', '"Softkin_Root"')),
+    "… declares …, which is a word of IEC 61131-3": changed(ARM, ('"ArmOnTrack"', '"Array"')),
     "'…' cannot name a function block; take letters, digits and single _": changed(
         ARM, ('"ArmOnTrack"', '"Arm on track"')
     ),
@@ -110,7 +125,7 @@ WRONG: dict[str, str] = {
     ),
     "branch '…': its indicator agrees with 0 steps, not one; …softkin explain…": changed(ARM, ("sin(A2)", "sin(A1)")),
     "branches '…' and '…' name the same two solutions; leave one of them out": changed(
-        ARM, (f"branches=({ELBOW},)", f'branches=({ELBOW}, branch("bend", -sin(A2), in_=+1, out=-1))')
+        ARM, (f"branches=({ELBOW},)", f'branches=({ELBOW}, branch("bend", -sin(A2), inward=+1, outward=-1))')
     ),
     "forward kinematics has 1 two-root steps: one assembly names one; as in assembly(": changed(
         FIVE_BAR,
