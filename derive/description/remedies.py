@@ -10,6 +10,7 @@ from derive.description.mechanism import Mechanism
 
 _EXPLAIN = "`softkin explain` prints the determinant of every step"
 REMEDIES: tuple[tuple[str, str], ...] = (
+    (r"with offset_interface=False it could be", "write offset_interface=False, unless such points are commanded"),
     (r"defines no MECHANISM", "assign the description: MECHANISM = Mechanism(…)"),
     (r"^SyntaxError", "correct this line, or the one before it"),
     (r"^NameError", "define it above this line, or import it from derive.mechanism, derive.frames or sympy"),
@@ -55,10 +56,6 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"a flip must stand at the end", "put it last in the chain"),
     (r"its rotation is not one turn about z", "command the Turning that the flange makes, or Turning.NONE"),
     (r"is not commanded but the joints move it", 'command it too: task=Task("xyz")'),
-    (
-        r"with offset_interface=False it could be",
-        "write offset_interface=False, unless a tool with an X or Y is needed",
-    ),
     (r"its end must be a point of the plate", "write it with X, Y, Z, or with on_plate(…)"),
     (r"no pose near the home pose", "compute home=(…) from the nominal lengths"),
     (r"Initialize refuses the nominal parameters", "choose nominal values that fit each other, and a home in reach"),
