@@ -23,7 +23,7 @@ from derive.kinematics.inverse import Inverse, solve_pose
 from derive.kinematics.number_of_joints import check_joints
 from derive.kinematics.scan.derivations import without_search
 from derive.pipeline import GenerationError, reason_of
-from derive.solver.solve import Step
+from derive.solver.solve import Step, Unsolved
 
 _FORMS = {
     "affine": "linear in it",
@@ -47,11 +47,10 @@ def explain(options: argparse.Namespace) -> int:
     def told(path: Path, stages: Stages) -> None:
         mechanism = load(path)
         try:
-            lines = list(explanation(mechanism))
+            for line in explanation(mechanism):
+                stages.line(line)
         except Exception as problem:
             raise GenerationError(in_place(path, reason_of(problem))) from None
-        for line in lines:
-            stages.line(line)
 
     return each(described(options.files), told, keep_going=True)
 
@@ -63,7 +62,13 @@ def explanation(mechanism: Mechanism) -> Iterator[str]:
         parameter, joint = mechanism.search.where.name, mechanism.search.joint.name
         yield f"Where {parameter} is not 0, {joint} is scanned for roots. The steps below are those where it is 0."
         mechanism = without_search(mechanism)
-    inverse = solve_pose(mechanism)
+    try:
+        inverse = solve_pose(mechanism)
+    except Unsolved as stuck:
+        yield "Inverse kinematics, as far as it goes"
+        for number, step in enumerate(stuck.steps, 1):
+            yield from _step(mechanism, number, step, ())
+        raise
     forward = assembled(mechanism, pose_at_axes(mechanism)).forward
     whole = with_derived_branches(mechanism, inverse, forward)
     assignments = assign(whole, inverse, forward)

@@ -58,6 +58,9 @@ Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 class Unsolved(Exception):
     """No subproblem fits what is left; the message tells the unknowns, the equations, and what would help."""
 
+    steps: tuple[Step, ...] = ()
+    """The steps before."""
+
 
 @dataclass(frozen=True)
 class Step:
@@ -109,7 +112,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
             for condition in conditions(problem):
                 binding = record.commit(Binding("rotation", (), condition.lets, residual=condition.expression))
                 left += [binding.residual] if binding.residual is not None else []
-        problem, binding, sums = _next(problem, sums, arguments)
+        problem, binding, sums = _next_after(steps, problem, sums, arguments)
         found, binding = binding, record.commit(binding)
         steps.append(Step(problem, found, binding))
         rules.append(binding.rule)
@@ -135,6 +138,17 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         with_known_signs(record.statements, signs),
         tuple(steps),
     )
+
+
+def _next_after(
+    steps: Sequence[Step], problem: Problem, sums: tuple[Sum, ...], arguments: Sequence[sp.Expr]
+) -> tuple[Problem, Binding, tuple[Sum, ...]]:
+    """The next step; where there is none, the refusal holds those before it."""
+    try:
+        return _next(problem, sums, arguments)
+    except Unsolved as stuck:
+        stuck.steps = tuple(steps)
+        raise
 
 
 def _next(

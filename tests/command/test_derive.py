@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.command.files import RAIL, ROOT, SCARA, Folder, python
+from tests.command.wrong import changed
 
 USED = """
 import my_scara, softkin
@@ -172,6 +173,28 @@ def test_new_writes_a_description_that_can_be_derived(folder: Folder) -> None:
     said = folder.run("new", "arms/two_links.py")
     assert said.status == 2 and "is there already" in said.err
     assert (folder.path / "arms/two_links.py").read_text() == text
+
+
+@pytest.mark.parametrize(("first", "second"), [(0.325, 0.225), (3250.0, 2250.0)])
+def test_lengths_may_be_numbers_of_any_unit(folder: Folder, first: float, second: float) -> None:
+    """A machine without parameters is measured over its own size, in metres as in millimetres."""
+    text = changed(
+        SCARA,
+        ("parameters=(L1, L2, HEIGHT),", ""),
+        ("Tx(L1) *", f"Tx({first}) *"),
+        ("Tx(L2) * Tz(HEIGHT + A3)", f"Tx({second}) * Tz(A3)"),
+    )
+    folder.write("scara.py", text)
+    said = folder.run("check", "scara.py")
+    assert (said.status, said.err) == (0, "") and "2 solutions" in said.out
+
+
+def test_an_output_that_cannot_be_written_is_told(folder: Folder) -> None:
+    folder.write("rail.py", RAIL)
+    folder.write("taken", "a file")
+    said = folder.run("derive", "rail.py", "--out", "taken")
+    assert said.status == 2 and said.err.startswith("error: ") and said.err.count("\n") == 1
+    assert (folder.path / "taken").read_text() == "a file"
 
 
 def test_a_missing_file_and_an_empty_folder(folder: Folder) -> None:

@@ -9,6 +9,7 @@ import pytest
 from derive.command.explain import explanation
 from derive.description.catalogue import MECHANISMS, load
 from tests.command.files import RAIL, SCARA, Folder
+from tests.command.wrong import changed
 
 
 def explained(file: str) -> str:
@@ -106,3 +107,14 @@ def test_a_machine_that_cannot_be_derived_is_one_message(folder: Folder) -> None
     assert said.status == 2 and said.err.count("\n") == 1
     assert said.err.startswith("error: wrong.py:9: the closure does not determine a1, a2")
     assert "A2 <- affine <- y" in said.out
+
+
+def test_the_steps_before_a_refusal_are_shown(folder: Folder) -> None:
+    """Where no rule fits what is left, the author sees how far it went."""
+    cubic = changed(
+        RAIL, ("chain=Tx(A1) * Ty(A2)", "closure=(X - A1, Y - A2 - A2**3)"), ("Task, linear", "Task, X, Y, linear")
+    )
+    folder.write("cubic.py", cubic)
+    said = folder.run("explain", "cubic.py")
+    assert said.status == 2 and "no subproblem determines a2: 1 unknown in 1 equation" in said.err
+    assert "Inverse kinematics, as far as it goes\n  1. A1 <- affine <- x\n" in said.out, said.out
