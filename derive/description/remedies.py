@@ -51,6 +51,7 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"there are only \d+ joints", "command less, or add joints"),
     (r"the closure has \d+ equations, and", "state one equation for each commanded quantity"),
     (r"its indicator agrees with", f"{_EXPLAIN}: name a branch by an expression with the same sign, or leave it out"),
+    (r"no branch names the two", f"with a root scan every branch has a name; {_EXPLAIN}"),
     (r"name the same two solutions", f"leave one of them out; {_EXPLAIN}"),
     (r"one assembly names one", 'as in assembly("tcp", cross(ROD_1, ROD_2), margin="aligned", below=-1, above=+1)'),
     (r"a flip must stand at the end", "put it last in the chain"),

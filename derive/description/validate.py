@@ -206,6 +206,8 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
         yield "the mechanism needs either a chain or closure equations"
     if mechanism.task.position not in ("xy", "xyz") and not mechanism.is_orientation:
         yield f"the task commands {mechanism.task.position!r}: it must be 'xy', 'xyz', or '' of a chain that only turns"
+    if mechanism.search is not None and not any(b.is_crossing for b in mechanism.branches):
+        yield "search needs a branch that tells its roots apart: as in crossing('side', rising=+1, falling=-1)"
     cones = [cone for rod in mechanism.rods for cone in (rod.base_cone, rod.plate_cone) if cone is not None]
     if cones and not mechanism.home:
         yield "a cone of a rod's joint is about the rod at the home pose, and the mechanism has none"

@@ -146,6 +146,6 @@ def test_the_walk(folder: Folder) -> None:
 def test_the_guide_names_what_there_is() -> None:
     """Every field of a mechanism, and every way to make a parameter, stands in the guide."""
     told = set(re.findall(r"\w+", TEXT))
-    assert {f.name for f in fields(Mechanism)} - {"search", "bounds", "class_name"} <= told
+    assert {f.name for f in fields(Mechanism)} - {"bounds", "class_name"} <= told
     for word in ("length", "signed_length", "optional_length", "distance", "coordinate", "angle", "pitch", "gear"):
         assert word in told and hasattr(vocabulary, word)
