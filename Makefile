@@ -17,7 +17,7 @@ BENCH := .venv-bench
 .PHONY: generate check test quick bench
 
 generate: $(READY)
-	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate $(if $(FRESH),--fresh)) $(OPTIONS)
+	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
 
 check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)
