@@ -7,6 +7,9 @@ PROFILE ?=
 OPTIONS := $(if $(PROFILE),--profile $(PROFILE))
 # make generate FRESH=1 derives everything; else what did not change is taken from generated.cache/.
 FRESH ?=
+# make generate MECHANISM=my_machine.py OUT=build derives that machine alone: softkin derive my_machine.py --out build
+MECHANISM ?=
+OUT ?= build
 READY := $(ENVIRONMENT)/ready
 
 BENCH := .venv-bench
@@ -14,7 +17,7 @@ BENCH := .venv-bench
 .PHONY: generate check test quick bench
 
 generate: $(READY)
-	$(RUN) -m derive generate $(OPTIONS) $(if $(FRESH),--fresh)
+	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
 
 check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)
@@ -33,7 +36,7 @@ $(BENCH)/ready: bench/requirements.txt
 	$(BENCH)/bin/python -m pip install --quiet --requirement bench/requirements.txt
 	touch $@
 
-$(READY): pyproject.toml
+$(READY): pyproject.toml setup.py
 	$(PYTHON) -c 'import sys; sys.exit("Softkin needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'
 	$(PYTHON) -m venv $(ENVIRONMENT)
 	$(RUN) -m pip install --quiet --editable '.[test]'

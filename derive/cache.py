@@ -28,6 +28,7 @@ from typing import Any
 import sympy as sp
 
 from derive.description.catalogue import MECHANISMS, Entry
+from derive.emit.language import TEMPLATES
 
 ROOT = MECHANISMS.parents[1]
 _KEPT = 400
@@ -124,7 +125,8 @@ def _sources(root: Path) -> Iterator[Path]:
     for path in (root / "derive").rglob("*.py"):
         if path.parent != root / "derive" / "mechanisms" or path.name.startswith("_"):
             yield path
-    yield from (path for path in (root / "templates").rglob("*") if path.is_file())
+    templates = root / TEMPLATES.relative_to(ROOT)
+    yield from (path for path in templates.rglob("*") if path.is_file() and path.suffix != ".pyc")
     yield from root.glob("pyproject.toml")
 
 
@@ -132,9 +134,7 @@ def _sources(root: Path) -> Iterator[Path]:
 def _libraries() -> tuple[str, ...]:
     """Every library that the compiler is built on, directly or not, with its version."""
     found: dict[str, str] = {}
-    open_names = list(
-        _required(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"])
-    )
+    open_names = list(_required(_own_requirements()))
     while open_names:
         name = open_names.pop()
         if name not in found:
@@ -145,6 +145,14 @@ def _libraries() -> tuple[str, ...]:
                 continue
             open_names += _required(metadata.requires(name) or ())
     return tuple(f"{name} {found[name]}" for name in sorted(found))
+
+
+def _own_requirements() -> Iterable[str]:
+    """What the compiler is built on: of a source tree its project file says so, of a wheel its metadata."""
+    project = ROOT / "pyproject.toml"
+    if project.is_file():
+        return list(tomllib.loads(project.read_text(encoding="utf-8"))["project"]["dependencies"])
+    return metadata.requires("softkin-compiler") or ()
 
 
 def _required(requirements: Iterable[str]) -> Iterator[str]:

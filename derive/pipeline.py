@@ -6,7 +6,7 @@ import gc
 import time
 import traceback
 from base64 import b64decode, b64encode
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
@@ -17,21 +17,32 @@ from typing import Any
 from derive.cache import Cache, entry_key, key_of
 from derive.description.catalogue import Entry
 from derive.description.mechanism import DescriptionError, Mechanism
+from derive.description.places import in_place
 from derive.emit.language import Language, Part
+from derive.emit.named_package import NamedPackage
 from derive.emit.python import package as python
-from derive.emit.softmotion.library import StructuredTextFiles
+from derive.emit.softmotion.library import StructuredTextFiles, most_axes
 from derive.ir.verify import BrokenProgram
 from derive.kinematics.kinematics import Evidence, Kinematics
 from derive.solver.solve import Unsolved
 from derive.witness.disagreement import Disagreement
 
 PROCESSES = 2
-_EXPECTED = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
+UNFIT = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
 """What a wrong description leads to: the message says enough."""
+Told = Callable[[str, str], None]
+"""What is told about a stage: its name, and its result, which is empty at its begin."""
 
 
 class GenerationError(Exception):
     """Nothing can be generated; the message names the file and the thing."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A mechanism that cannot be derived, in one message with file, line and remedy."""
+
+    message: str
 
 
 @dataclass(frozen=True)
@@ -50,17 +61,29 @@ class Built:
     """Path below the output folder → bytes. They are made where the mechanism is derived: drawing takes as long."""
     evidence: Evidence | None = None
     """What the witness found; None where it was kept from an earlier run."""
+    undrawn: str = ""
+    """Why there is no picture: a drawing is no part of the proof, and a machine without one is whole."""
 
     def as_plain(self) -> dict[str, Any]:
         """What JSON can hold."""
         pictures = {name: b64encode(data).decode() for name, data in self.pictures.items()}
-        return {"derived": self.derived, "measured": self.measured, "parts": dict(self.parts), "pictures": pictures}
+        return {
+            "derived": self.derived,
+            "measured": self.measured,
+            "parts": dict(self.parts),
+            "pictures": pictures,
+            "undrawn": self.undrawn,
+        }
 
 
 def from_plain(data: Mapping[str, Any]) -> Built:
     """What `as_plain` gave."""
     pictures = {name: b64decode(text) for name, text in data["pictures"].items()}
-    return Built(data["derived"], data["measured"], None, data["parts"], pictures)
+    return Built(data["derived"], data["measured"], None, data["parts"], pictures, undrawn=data["undrawn"])
+
+
+def _nobody(stage: str, found: str) -> None:
+    """Tell nobody."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +109,14 @@ def work_of(entries: Sequence[Entry], cache: Cache | None, foundation: str) -> W
 
 def derive_all(work: Work, profile: str | None) -> Iterator[Built]:
     """Every mechanism, in the order of the catalogue; raises `GenerationError` at the first that cannot be derived."""
+    for result in attempts(work, profile):
+        if isinstance(result, Failure):
+            raise GenerationError(result.message)
+        yield result
+
+
+def attempts(work: Work, profile: str | None) -> Iterator[Built | Failure]:
+    """What came of every mechanism, in the order of the catalogue."""
     if not work.missing:
         yield from (kept for kept in work.kept if kept is not None)
         return
@@ -94,12 +125,11 @@ def derive_all(work: Work, profile: str | None) -> Iterator[Built]:
     _load()
     with ProcessPoolExecutor(max_workers=min(PROCESSES, len(work.missing)), initializer=gc.disable) as pool:
         derived = pool.map(partial(_attempt, profile), work.missing)
-        for (path, _), kept in zip(work.entries, work.kept, strict=True):
-            result = next(derived) if kept is None else kept
-            if isinstance(result, str):
-                pool.shutdown(cancel_futures=True)
-                raise GenerationError(f"{path}: {result}")
-            yield result
+        try:
+            for kept in work.kept:
+                yield next(derived) if kept is None else kept
+        finally:
+            pool.shutdown(cancel_futures=True)
 
 
 def _load() -> None:
@@ -108,32 +138,64 @@ def _load() -> None:
         import_module(f"derive.{room}")
 
 
-def derive_one(mechanism: Mechanism, profile: str | None = None) -> Built:
-    """Derive one mechanism, measure it, draw it, and write it in every language."""
+def derive_one(mechanism: Mechanism, profile: str | None = None, told: Told = _nobody) -> Built:
+    """Derive one mechanism, measure it, draw it, and write it in every language.
+
+    told: called at the begin of each of these stages with its name and "", at its end with its name and the result.
+    """
     # Not loaded where nothing is derived: CasADi and matplotlib take longer to start than the rest of such a run.
-    from derive.emit.softmotion.pictures import pictures_of
+    start = time.perf_counter()
+    whole = derive_and_measure(mechanism, told)
+    outputs = languages(profile)
+    told("draw", "")
+    drawn: Mapping[str, bytes] = {}
+    if len(mechanism.joints) <= most_axes(profile):
+        drawn, undrawn = _pictures(whole)
+        whole = replace(whole, undrawn=undrawn)
+    told("draw", whole.undrawn or ", ".join(drawn) or "nothing: it has no block")
+    found = ((language.name, language.part(whole)) for language in outputs)
+    parts = {name: part for name, part in found if part is not None}
+    pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in drawn.items()}
+    assert whole.evidence is not None
+    measured, seconds = _measured(whole.evidence), time.perf_counter() - start
+    return Built(_derived(whole), measured, seconds, parts, pictures, whole.evidence, whole.undrawn)
+
+
+def derive_and_measure(mechanism: Mechanism, told: Told = _nobody) -> Kinematics:
+    """Derive one mechanism and measure it. Raises what `UNFIT` lists, where one of them fails."""
     from derive.kinematics.build import build
+    from derive.report.branch_meanings import with_meanings
     from derive.report.self_test import self_test
     from derive.witness import witness
 
-    start = time.perf_counter()
-    derived = build(mechanism)
+    told("derive", "")
+    derived = with_meanings(build(mechanism))
+    told("derive", _derived(derived).removeprefix(mechanism.name).strip())
+    told("measure", "")
     evidence = witness(derived)
-    whole = replace(derived, evidence=evidence, self_test=self_test(derived))
-    found = ((language.name, language.part(whole)) for language in languages(profile))
-    parts = {name: part for name, part in found if part is not None}
-    drawn = pictures_of(derived) if StructuredTextFiles.name in parts else {}
-    pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in drawn.items()}
-    return Built(_derived(whole), _measured(evidence), time.perf_counter() - start, parts, pictures, evidence)
+    told("measure", _measured(evidence))
+    return replace(derived, evidence=evidence, self_test=self_test(derived))
 
 
-def languages(profile: str | None = None) -> tuple[Language, ...]:
-    """All output languages, for a profile of the SoftMotion contract (its own if `None`).
+def _pictures(kinematics: Kinematics) -> tuple[Mapping[str, bytes], str]:
+    """The pictures by their paths, or the reason why there are none."""
+    from derive.emit.softmotion.pictures import pictures_of
+
+    try:
+        return pictures_of(kinematics), ""
+    except DescriptionError as problem:
+        return {}, _one_line(problem)
+    except Exception as problem:  # whatever a drawing meets, the formulas are proven without it
+        return {}, f"{type(problem).__name__}: {_one_line(problem)}"
+
+
+def languages(profile: str | None = None, package: str = python.PACKAGE) -> tuple[Language, ...]:
+    """All output languages, for a profile of the SoftMotion contract (its own if `None`), and a name of the package.
 
     Raises `GenerationError` for a profile that the contract has not.
     """
     try:
-        return python, StructuredTextFiles(profile)
+        return python if package == python.PACKAGE else NamedPackage(package), StructuredTextFiles(profile)
     except ValueError as problem:
         raise GenerationError(str(problem)) from None
 
@@ -182,15 +244,21 @@ def _measured(seen: Evidence) -> str:
     return f"{poses}  round trip {found.round_trip:.0e}  Jacobian {found.jacobian:.0e}  {solutions}"
 
 
-def _attempt(profile: str | None, entry: Entry) -> Built | str:
+def _attempt(profile: str | None, entry: Entry) -> Built | Failure:
     """Derive in a worker process: a problem comes back as text, because not every exception can travel."""
+    path, mechanism = entry
     try:
-        return derive_one(entry[1], profile)
-    except _EXPECTED as problem:
-        return _one_line(problem)
+        return derive_one(mechanism, profile)
     except Exception as problem:
-        place = traceback.extract_tb(problem.__traceback__)[-1]
-        return f"{type(problem).__name__}: {_one_line(problem)} ({Path(place.filename).name}:{place.lineno})"
+        return Failure(in_place(path, reason_of(problem)))
+
+
+def reason_of(problem: Exception) -> str:
+    """What a problem says: of one that no description should lead to, also where it was met."""
+    if isinstance(problem, UNFIT):
+        return _one_line(problem)
+    place = traceback.extract_tb(problem.__traceback__)[-1]
+    return f"{type(problem).__name__}: {_one_line(problem)} ({Path(place.filename).name}:{place.lineno})"
 
 
 def _one_line(problem: Exception) -> str:

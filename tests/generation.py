@@ -8,9 +8,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from unittest.mock import patch
 
-from derive import __main__ as command
+from derive.command import catalogue as command
+from derive.command.line import main
 from derive.kinematics.kinematics import Evidence
-from derive.pipeline import Built, Work
+from derive.pipeline import Built, Failure, Work
 
 
 def generate(output: str, evidence: str) -> int:
@@ -18,16 +19,16 @@ def generate(output: str, evidence: str) -> int:
     status of the command.
     """
     found: dict[str, Evidence] = {}
-    derive_all = command.derive_all
+    attempts = command.attempts
 
-    def witnessed(work: Work, profile: str | None) -> Iterator[Built]:
-        for (_, mechanism), built in zip(work.entries, derive_all(work, profile), strict=True):
-            assert built.evidence is not None, "the cache was read"
+    def witnessed(work: Work, profile: str | None) -> Iterator[Built | Failure]:
+        for (_, mechanism), built in zip(work.entries, attempts(work, profile), strict=True):
+            assert isinstance(built, Built) and built.evidence is not None, "the cache was read"
             found[mechanism.name] = built.evidence
             yield built
 
-    with patch.object(command, "derive_all", witnessed):
-        status = command.main(["generate", "--fresh", "--output", output])
+    with patch.object(command, "attempts", witnessed):
+        status = main(["generate", "--fresh", "--output", output])
     Path(evidence).write_bytes(pickle.dumps(found))
     return status
 

@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from derive import __main__ as command_line
 from derive import cache as caching
 from derive.__main__ import OUTPUT, main
 from derive.cache import Cache, canonical, entry_key, foundation, key_of
+from derive.command import catalogue as command_line
 from derive.description.catalogue import MECHANISMS, load
 from derive.output import differences
 from derive.progress import Progress

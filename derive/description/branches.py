@@ -24,6 +24,8 @@ class Branch:
     signs: tuple[int, int]
     margin: str
     """The name of the singularity at which its two solutions meet."""
+    meanings: tuple[str, str] = ("", "")
+    """What both names mean, of a branch that no description names."""
 
     @property
     def is_crossing(self) -> bool:

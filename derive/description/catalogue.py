@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 import traceback
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 
+from derive.description.fields import is_field
 from derive.description.mechanism import DescriptionError, Mechanism
+from derive.description.places import in_place, line_of_field
+from derive.description.remedies import with_remedy
 from derive.description.validate import validate
 
 MECHANISMS = Path(__file__).resolve().parents[1] / "mechanisms"
@@ -16,33 +22,70 @@ Entry = tuple[Path, Mechanism]
 
 def catalogue(folder: Path = MECHANISMS) -> tuple[Entry, ...]:
     """All mechanisms with their files, each followed by its aliases. Raises `DescriptionError`."""
-    files = sorted(p for p in folder.glob("*.py") if not p.name.startswith("_"))
-    if not files:
-        raise DescriptionError(f"{folder}: no mechanism files")
-    entries = tuple((path, mechanism) for path in files for mechanism in _with_aliases(load(path)))
-    _refuse_duplicates(entries)
+    entries, faults = catalogue_and_faults(folder)
+    if faults:
+        raise DescriptionError(faults[0])
     return entries
 
 
+def catalogue_and_faults(folder: Path) -> tuple[tuple[Entry, ...], list[str]]:
+    """The mechanisms of a folder that can be read, and what is wrong with the other files. Raises `DescriptionError`
+    where there is no file.
+    """
+    files = sorted(p for p in folder.glob("*.py") if not p.name.startswith("_"))
+    if not files:
+        raise DescriptionError(f"{folder}: no mechanism files")
+    entries: list[Entry] = []
+    faults: list[str] = []
+    for path in files:
+        try:
+            mechanisms = _with_aliases(load(path))
+            _refuse_taken(path, mechanisms, entries)
+            entries += [(path, mechanism) for mechanism in mechanisms]
+        except DescriptionError as problem:
+            faults.append(str(problem))
+    return tuple(entries), faults
+
+
 def load(path: Path) -> Mechanism:
-    """The mechanism that a file describes; raises `DescriptionError` naming the file and what is wrong."""
-    spec = importlib.util.spec_from_file_location(f"mechanism_{path.stem}", path)
-    if spec is None or spec.loader is None:
-        raise DescriptionError(f"{path}: not a Python file")
-    module = importlib.util.module_from_spec(spec)
-    try:
-        spec.loader.exec_module(module)
-    except DescriptionError as problem:
-        raise DescriptionError(f"{path}: {problem}") from None
-    except Exception as problem:
-        raise DescriptionError(f"{_line_of(problem, path)}: {type(problem).__name__}: {_text(problem)}") from None
-    mechanism = getattr(module, "MECHANISM", None)
+    """The mechanism that a file describes; raises `DescriptionError` naming the file, the line, and what is wrong."""
+    mechanism = vars(_executed(path)).get("MECHANISM")
     if not isinstance(mechanism, Mechanism):
-        raise DescriptionError(f"{path}: defines no MECHANISM")
+        raise DescriptionError(in_place(path, "defines no MECHANISM"))
     try:
         return validate(mechanism)
     except DescriptionError as problem:
-        raise DescriptionError(f"{path}: {problem}") from None
+        raise DescriptionError(in_place(path, str(problem))) from None
+    except Exception as problem:  # what no check foresees is still about this file
+        raise DescriptionError(in_place(path, f"{type(problem).__name__}: {_text(problem)}")) from None
+
+
+def _executed(path: Path) -> ModuleType:
+    """The module of a file, executed: where that fails, the message names the line of the file."""
+    if not path.is_file():
+        raise DescriptionError(f"{path}: there is no such file; `softkin new {path}` writes one")
+    spec = importlib.util.spec_from_file_location(f"mechanism_{path.stem}", path)
+    if spec is None or spec.loader is None:
+        raise DescriptionError(f"{path}: not a Python file: a description is a file whose name ends in .py")
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except (Exception, SystemExit) as problem:
+        raise DescriptionError(_fault(problem, path)) from None
+    return module
+
+
+def _fault(problem: BaseException, path: Path) -> str:
+    """What went wrong while a file was executed, with its line and what to do."""
+    if isinstance(problem, DescriptionError):
+        text = str(problem)
+    elif isinstance(problem, SystemExit):
+        text = "the description ends the program"
+    else:
+        text = f"{type(problem).__name__}: {_text(problem)}"
+    field = re.match(r"(\w+) must", text)
+    place = f"{path}:{line_of_field(path, field[1])}" if field and is_field(field[1]) else _line_of(problem, path)
+    return f"{place}: {with_remedy(text)}"
 
 
 def _with_aliases(mechanism: Mechanism) -> tuple[Mechanism, ...]:
@@ -51,21 +94,21 @@ def _with_aliases(mechanism: Mechanism) -> tuple[Mechanism, ...]:
     return (mechanism, *copies)
 
 
-def _refuse_duplicates(entries: tuple[Entry, ...]) -> None:
-    owners: dict[str, Path] = {}
-    for path, mechanism in entries:
-        first = owners.setdefault(mechanism.name.lower(), path)
-        if first is not path:
-            raise DescriptionError(f"{path}: the name {mechanism.name!r} is taken by {first}")
+def _refuse_taken(path: Path, mechanisms: tuple[Mechanism, ...], entries: Sequence[Entry]) -> None:
+    owners = {mechanism.name.lower(): owner for owner, mechanism in entries}
+    for name in (mechanism.name for mechanism in mechanisms):
+        if name.lower() in owners:
+            raise DescriptionError(f"{path}: the name {name!r} is taken by {owners[name.lower()]}")
 
 
-def _line_of(problem: Exception, path: Path) -> str:
+def _line_of(problem: BaseException, path: Path) -> str:
     """The file with the line of it that failed."""
     if isinstance(problem, SyntaxError):
         return f"{problem.filename or path}:{problem.lineno}"
-    lines = [frame.lineno for frame in traceback.extract_tb(problem.__traceback__) if Path(frame.filename) == path]
+    frames = traceback.extract_tb(problem.__traceback__)
+    lines = [frame.lineno for frame in frames if Path(frame.filename).resolve() == path.resolve()]
     return f"{path}:{lines[-1]}" if lines else str(path)
 
 
-def _text(problem: Exception) -> str:
+def _text(problem: BaseException) -> str:
     return problem.msg if isinstance(problem, SyntaxError) else " ".join(str(problem).split())

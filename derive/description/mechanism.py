@@ -34,6 +34,7 @@ from derive.description.dimensions import (
     transmission,
 )
 from derive.description.errors import DescriptionError
+from derive.description.fields import as_stated
 from derive.description.joints import (
     Interval,
     Joint,
@@ -43,7 +44,7 @@ from derive.description.joints import (
     linear,
     rotary,
 )
-from derive.description.kinds import each, expressions, one
+from derive.description.kinds import expressions
 from derive.description.quantity import Quantity
 from derive.geometry.frames import Chain
 from derive.geometry.half_turns import with_half_turns_last
@@ -198,20 +199,8 @@ class Task:
     turning: Turning = Turning.NONE
 
     def __post_init__(self) -> None:
-        one("the turning of the task", self.turning, Turning, 'Task("xyz", Turning.ABOUT_Z)')
-
-
-_SEVERAL: dict[str, tuple[type, str]] = {
-    "joints": (Joint, "(A1, A2)"),
-    "parameters": (Parameter, "(LINK, OTHER)"),
-    "rods": (Rod, "(rod(...), rod(...))"),
-    "bars": (Rod, "(rod(...), rod(...))"),
-    "bounds": (Bound, "(bound(...),)"),
-    "branches": (Branch, "(branch(...),)"),
-    "held": (Joint, "(E1,)"),
-    "limited": (Limited, "(limited(...),)"),
-    "constraints": (Constraint, "(Constraint(...),)"),
-}
+        if not isinstance(self.turning, Turning):
+            raise DescriptionError(f"task: {self.turning!r} is no Turning: as in task=Task('xyz', Turning.ABOUT_Z)")
 
 
 @dataclass(frozen=True)
@@ -219,12 +208,16 @@ class Mechanism:
     """A mechanism: its equations, and what its quantities mean. The derivation reads nothing else."""
 
     name: str
-    vendor: Vendor
-    family: str
-    source: str
-    summary: str
     joints: tuple[Joint, ...]
     task: Task
+    vendor: Vendor | None = None
+    """None for a machine of the user's own."""
+    family: str = "own"
+    """The folder of its block, beside those of other families."""
+    source: str = ""
+    """Where the geometry is published; empty where it is published nowhere."""
+    summary: str = ""
+    """What it is, in a sentence; empty: the names of its axes."""
     parameters: tuple[Parameter, ...] = ()
     chain: Chain | None = None
     closure: tuple[sp.Expr, ...] = ()
@@ -260,20 +253,18 @@ class Mechanism:
     """Sentences for the user's documentation: definitions of our own, and properties to know."""
 
     def __post_init__(self) -> None:
-        one("vendor", self.vendor, Vendor, "vendor=Vendor.TEXTBOOK")
-        one("task", self.task, Task, 'task=Task("xyz", Turning.ABOUT_Z)')
-        if self.chain is not None:
-            one("chain", self.chain, Chain, "chain=Rz(A1) * Tx(link), a product of turns and shifts")
-        for what, (kind, example) in _SEVERAL.items():
-            object.__setattr__(self, what, each(what, getattr(self, what), kind, example))
+        for name, value in as_stated(vars(self)).items():
+            object.__setattr__(self, name, value)
         for what in ("positive", "closure", "home"):
             object.__setattr__(self, what, expressions(what, getattr(self, what)))
+        object.__setattr__(self, "heading", None if self.heading is None else sp.sympify(self.heading))
         if self.chain is not None:
             object.__setattr__(self, "chain", with_half_turns_last(self.chain))
-        object.__setattr__(self, "heading", None if self.heading is None else sp.sympify(self.heading))
         held = {joint.name for joint in self.held}  # the reference has the turn of a held joint: it needs no byte
         joints = (replace(j, multi_turn=False) if j.name in held else j for j in self.joints)
         object.__setattr__(self, "joints", tuple(joints))
+        if not self.summary:
+            object.__setattr__(self, "summary", _axes_in_words(self.joints))
 
     @property
     def held_joints(self) -> tuple[Joint, ...]:
@@ -346,6 +337,12 @@ class Mechanism:
         return tuple(turning[n] for n in self.periods) if self.periods is not None else tuple(turning.values())
 
 
+def _axes_in_words(joints: Sequence[Joint]) -> str:
+    if not joints:
+        return "A mechanism without axes."
+    return f"A machine with {'the axis' if len(joints) == 1 else 'the axes'} {', '.join(j.name for j in joints)}."
+
+
 def search(joint: Joint, *, where: Parameter) -> Search:
     """Scan a joint for roots where the parameter is not zero; where it is zero, the closure has a closed form."""
     return Search(joint, where)
@@ -360,6 +357,11 @@ def rod(
     plate_cone: sp.Expr | None = None,
 ) -> Rod:
     """A rigid rod between a point that joints move and a point of the plate."""
+    if len(base) != len(plate):
+        raise DescriptionError(
+            f"rod {name!r}: its ends have {len(base)} and {len(plate)} coordinates: give both in the plane, or both in "
+            "space"
+        )
     return Rod(
         name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length), base_cone, plate_cone
     )

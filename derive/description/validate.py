@@ -41,6 +41,8 @@ _OF_BRANCHES = ("sigma", "branch", "sign")
 _RESERVED = {"check_limits", "machine_scale", "x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123")}
 """Names that programs need for other values."""
 
+_MARKS = ("(*", "*)", '"""', "\\")
+
 Expressions = tuple[tuple[str, sp.Basic], ...]
 
 
@@ -53,6 +55,7 @@ def validate(mechanism: Mechanism) -> Mechanism:
 
 def _problems(mechanism: Mechanism) -> Iterator[str]:
     yield from _names(mechanism)
+    yield from _texts(mechanism)
     taken = _taken(mechanism)
     for parameter in mechanism.parameters:
         yield from _parameter(parameter, taken)
@@ -64,6 +67,24 @@ def _problems(mechanism: Mechanism) -> Iterator[str]:
     yield from _shape(mechanism)
     yield from _symbols(mechanism)
     yield from _constraints(mechanism)
+
+
+def _texts(mechanism: Mechanism) -> Iterator[str]:
+    """Texts stand in comments and documentation: they end none of these, and are one line each."""
+    stated = [
+        *((f"the {word}", text) for word, text in (("summary", mechanism.summary), ("source", mechanism.source))),
+        *((f"parameter {p.name!r}", p.meaning) for p in mechanism.parameters),
+        *((f"joint {j.name!r}", j.meaning) for j in mechanism.joints),
+        *((f"limited quantity {q.name!r}", q.meaning) for q in mechanism.limited),
+        *(("a note", note) for note in mechanism.notes),
+        *(("the title", title) for title in (mechanism.title,) if title is not None),
+        *(("a constraint", c.message) for c in mechanism.constraints),
+    ]
+    for place, text in stated:
+        marks = [mark for mark in _MARKS if mark in text]
+        if marks or not text.isprintable():
+            shown = repr(marks[0]) if marks else "a line break, or a character that is not printed"
+            yield f"{place}: its text holds {shown}, which would end a comment or a text: write it without"
 
 
 def _names(mechanism: Mechanism) -> Iterator[str]:
@@ -84,6 +105,12 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
         for name, count in Counter(n.lower() for n in names).items():
             if count > 1:
                 yield f"{kind} {name!r} is given {count} times"
+    for branch in mechanism.branches:
+        yield from (
+            f"branch {branch.name!r}: {word!r} cannot name it, or a side of it: lower-case words joined by _"
+            for word in (branch.name, *branch.names)
+            if not _PARAMETER.match(word)
+        )
     for joint in mechanism.joints:
         if not _AXIS.match(joint.name):
             yield f"{joint.name!r} cannot name a joint: a capital letter, then letters and digits"
@@ -110,12 +137,21 @@ def _parameter(parameter: Parameter, taken: set[str]) -> Iterator[str]:
         yield f"{name!r} cannot name a parameter: lower-case words joined by _"
     if name.replace("_", "") in taken:
         yield f"{name!r} cannot name a parameter: programs of this mechanism have another value of that name"
+    stated = (
+        parameter.nominal,
+        parameter.low,
+        parameter.high,
+        *(() if parameter.default is None else (parameter.default,)),
+    )
+    if strange := [value for value in stated if not isinstance(value, int | float)]:
+        yield f"parameter {name!r}: {strange[0]!r} is not a number"
+        return
     if not parameter.low < parameter.high:
         yield f"parameter {name!r}: its range {_interval(parameter)} is empty"
     for word, value in (("nominal value", parameter.nominal), ("default", parameter.default)):
-        if (value is not None or word == "nominal value") and (strange := number(f"its {word}", value)) is not None:
-            yield f"parameter {name!r}: {strange}"
-        if value is not None and not _contains(parameter, value):
+        if value is not None and (wrong := number(f"its {word}", value)) is not None:
+            yield f"parameter {name!r}: {wrong}"
+        elif value is not None and not _contains(parameter, value):
             yield f"parameter {name!r}: its {word} {value:g} is outside its range {_interval(parameter)}"
 
 
@@ -175,6 +211,8 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
         yield "the mechanism needs either a chain or closure equations"
     yield from _position(mechanism)
     yield from _heading(mechanism)
+    if mechanism.search is not None and not any(b.is_crossing for b in mechanism.branches):
+        yield "search needs a branch that tells its roots apart: as in crossing('side', rising=+1, falling=-1)"
     cones = [cone for rod in mechanism.rods for cone in (rod.base_cone, rod.plate_cone) if cone is not None]
     if cones and not mechanism.home:
         yield "a cone of a rod's joint is about the rod at the home pose, and the mechanism has none"

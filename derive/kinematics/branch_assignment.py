@@ -143,6 +143,19 @@ def steps_and_rest(
     return found, tuple(b for b in branches if b not in decided), unnamed
 
 
+def steps_without_branch(mechanism: Mechanism, inverse: Inverse, forward: Forward) -> tuple[StepDeterminant, ...]:
+    """The two-root steps whose determinants have the sign of no indicator."""
+    determinants = inverse.derivation.determinants
+    if not determinants or not mechanism.branches:
+        return determinants
+    signs, indicators = _signs(mechanism, inverse, forward, False)
+    return tuple(
+        step
+        for step, row in zip(determinants, signs, strict=True)
+        if not any(np.all(o * row == indicator) for indicator in indicators for o in (1, -1))
+    )
+
+
 def _signs(
     mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:

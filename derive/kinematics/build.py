@@ -30,6 +30,7 @@ from derive.ir.verify import BrokenProgram
 from derive.kinematics.assembly import Assembled, assembled, assembly_checks, bound_checks, mirror_checks
 from derive.kinematics.branch_assignment import Assignment, assign, margin_lets, with_branch_signs
 from derive.kinematics.coupling import coupling_programs
+from derive.kinematics.derived_branches import with_derived_branches
 from derive.kinematics.differential import (
     Factor,
     factor_of,
@@ -62,17 +63,21 @@ from derive.solver.solve import Unsolved
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
     try:
-        return _built(with_named_numbers(mechanism))
+        return _built(prepared(mechanism))
     except (Unsolved, DescriptionError) as problem:
         if told := almost_right_angles(mechanism):
             raise type(problem)(f"{problem}; {told}") from None
         raise
 
 
-def _built(mechanism: Mechanism) -> Kinematics:
-    mechanism = with_gears(mechanism)
+def prepared(mechanism: Mechanism) -> Mechanism:
+    """The mechanism as it is derived: its numbers named, its gears at the joints, its rods found."""
+    mechanism = with_gears(with_named_numbers(mechanism))
     check_joints(mechanism)
-    mechanism = with_stated_rods(mechanism)
+    return with_stated_rods(mechanism)
+
+
+def _built(mechanism: Mechanism) -> Kinematics:
     if mechanism.is_platform:
         check_home(mechanism)
     refuse_names_of_joints(mechanism)
@@ -84,6 +89,7 @@ def _built(mechanism: Mechanism) -> Kinematics:
     inverse = solve_pose(mechanism)
     mechanism = with_conditions(mechanism, inverse.derivation.conditions)
     refuse_shared_names(mechanism, (*forward.statements, *inverse.naming, *inverse.derivation.statements))
+    mechanism = with_derived_branches(mechanism, inverse, forward)
     assignments = assign(mechanism, inverse, forward)
     at_axes = derivation_at_axes(mechanism, inverse, forward)
     margins = margin_lets(mechanism, assignments)

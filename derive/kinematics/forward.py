@@ -77,7 +77,7 @@ def pose_at_axes(mechanism: Mechanism) -> Forward:
         return Forward((*checks, *lets, *position), tuple(p.name for p in position), tuple(values[3:]))
     joints = angles_of(mechanism)
     trigonometric = tuple(Let(f(a), g(a)) for a in joints for f, g in ((cosine, sp.cos), (sine, sp.sin)))
-    derivation = _solve_for_position(mechanism)
+    derivation = solve_for_position(mechanism)
     determinant = derivation.determinants[0] if derivation.determinants else None
     turned = [let for let in heading_at_joints(mechanism) if let not in trigonometric]
     known = (*checks, *fixed_lets(mechanism), *trigonometric, *turned, *_in_assembly_mode(derivation, mechanism))
@@ -94,7 +94,7 @@ def _frame_by_frame(mechanism: Mechanism, checks: tuple[Statement, ...]) -> Forw
     return Forward((*checks, *composed.statements, *pose), names[:3], names[3:])
 
 
-def _solve_for_position(mechanism: Mechanism) -> Derivation:
+def solve_for_position(mechanism: Mechanism) -> Derivation:
     """The stated closure solved for x, y and z by the same solver, with the joints known."""
     closure = position_closure(mechanism)
     problem = Problem(

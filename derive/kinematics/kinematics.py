@@ -146,6 +146,8 @@ class Kinematics:
     evidence: Evidence | None = None
     self_test: SelfTest | None = None
     """The cases of the self-test on the controller; None until they are made."""
+    undrawn: str = ""
+    """Why there is no drawing; empty where there is one."""
 
     @property
     def shared(self) -> tuple[Program, ...]:

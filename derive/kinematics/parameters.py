@@ -197,15 +197,15 @@ def machine_scale(mechanism: Mechanism) -> sp.Expr:
     own = [
         p for p in mechanism.parameters if p.role in _LENGTHS or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)
     ]
-    return sp.Add(*(sp.Abs(p.symbol) for p in own), *_numbers(mechanism))
+    return sp.Add(*(sp.Abs(p.symbol) for p in own), *lengths_in_numbers(mechanism))
 
 
 def has_length(mechanism: Mechanism) -> bool:
     """Whether a machine has a length that is never zero, by which others can be divided."""
-    return any(p.role in _LENGTHS for p in mechanism.parameters) or bool(_numbers(mechanism))
+    return any(p.role in _LENGTHS for p in mechanism.parameters) or bool(lengths_in_numbers(mechanism))
 
 
-def _numbers(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
+def lengths_in_numbers(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
     """The lengths that the description states as numbers: shifts of the chain, lengths of rods."""
     factors = () if mechanism.chain is None else mechanism.chain.factors
     shifts = (f.amount for f in factors if f.motion is Motion.SHIFT)

@@ -79,6 +79,18 @@ Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 class Unsolved(Exception):
     """No subproblem fits what is left; the message tells the unknowns, the equations, and what would help."""
 
+    steps: tuple[Step, ...] = ()
+    """The steps before."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: the problem before it, what a rule found, and the same under the names that are recorded."""
+
+    problem: Problem
+    found: Binding
+    recorded: Binding
+
 
 class Undetermined(Unsolved):
     """The equations do not hold all unknowns: no rule and no search finds what nothing determines."""
@@ -101,6 +113,8 @@ class Derivation:
     """Values of parameters that must not vanish."""
     plain: tuple[Statement, ...] = ()
     """The statements without `beyond_folds` and `within_reach`: the plain definitions of the names."""
+    steps: tuple[Step, ...] = ()
+    """The steps in their order, for a reader."""
 
 
 def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve) -> Derivation:
@@ -115,13 +129,15 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     record = DerivationRecord()
     sums: tuple[Sum, ...] = ()
     rules: list[str] = []
+    steps: list[Step] = []
     left: list[sp.Expr] = []
     not_zero: list[sp.Expr] = []
     while problem.angles or problem.lengths or problem.pending:
         if problem.is_overdetermined and not problem.equations and not left:
             left += _residuals(problem, record)
-        problem, binding, sums = _next(problem, sums, arguments)
-        binding = record.commit(binding)
+        problem, binding, sums = _next_after(steps, problem, sums, arguments)
+        found, binding = binding, record.commit(binding)
+        steps.append(Step(problem, found, binding))
         rules.append(binding.rule)
         not_zero += binding.conditions
         for angle in _read_plainly(problem, binding.unknowns):
@@ -141,6 +157,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         tuple(left),
         tuple(not_zero),
         with_known_signs(record.statements, signs),
+        tuple(steps),
     )
 
 
@@ -155,6 +172,17 @@ def _read_plainly(problem: Problem, unknowns: Sequence[sp.Symbol]) -> list[sp.Sy
     """The angles that an equation reads outside sines and cosines."""
     read = {symbol for equation in problem.equations for symbol in equation.expression.free_symbols}
     return [u for u in unknowns if u in read and u not in problem.lengths]
+
+
+def _next_after(
+    steps: Sequence[Step], problem: Problem, sums: tuple[Sum, ...], arguments: Sequence[sp.Expr]
+) -> tuple[Problem, Binding, tuple[Sum, ...]]:
+    """The next step; where there is none, the refusal holds those before it."""
+    try:
+        return _next(problem, sums, arguments)
+    except Unsolved as stuck:
+        stuck.steps = tuple(steps)
+        raise
 
 
 def _next(

@@ -20,6 +20,7 @@ from derive.ir.symbols import (
 )
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.no_pose import why_no_pose
+from derive.kinematics.parameters import lengths_in_numbers
 from derive.plate.plate import home_flag
 from derive.witness.closure import LEAST_MARGIN, POSE, Closure
 from derive.witness.disagreement import Disagreement
@@ -237,6 +238,7 @@ def _reach(mechanism: Mechanism, values: dict[str, Array]) -> Array:
         if p.role in (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
     ]
     total = np.sum(lengths, axis=0) if lengths else np.zeros_like(next(iter(values.values())))
+    total = total + sum(map(float, lengths_in_numbers(mechanism)))
     legs = max(1, len(mechanism.rods))  # one leg of a loop
     return np.where(total > 0, total / legs, WITHOUT_LENGTHS)
 

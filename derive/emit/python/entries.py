@@ -13,6 +13,8 @@ _UNITS = {
     Role.LENGTH: "u", Role.SIGNED_LENGTH: "u", Role.DISTANCE: "u", Role.PITCH: "u/rev", Role.GEAR: "u/deg",
     Role.COUPLING: "1", Role.TRANSMISSION: "1", Role.RATIO: "1", Role.FLAG: "", Role.SIGN: "", Role.ANGLE: "deg",
 }  # fmt: skip
+_WHOLE = (Role.FLAG, Role.SIGN)
+"""The roles whose values are whole numbers."""
 _USUAL: dict[Role, tuple[float, float, float | None]] = {
     Role.LENGTH: (0.0, float(LARGEST), None),
     Role.SIGNED_LENGTH: (-float(LARGEST), float(LARGEST), None),
@@ -114,6 +116,19 @@ def indices(kin: Kinematics, names: Sequence[str]) -> str:
     """The indices of the axes with these names."""
     order = [j.name for j in kin.mechanism.joints]
     return literal(tuple(order.index(name) for name in names))
+
+
+def example(kin: Kinematics) -> list[str]:
+    """The first lines of code of a user of this machine, with PACKAGE for the name of the package."""
+    mechanism = kin.mechanism
+    needed = [p for p in mechanism.parameters if p.default is None or p.nominal != p.default]
+    values = (f"{p.name}={literal(int(p.nominal) if p.role in _WHOLE else p.nominal)}" for p in needed)
+    axes = literal(tuple(j.nominal for j in mechanism.joints))
+    return [
+        f"robot = PACKAGE.{class_name(mechanism.name, mechanism.class_name)}({', '.join(values)})",
+        f"frame, configuration = robot.forward({axes})",
+        f"axes = robot.inverse(frame, configuration, reference={axes})",
+    ]
 
 
 def literal(value: object) -> str:

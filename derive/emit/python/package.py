@@ -59,6 +59,8 @@ from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 from derive.report.reasons import NO_MEANING, OTHER_TURN, reasons_of
 
 name = "python"
+PACKAGE = "softkin"
+"""The package of the catalogue."""
 _OF_THE_SEARCH = (
     *("ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
     *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
@@ -124,15 +126,20 @@ def part(kinematics: Kinematics) -> Part:
 
 def files(parts: Sequence[Part]) -> dict[str, str]:
     """All files of the package: path → text."""
+    return formatted(texts(parts, PACKAGE))
+
+
+def texts(parts: Sequence[Part], package: str) -> dict[str, str]:
+    """The same before it is laid out, for a package of any name; modules import each other from `softkin`."""
     templates = _templates()
     index = [part["index"] for part in parts]
-    files = {path: templates.get_template(f"{path}.j2").render() for path in _FIXED}
     index.sort(key=lambda entry: entry["module"])
     exports = _sorted({*_EXPORTS, *(entry["class_name"] for entry in index)})
-    files |= {path: templates.get_template(f"{path}.j2").render(index=index, exports=exports) for path in _INDEXED}
+    known = {"package": package, "index": index, "exports": exports}
+    files = {path: templates.get_template(f"{path}.j2").render(known) for path in (*_FIXED, *_INDEXED)}
     for part in parts:
         files |= part["files"]
-    return formatted(files)
+    return files
 
 
 @cache
@@ -183,13 +190,14 @@ def _after_docstring(source: str) -> str:
     return text.replace("from derive.ir.cells", "from softkin._cells").replace("import TypeVar", "import Any, TypeVar")
 
 
-def _index(kin: Kinematics) -> dict[str, str]:
+def _index(kin: Kinematics) -> dict[str, Any]:
     mechanism = kin.mechanism
     return {
         "name": mechanism.name,
         "class_name": entries.class_name(mechanism.name, mechanism.class_name),
         "module": entries.module_name(mechanism.name),
         "summary": mechanism.summary,
+        "example": entries.example(kin),
     }
 
 

@@ -68,11 +68,12 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
     """The description of a block, with a reference to its picture."""
     names = {p.name: input_name(p) for p in kinematics.parameters}
     mechanism = kinematics.mechanism
-    source = f"{_KINDS[mechanism.is_position, mechanism.is_orientation]}Source of the geometry: {mechanism.source}."
+    source = _KINDS[mechanism.is_position, mechanism.is_orientation]
+    source += f"Source of the geometry: {mechanism.source}." if mechanism.source else ""
     text = templates.get_template("description.rst.j2").render(
         mechanism=mechanism,
-        picture=picture.format(name=block.name),
-        source="\n".join(wrap(source, _WIDTH)),
+        picture=None if kinematics.undrawn else picture.format(name=block.name),
+        source="\n".join(wrap(source.rstrip(), _WIDTH)),
         summary="\n".join(wrap(kinematics.mechanism.summary, _WIDTH)),
         rows=", ".join(kinematics.rows),
         axes=_table(("Axis", "Motion", "Meaning"), _axes(kinematics)),

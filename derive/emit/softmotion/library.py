@@ -65,7 +65,7 @@ class StructuredTextFiles:
         position in SoftMotion has.
         """
         contract, templates = load(self.profile), _templates()
-        if len(kinematics.mechanism.joints) > len(contract.spelling["axes"]["fields"]):
+        if len(kinematics.mechanism.joints) > most_axes(self.profile):
             return None
         block = block_of(kinematics, contract)
         found: Part = {"row": row_of(kinematics), "text": _unit(kinematics, block, contract, templates), "test": None}
@@ -88,6 +88,11 @@ class StructuredTextFiles:
         for name in ("import_softkin.py", "README.md"):
             files[name] = templates.get_template(f"{name}.j2").render(contract.spelling, overview=rows)
         return dict(sorted(files.items()))
+
+
+def most_axes(profile: str | None) -> int:
+    """The most axes that a position in SoftMotion has."""
+    return len(load(profile).spelling["axes"]["fields"])
 
 
 def _objects(

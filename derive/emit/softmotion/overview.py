@@ -12,7 +12,7 @@ def row_of(kinematics: Kinematics) -> dict[str, str]:
     mechanism = kinematics.mechanism
     return {
         "family": mechanism.family,
-        "picture": f"{PICTURES}/{mechanism.block_name}",
+        "picture": "" if kinematics.undrawn else f"{PICTURES}/{mechanism.block_name}",
         "path": f"{mechanism.family}/{mechanism.block_name}",
         "block": mechanism.block_name,
         "axes": " ".join(joint.name for joint in mechanism.joints) or "none",

@@ -65,7 +65,7 @@ FAULTS = {
     "a matrix for a chain": (written(chain=f"({CHAIN}).matrix()"), "and no Chain: write chain=Rz(A1) * Tx(link), a pr"),
     "a list for a chain": (written(chain="[Rz(A1), Tx(L1)]"), "(a list), and no Chain: write chain=Rz(A1) * Tx(link)"),
     "a length that is no number": (nominal('float("nan")'), "parameter 'link_1': its nominal value is not a number"),
-    "a length in words": (nominal('"300"'), "parameter 'link_1': its nominal value is '300' (a str), and no number"),
+    "a length in words": (nominal('"300"'), "parameter 'link_1': '300' is not a number"),
     "a length of nothing": (nominal("None"), "parameter 'link_1': its nominal value is None (a NoneType), and no n"),
     "a length of zero": (nominal("0"), "parameter 'link_1': its nominal value 0 is outside its range ]0 .. 1e+09]"),
     "no nominal value": (written('L1 = length("link_1", "l")'), "TypeError: length() missing 1 required keyword-only"),

@@ -13,6 +13,7 @@ from derive.description.validate import validate
 from derive.geometry.frames import Rx, Rz, Tx, Ty, Tz, flip_x
 from derive.kinematics.build import build
 from derive.solver.solve import Unsolved
+from tests.mechanisms import named
 from tests.unit.kinematics.inventions import A1, A2, A3, A4, ELBOW, L1, L2, L3, P1, P2, P3, invention, links
 
 FOLLOWED = Turning.ABOUT_Z
@@ -55,7 +56,6 @@ TWELVE = rotary("A12", "a name too many")
 REFUSED = {
     "an indicator of nothing": (arm(branches=(branch("elbow", cos(A2), a=+1, b=-1),)), AGREES),
     "an indicator that is always positive": (arm(branches=(branch("elbow", 2 + sin(A2), a=+1, b=-1),)), AGREES),
-    "a branch without a name": (arm(branches=()), "no branch names the two solutions for a2"),
     "two names for one branch": (arm(branches=SAME), "branches 'elbow' and 'arm' name the same two solutions"),
     "a flip in the middle": (arm(chain=Rz(A1) * Tx(L1) * flip_x(1) * Rz(A2) * Tx(L2)), "a flip must stand at the end"),
     "a commanded turn of a chain that turns about x": (
@@ -167,6 +167,17 @@ def test_unsolved(kind: str) -> None:
     mechanism, message = UNSOLVED[kind]
     with pytest.raises(Unsolved, match=re.escape(message)):
         build(mechanism)
+
+
+def test_a_root_scan_needs_names() -> None:
+    """Its roots are told apart by a crossing, and its other branches are those of the description."""
+    arm = named("Kin_Ac6_RZRYRYRXRYRZ_J6Offset")
+    without = tuple(b for b in arm.branches if not b.is_crossing)
+    with pytest.raises(DescriptionError, match="search needs a branch that tells its roots apart"):
+        validate(replace(arm, branches=without))
+    crossing = tuple(b for b in arm.branches if b.is_crossing)
+    with pytest.raises(DescriptionError, match="no branch names the two solutions for"):
+        build(replace(arm, branches=crossing))
 
 
 def test_what_the_offset_interface_spoils_can_be_built_without() -> None:

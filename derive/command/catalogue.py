@@ -1,0 +1,106 @@
+"""`generate` and `check` without a file: the catalogue as a whole, and its output folder.
+
+`generate` keeps what it derived beside the output folder, and derives again only what depends on something that
+changed; `--fresh` neither reads nor writes that cache, and `check` never does.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from derive.cache import Cache, foundation
+from derive.command.own import complain
+from derive.description.catalogue import MECHANISMS, Entry, catalogue, catalogue_and_faults
+from derive.output import differences, replace_folder
+from derive.pipeline import Built, Failure, GenerationError, Work, attempts, files_of, languages, work_of
+from derive.progress import Progress
+
+_ROOT = MECHANISMS.parents[1]
+OUTPUT = _ROOT / "generated" if (_ROOT / "pyproject.toml").is_file() else Path("generated")
+
+
+def generate(options: argparse.Namespace) -> int:
+    """Write the output folder; 1 where a mechanism could not be derived."""
+    if options.only and options.output == OUTPUT:
+        raise GenerationError("--only needs --output: the output folder of the project holds every mechanism")
+    entries, unread = catalogue_and_faults(options.mechanisms)
+    for fault in unread:
+        complain(fault)
+    if unread and not (options.keep_going and entries):
+        return 1
+    files, underived = _files(options, entries)
+    for fault in underived:
+        complain(fault)
+    if underived and not (options.keep_going and files):
+        return 1
+    if any(differences(options.output, files)):
+        replace_folder(options.output, files)
+    print(f"{len(files)} files in {options.output}")
+    return 1 if unread or underived else 0
+
+
+def compare(options: argparse.Namespace) -> int:
+    """Compare the output folder; raises `GenerationError` where it is not what the descriptions give."""
+    files, faults = _files(options, catalogue(options.mechanisms))
+    if faults:
+        raise GenerationError(faults[0])
+    found = list(differences(options.output, files))
+    if found:
+        more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
+        raise GenerationError(f"{found[0]}{more}: run `make generate`")
+    print(f"{options.output} is up to date")
+    return 0
+
+
+def _files(options: argparse.Namespace, entries: tuple[Entry, ...]) -> tuple[dict[str, bytes], list[str]]:
+    """All files of a run, from the cache what it has, and what could not be derived."""
+    outputs = languages(options.profile)
+    cache = None if options.fresh else Cache(Path(f"{options.output}.cache"))
+    before = foundation(options.profile) if cache else ""
+    work = work_of(_chosen(entries, options.only), cache, before)
+    built, keys, faults = _derived(work, options.profile, cache, before)
+    is_unchanged = cache is not None and foundation(options.profile) == before
+    files = files_of(built, outputs, cache, keys if is_unchanged else ()) if built else {}
+    if cache:
+        cache.tidy()
+        for path in cache.damaged:
+            print(f"note: {path} is damaged, and was not used", file=sys.stderr)
+    return files, faults
+
+
+def _derived(
+    work: Work, profile: str | None, cache: Cache | None, before: str
+) -> tuple[list[Built], list[str | None], list[str]]:
+    """What was derived, with its keys, and the faults; what is new is kept."""
+    built: list[Built] = []
+    keys: list[str | None] = []
+    faults: list[str] = []
+    progress = Progress(len(work.missing), sys.stdout)
+    for key, one in zip(work.keys, attempts(work, profile), strict=True):
+        if isinstance(one, Failure):
+            faults.append(one.message)
+            continue
+        progress.step(_line(one), one.seconds is not None)
+        if cache and key and one.seconds is not None and foundation(profile) == before:
+            cache.write(key, one.as_plain())
+        built.append(one)
+        keys.append(key)
+    progress.end()
+    return built, keys, faults
+
+
+def _line(one: Built) -> str:
+    time = "kept" if one.seconds is None else f"{one.seconds:.2f} s"
+    warning = f"\n    warning: not drawn: {one.undrawn}" if one.undrawn else ""
+    return f"{one.derived} {time:>8}   {one.measured}{warning}"
+
+
+def _chosen(entries: tuple[Entry, ...], names: Sequence[str]) -> tuple[Entry, ...]:
+    known = [mechanism.name for _, mechanism in entries]
+    for name in names:
+        if name not in known:
+            raise GenerationError(f"no mechanism is called {name!r}; there are {', '.join(known)}")
+    return tuple(e for e in entries if not names or e[1].name in names)

@@ -1,0 +1,116 @@
+"""`softkin`: describe a machine, derive it, look at its derivation; and `generate`, which writes the whole catalogue.
+
+softkin new my_machine.py                  write a commented description to start from
+softkin explain my_machine.py              print each step of its derivation, and its branches to be named
+softkin check my_machine.py                derive and measure it, and write nothing
+softkin derive my_machine.py --out build   derive it: Python package, Structured Text, PLCopenXML, picture
+
+Status 0 is success; 2 a machine, or a command, that cannot be right; 1 a catalogue that is not as it should be.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from derive.command import catalogue, explain, new, own
+from derive.description.catalogue import MECHANISMS
+from derive.description.mechanism import DescriptionError
+from derive.output import ForeignFolder
+from derive.pipeline import GenerationError
+
+_WRONG, _STALE, _INTERRUPTED = 2, 1, 130
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command; 0 where it succeeded, else one message a fault on stderr, and 1 or 2."""
+    options = _options(arguments)
+    is_catalogue = options.run in (catalogue.generate, catalogue.compare)
+    try:
+        return int(options.run(options))
+    except (DescriptionError, GenerationError, ForeignFolder, OSError) as problem:
+        own.complain(str(problem))
+        return _STALE if is_catalogue else _WRONG
+    except KeyboardInterrupt:
+        return _INTERRUPTED
+
+
+def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
+    is_script = Path(sys.argv[0]).stem == "softkin"
+    parser = argparse.ArgumentParser(
+        prog="softkin" if is_script else "python -m derive",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    _own_commands(commands)
+    _catalogue_commands(commands)
+    options = parser.parse_args(arguments)
+    if options.command == "check":
+        options.run = own.check if options.files else catalogue.compare
+    return options
+
+
+def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """The commands for machines of the user's own."""
+    text = "derive machines, each from its file, and write what a user of it needs"
+    derive = commands.add_parser("derive", help=text, description=text)
+    derive.add_argument("files", nargs="+", type=Path, metavar="FILE", help="a description, or a folder of them")
+    derive.add_argument(
+        "--out",
+        type=Path,
+        default=Path("build"),
+        metavar="DIR",
+        help="the output folder (default: build); of several machines each has a folder inside it",
+    )
+    derive.add_argument("--package", metavar="NAME", help="the Python package (default: the name of the file)")
+    derive.set_defaults(run=own.derive)
+    text = "derive and measure machines, and write nothing; without a file: compare the output of the catalogue"
+    check = commands.add_parser("check", help=text, description=text)
+    check.add_argument("files", nargs="*", type=Path, metavar="FILE", help="a description, or a folder of them")
+    _catalogue_options(check)
+    check.set_defaults(only=[], fresh=True, package=None, keep_going=True)
+    for parser in (derive, check):
+        parser.add_argument(
+            "--keep-going",
+            action=argparse.BooleanOptionalAction,
+            default=True,
+            help="go on with the next machine where one cannot be derived (the default)",
+        )
+    derive.add_argument("--profile", metavar="NAME", help=_PROFILE)
+    text = "print each step of the derivation, its determinant, and the branch that it makes"
+    explained = commands.add_parser("explain", help=text, description=text)
+    explained.add_argument("files", nargs="+", type=Path, metavar="FILE", help="a description, or a folder of them")
+    explained.set_defaults(run=explain.explain)
+    text = "write a commented description to start from"
+    fresh = commands.add_parser("new", help=text, description=text)
+    fresh.add_argument("file", type=Path, nargs="?", default=Path("my_machine.py"), metavar="FILE")
+    fresh.set_defaults(run=new.new)
+
+
+_PROFILE = "a profile of templates/st/softmotion.toml, for an older library"
+
+
+def _catalogue_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """The commands for the catalogue as a whole."""
+    text = "derive every mechanism of a folder, check it, and write all of them as one package and one library"
+    generate = commands.add_parser("generate", help=text, description=text)
+    _catalogue_options(generate)
+    generate.add_argument(
+        "--only", nargs="+", default=[], metavar="NAME", help="these mechanisms alone, into another folder"
+    )
+    generate.add_argument("--fresh", action="store_true", help="derive everything, without the cache")
+    generate.add_argument(
+        "--keep-going",
+        action="store_true",
+        help="write the mechanisms that can be derived; without it, one fault leaves the output folder as it was",
+    )
+    generate.set_defaults(run=catalogue.generate)
+
+
+def _catalogue_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--output", type=Path, default=catalogue.OUTPUT, metavar="DIR", help="the output folder")
+    parser.add_argument("--mechanisms", type=Path, default=MECHANISMS, metavar="DIR", help="the folder of descriptions")
+    parser.add_argument("--profile", metavar="NAME", help=_PROFILE)

@@ -1,0 +1,140 @@
+"""`derive` and `check` with files: machines of the user's own, each by itself, none stopped by a fault of another."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections import Counter
+from collections.abc import Callable, Sequence
+from keyword import iskeyword
+from pathlib import Path
+
+from derive.command.stages import Stages
+from derive.description.catalogue import load
+from derive.description.mechanism import DescriptionError, Mechanism
+from derive.description.places import in_place
+from derive.output import ForeignFolder, differences, replace_folder
+from derive.pipeline import GenerationError, derive_one, files_of, languages, reason_of
+
+_TAKEN = ("softkin", "derive", "numpy", "scipy", "sympy", "casadi", "matplotlib")
+"""Packages that a user of the machine may have installed, besides the modules of Python."""
+
+
+def complain(message: str) -> None:
+    """Say what is wrong, with paths as the user would type them."""
+    print(f"error: {message.replace(f'{Path.cwd()}/', '')}", file=sys.stderr, flush=True)
+
+
+def derive(options: argparse.Namespace) -> int:
+    """Derive machines and write them; 2 where one of them cannot be derived."""
+    files = described(options.files)
+    if options.package and len(files) > 1:
+        raise GenerationError("--package names the package of one machine: derive one file at a time")
+    packages = [package_of(path, options.package) for path in files]
+    folders = [options.out if len(files) == 1 else options.out / package for package in packages]
+    for folder, count in Counter(folders).items():
+        if count > 1:
+            raise GenerationError(f"{count} files would be written into {folder}: give them different names")
+    targets = dict(zip(files, zip(packages, folders, strict=True), strict=True))
+
+    def written(path: Path, stages: Stages) -> None:
+        package, folder = targets[path]
+        refuse_another(folder, package)
+        data = _derived(path, package, options.profile, stages)
+        stages.told("write", "")
+        if any(differences(folder, data)):
+            replace_folder(folder, data)
+        stages.told("write", f"{len(data)} files in {folder}")
+
+    return each(files, written, options.keep_going)
+
+
+def check(options: argparse.Namespace) -> int:
+    """Derive and measure machines, and write nothing; 2 where one of them cannot be derived."""
+    files = described(options.files)
+    return each(
+        files,
+        lambda path, stages: stages.line(
+            f"  {len(_derived(path, 'checked', options.profile, stages))} files, not written"
+        ),
+        options.keep_going,
+    )
+
+
+def described(given: Sequence[Path]) -> list[Path]:
+    """The descriptions that files and folders hold, each once. Raises `GenerationError` for a folder without one."""
+    found: list[Path] = []
+    for path in given:
+        inside = sorted(p for p in path.glob("*.py") if not p.name.startswith("_")) if path.is_dir() else [path]
+        if not inside:
+            raise GenerationError(f"{path}: there is no description in this folder; `softkin new` writes one")
+        found += [p for p in inside if p not in found]
+    return found
+
+
+def package_of(path: Path, wanted: str | None) -> str:
+    """The name of the package: that of the file, in small letters. Raises `GenerationError` where it cannot be one."""
+    name = wanted or re.sub(r"\W+", "_", path.stem, flags=re.ASCII).strip("_").lower()
+    name = f"machine_{name}" if not wanted and name[:1].isdigit() else name
+    if not (name.isidentifier() and name.isascii()) or iskeyword(name):
+        raise GenerationError(f"{path}: {name!r} cannot name a Python package: give another one with --package")
+    if name in sys.stdlib_module_names or name in _TAKEN:
+        raise GenerationError(f"{path}: {name!r} is a package that exists: give another name with --package")
+    return name
+
+
+def refuse_another(folder: Path, package: str) -> None:
+    """Refuse to replace what was derived of another machine."""
+    for other in sorted((folder / "python").glob("*/_core.py")):
+        if other.parent.name != package:
+            raise ForeignFolder(
+                f"{folder} holds the machine {other.parent.name!r}: derive into another folder with --out, or remove it"
+            )
+
+
+def each(files: Sequence[Path], work: Callable[[Path, Stages], None], keep_going: bool) -> int:
+    """Do the work for every file, and say what each of them came to."""
+    wrong: list[Path] = []
+    for path in files:
+        stages = Stages(sys.stdout)
+        try:
+            stages.line(str(path))
+            work(path, stages)
+        except Exception as problem:  # one bad file never stops another, whatever is wrong with it
+            is_told = isinstance(problem, DescriptionError | GenerationError | ForeignFolder | OSError)
+            wrong.append(path)
+            stages.line("  refused")
+            complain(str(problem) if is_told else in_place(path, reason_of(problem)))
+            if not keep_going:
+                break
+    if len(files) > 1:
+        print(f"{len(files) - len(wrong)} of {len(files)} machines")
+    return 2 if wrong else 0
+
+
+def _derived(path: Path, package: str, profile: str | None, stages: Stages) -> dict[str, bytes]:
+    """All files of one machine. Raises `GenerationError` with file, line and remedy."""
+    outputs = languages(profile, package)
+    mechanism = load(path)
+    stages.line(f"  {_described(mechanism)}")
+    try:
+        built = derive_one(mechanism, profile, stages.told)
+        files = files_of([built], [one for one in outputs if one.name in built.parts])
+    except Exception as problem:
+        raise GenerationError(in_place(path, reason_of(problem))) from None
+    if built.undrawn:
+        stages.line(f"  warning: {in_place(path, f'not drawn: {built.undrawn}')}")
+    if "st" not in built.parts:
+        stages.line(f"  note: no block: it has {len(mechanism.joints)} axes, and SoftMotion knows six")
+    return files
+
+
+def _described(mechanism: Mechanism) -> str:
+    """The machine in one line."""
+    task = ", ".join(mechanism.task.position)
+    turning = mechanism.task.turning.value
+    commanded = {"none": task, "about z": f"{task} and the turn about z", "direction": f"{task} and a direction"}
+    text = commanded.get(turning, f"{task} and the whole rotation" if task else "the rotation")
+    axes = " ".join(j.name for j in mechanism.joints) or "none"
+    return f"{mechanism.name}: axes {axes}; commanded: {text or turning}"

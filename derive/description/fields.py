@@ -1,0 +1,77 @@
+"""The kinds of values that the fields of a mechanism hold: a forgotten comma is told as one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from derive.description.errors import DescriptionError
+
+_MANY: Mapping[str, tuple[str, str]] = {
+    "joints": ("Joint", "(A1, A2)"),
+    "parameters": ("Parameter", "(L1, L2)"),
+    "rods": ("Rod", '(rod("1", KNEE, TOOL, LENGTH),)'),
+    "bars": ("Rod", '(rod("1", KNEE, TOOL, LENGTH),)'),
+    "bounds": ("Bound", "(bound(…),)"),
+    "branches": ("Branch", '(branch("elbow", sin(A2), right=+1, left=-1),)'),
+    "held": ("Joint", "(E1,)"),
+    "limited": ("Limited", "(limited(…),)"),
+    "constraints": ("Constraint", "(Constraint(L1 < L2, …),)"),
+    "aliases": ("str", '("AnotherName",)'),
+    "notes": ("str", '("A sentence.",)'),
+    "periods": ("str", '("A4", "A1")'),
+    "closure": ("", "(X - A1, Y - A2)"),
+    "positive": ("", "(R,)"),
+    "home": ("", "(0, 0, 0)"),
+}
+"""Fields that hold several values: the class of each (none: an expression), and an example."""
+_ONE: Mapping[str, tuple[tuple[str, ...], str]] = {
+    "name": (("str",), '"MyMachine"'),
+    "task": (("Task",), 'Task("xyz")'),
+    "vendor": (("Vendor", "NoneType"), "Vendor.TEXTBOOK"),
+    "family": (("str",), '"own"'),
+    "source": (("str",), '"a book"'),
+    "summary": (("str",), '"A sentence."'),
+    "chain": (("Chain", "NoneType"), "Rz(A1) * Tx(L1)"),
+    "assembly": (("Assembly", "NoneType"), 'assembly("tool", …)'),
+    "search": (("Search", "NoneType"), "search(A6, where=OFFSET)"),
+    "title": (("str", "NoneType"), '"My machine"'),
+    "class_name": (("str", "NoneType"), '"MyMachine"'),
+    "offset_interface": (("bool",), "False"),
+}
+"""Fields that hold one value: its classes, and an example."""
+_MAY_BE_NONE = ("periods",)
+
+
+def as_stated(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The fields with tuples for lists. Raises `DescriptionError` for a value of the wrong kind."""
+    found: dict[str, Any] = {}
+    for name, (kinds, example) in _ONE.items():
+        if not _is(values[name], kinds):
+            raise DescriptionError(f"{name} must not be {_what(values[name])}: as in {name}={example}")
+    for name, (kind, example) in _MANY.items():
+        value = values[name]
+        if value is None and name in _MAY_BE_NONE:
+            continue
+        if not isinstance(value, tuple | list):
+            more = ": a comma makes the tuple" if _is(value, (kind,)) else ""
+            raise DescriptionError(f"{name} must be a tuple, not {_what(value)}{more}, as in {name}={example}")
+        for one in value:
+            if kind and not _is(one, (kind,)):
+                raise DescriptionError(f"{name} must not hold {_what(one)}: as in {name}={example}")
+        found[name] = tuple(value)
+    return found
+
+
+def is_field(name: str) -> bool:
+    """Whether this is a field of a mechanism."""
+    return name in _ONE or name in _MANY
+
+
+def _is(value: object, kinds: tuple[str, ...]) -> bool:
+    """Whether a value is of one of the classes, by their names: the classes are made of these fields."""
+    return any(base.__name__ in kinds for base in type(value).__mro__)
+
+
+def _what(value: object) -> str:
+    return repr(value) if isinstance(value, str | int | float | None) else f"a {type(value).__name__}"

@@ -1,0 +1,87 @@
+"""What to do about a refusal whose own sentence does not say it. docs/OWN_MACHINE.md explains each of them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import fields
+from difflib import get_close_matches
+
+from derive.description.mechanism import Mechanism
+
+_EXPLAIN = "`softkin explain` prints the determinant of every step"
+REMEDIES: tuple[tuple[str, str], ...] = (
+    (r"with offset_interface=False it could be", "write offset_interface=False, unless such points are commanded"),
+    (r"defines no MECHANISM", "assign the description: MECHANISM = Mechanism(…)"),
+    (r"^SyntaxError", "correct this line, or the one before it"),
+    (r"^NameError", "define it above this line, or import it from derive.mechanism, derive.frames or sympy"),
+    (r"^(ImportError|ModuleNotFoundError)", "joints and lengths are in derive.mechanism, frames in derive.frames"),
+    (r"Mechanism\S* missing \d+ required", "state what is missing as a keyword: Mechanism(name=…, joints=…, task=…)"),
+    (
+        r"missing \d+ required",
+        'as in length("link_length_1", "what it is", nominal=300.0), rotary("A1", "what it moves")',
+    ),
+    (r"must be real number|Cannot convert expression|loop of ufunc", "take sin, cos and sqrt from sympy"),
+    (r"unsupported operand type\(s\) for \+: 'Chain'", "a chain is a product: Rz(A1) * Tx(L1)"),
+    (r"ends the program", "let the file define MECHANISM, and nothing else"),
+    (r"cannot name a function block", "take letters, digits and single _, a letter first"),
+    (r"cannot name a family", 'take one word, as in family="own"'),
+    (r"the mechanism has no joints", "list them in the order of the axes: joints=(A1, A2)"),
+    (r"is given \d+ times", "give each thing a name of its own, whatever its capital letters"),
+    (r"cannot name a joint", "as in rotary('A1', …)"),
+    (r"programs of this mechanism have another value", "add a word to the name, as in link_reach"),
+    (r"has a name that the derivation itself uses", "add a word to the name, as in link_reach"),
+    (r"its range .* is empty", "state the lower end first"),
+    (r"(offset_range|limit_range|domain) .* is empty", "state the lower end first"),
+    (r"is outside its (range|domain)", "widen the range, or take a value inside it"),
+    (r"needs a limit_range", "a joint that carries a pitch always has limits: limit_range=(lower, upper)"),
+    (r"which is not the motor of an earlier joint", "list the joint whose motor is read before this one"),
+    (r"^held names", "hold a joint that joints=(…) lists"),
+    (r"held joints need a chain", "leave out held=, or state the loop as a chain"),
+    (r"periods (names|must name)", "leave out periods=: the order of the axes is taken"),
+    (r"needs either a chain or closure", "state chain=Rz(A1) * Tx(L1) * …, or rods=(…) of a closed loop"),
+    (r"it must be 'xy', 'xyz', or ''", 'as in task=Task("xyz")'),
+    (r"a cone of a rod's joint is about", "state home=(…)"),
+    (r"occurs nowhere in the closure", "use it in the chain or in a rod, or leave it out of joints=(…)"),
+    (r"which is not a joint or a parameter of this", "list it in joints=(…) or in parameters=(…)"),
+    (r"which is not a parameter", "list it in parameters=(…)"),
+    (r"depends on no joint", "take an expression that changes its sign where the two solutions meet, as sin(A2)"),
+    (r"needs two names with the signs", 'as in branch("elbow", sin(A2), right=+1, left=-1)'),
+    (r"which is no parameter of this mechanism", "list it in parameters=(…)"),
+    (r"the nominal parameters break", "choose nominal values that fit each other"),
+    (r"there are only \d+ joints", "command less, or add joints"),
+    (r"the closure has \d+ equations, and", "state one equation for each commanded quantity"),
+    (r"its indicator agrees with", f"{_EXPLAIN}: name a branch by an expression with the same sign, or leave it out"),
+    (r"no branch names the two", f"with a root scan every branch has a name; {_EXPLAIN}"),
+    (r"name the same two solutions", f"leave one of them out; {_EXPLAIN}"),
+    (r"one assembly names one", 'as in assembly("tcp", cross(ROD_1, ROD_2), margin="aligned", below=-1, above=+1)'),
+    (r"a flip must stand at the end", "put it last in the chain"),
+    (r"its rotation is not one turn about z", "command the Turning that the flange makes, or Turning.NONE"),
+    (r"is not commanded but the joints move it", 'command it too: task=Task("xyz")'),
+    (r"its end must be a point of the plate", "write it with X, Y, Z, or with on_plate(…)"),
+    (r"no pose near the home pose", "compute home=(…) from the nominal lengths"),
+    (r"Initialize refuses the nominal parameters", "choose nominal values that fit each other, and a home in reach"),
+    (r"a machine has no regular pose", "one joint repeats what another does: change the chain, or the task"),
+    (r"do not multiply to the determinant", "state the joints and lengths separately, not their sums"),
+    (r"is taken by|declares ", ""),
+)
+"""Pattern of a refusal → what to do."""
+
+
+def remedy_of(problem: str) -> str:
+    """What to do about a refusal; empty where its sentence says it."""
+    if (word := re.search(r"unexpected keyword argument '(\w+)'", problem)) is not None:
+        return _another_field(word[1])
+    return next((remedy for pattern, remedy in REMEDIES if re.search(pattern, problem)), "")
+
+
+def with_remedy(problem: str) -> str:
+    """The problem, and what to do about it."""
+    remedy = remedy_of(problem)
+    return f"{problem}; {remedy}" if remedy else problem
+
+
+def _another_field(word: str) -> str:
+    """The field that was meant."""
+    known = [f.name for f in fields(Mechanism)]
+    close = get_close_matches(word, known, 1)
+    return f"did you mean {close[0]!r}?" if close else f"the fields are {', '.join(known)}"

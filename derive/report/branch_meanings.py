@@ -1,0 +1,85 @@
+"""What the branches mean that no description names: in words, and at one frame of the nominal machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from derive.ir.program import Status
+from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.reference_cases import Reals
+from derive.report.reference_calls import Machine, branches, forward, machine_with
+
+_ANGLES = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0, -30.0)
+_AROUND, _TRIED = 60.0, 200
+_APART = 1e-3
+"""Axis values closer than this are the same."""
+_REGULAR = (1, 2)
+
+
+def with_meanings(kinematics: Kinematics) -> Kinematics:
+    """The kinematics with a note for every branch that its description does not name."""
+    notes = tuple(
+        f"The description does not name the branch {branch.name}. In {branch.names[0]} {branch.meanings[0]}; in "
+        f"{branch.names[1]} {branch.meanings[1]}{_example(kinematics, index)}."
+        for index, branch in enumerate(kinematics.branches)
+        if branch.meanings[0]
+    )
+    if not notes:
+        return kinematics
+    mechanism = kinematics.mechanism
+    return replace(kinematics, mechanism=replace(mechanism, notes=(*mechanism.notes, *notes)))
+
+
+def _example(kinematics: Kinematics, index: int) -> str:
+    pair = pair_at_one_frame(kinematics, index)
+    if pair is None:
+        return ""
+    moved = [
+        (joint.name, *values)
+        for joint, *values in zip(kinematics.mechanism.joints, *pair, strict=True)
+        if abs(values[0] - values[1]) > _APART
+    ]
+    sides = (", ".join(f"{name} {values[side]:.1f}" for name, *values in moved) for side in (0, 1))
+    first, second = sides
+    names = kinematics.branches[index].names
+    what = (
+        "orientation" if kinematics.mechanism.is_orientation else "frame" if kinematics.reads_rotation else "position"
+    )
+    return f". For one {what} of the nominal machine {names[0]} has {first}, and {names[1]} has {second}"
+
+
+def pair_at_one_frame(kinematics: Kinematics, index: int) -> tuple[Reals, Reals] | None:
+    """Axis values of the nominal machine that differ in one branch and have the frame in common; the first byte first.
+
+    None where no such pair was found.
+    """
+    machine = machine_with(kinematics, {p.name: p.nominal for p in kinematics.parameters})
+    count = len(kinematics.branches)
+    for axes in _candidates(machine):
+        status, frame, configuration = forward(machine, axes)
+        if status is not Status.OK or configuration[index] not in _REGULAR:
+            continue
+        other = [3 - b if k == index else b for k, b in enumerate(configuration[:count])]
+        periods = (0,) * (len(configuration) - count)
+        if not all(byte in _REGULAR for byte in other):
+            continue
+        _, found, statuses = branches(machine, frame, (*other, *periods), axes)
+        if statuses[0] is Status.OK and max(abs(a - b) for a, b in zip(axes, found[0], strict=True)) > _APART:
+            return (axes, found[0]) if configuration[index] == 1 else (found[0], axes)
+    return None
+
+
+def _candidates(machine: Machine) -> Iterator[Reals]:
+    """Axis values near the nominal ones, or near the home pose of a loop that turns its platform."""
+    mechanism = machine.kinematics.mechanism
+    start = machine.home if mechanism.home else tuple(j.nominal for j in mechanism.joints)
+    turned = [_ANGLES[k % len(_ANGLES)] if j.is_angle else 0.0 for k, j in enumerate(mechanism.joints)]
+    for part in (1.0, 0.5, -1.0, 0.0):
+        yield tuple(float(a + part * b) for a, b in zip(start, turned, strict=True))
+    size = sum(abs(p.nominal) for p in mechanism.parameters if p.unit == "u") or 500.0
+    spread = [_AROUND if j.is_angle else 0.2 * size for j in mechanism.joints]
+    for row in np.random.default_rng(1).uniform(-1.0, 1.0, (_TRIED, len(start))).tolist():
+        yield tuple(float(a + r * s) for a, r, s in zip(start, row, spread, strict=True))

@@ -1,0 +1,120 @@
+"""`softkin explain`: the steps of a derivation in plain text, and the branches that nobody named."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from derive.command.explain import explanation
+from derive.description.catalogue import MECHANISMS, load
+from tests.command.files import RAIL, SCARA, Folder
+from tests.command.wrong import changed
+
+
+def explained(file: str) -> str:
+    return "\n".join(explanation(load(MECHANISMS / file)))
+
+
+def test_the_steps_of_a_scara(folder: Folder) -> None:
+    """Unknown <- rule <- equations; determinant, branch, and where an angle is free."""
+    folder.write("my_scara.py", SCARA)
+    said = folder.run("explain", "my_scara.py")
+    assert (said.status, said.err) == (0, "")
+    for line in (
+        "  equation z: a3 + height - z = 0",
+        "A3 <- affine <- z",
+        "A2 <- trigonometric <- x² + y²",
+        "determinant: 2*link_length_1*link_length_2*sin_a2, over 2*link_length_1*link_length_2; where it is 0",
+        "branch elbow: 1 right, 2 left; the sign of the determinant is 1",
+        "A1 <- pair <- x and y",
+        "A1 is free where reach = 0: there it is that of the reference",
+        "A4 <- pair <- cos heading and sin heading",
+        '  branch("elbow", sin(A2), right=+1, left=-1)',
+        "the product of the chain",
+    ):
+        assert line in said.out, said.out
+    assert "to be named" not in said.out
+
+
+def test_branches_that_nobody_named_stand_there_to_be_named(folder: Folder) -> None:
+    """The line that is printed can be put into the description, and then names the same branch."""
+    named = '    branches=(branch("elbow", sin(A2), right=+1, left=-1),),\n'
+    assert SCARA.count(named) == 1
+    folder.write("my_scara.py", SCARA.replace(named, ""))
+    said = folder.run("explain", "my_scara.py")
+    (line,) = re.findall(r'^  (branch\("elbow_1".*\))$', said.out, re.MULTILINE)
+    assert line == 'branch("elbow_1", sin(A2), positive=+1, negative=-1)'
+    assert (
+        "derived, to be named: 1 positive where A2 is between 0 and 180 degrees, 2 negative where A2 is between -180"
+    ) in said.out
+    folder.write("my_scara.py", SCARA.replace(named, f"    branches=({line},),\n"))
+    said = folder.run("explain", "my_scara.py")
+    assert line in said.out and "to be named" not in said.out
+
+
+@pytest.mark.parametrize(
+    ("file", "lines"),
+    [
+        (
+            "kin_articulatedrobot_6dof.py",
+            [
+                r"A1 <- lateral <- z_from_q1",
+                r"A3 <- trigonometric <- x_from_q1² \+ y_from_q1²",
+                r"A4 <- polar <- r13 and r23",
+                r"A4 is free where radius_q4 = 0",
+                r"branch hand: 1 \w+, 2 \w+; the (opposite )?sign of the determinant is 1",
+                r"A6 <- pair <- r21 and r22",
+            ],
+        ),
+        (
+            "kin_bipod_rotary.py",
+            [
+                r"A1 <- trigonometric <- rod 1",
+                r"branch knee_2: 1 outward, 2 inward",
+                r"x, y <- spheres <- ",
+                r"assembly tcp: tcp_above chooses the second mode",
+            ],
+        ),
+        ("softkin_planar_3rrr.py", [r"A3 <- trigonometric <- rod 3", r"Newton's method from the home pose"]),
+        ("kin_ac6_rzryryrxryrz_j6offset.py", [r"^Where \w+ is not 0, A6 is scanned for roots"]),
+        ("kin_gantry2.py", [r"A1 <- affine <- x|X <- affine <- x", r"Branches: none, every pose has one solution"]),
+    ],
+)
+def test_every_kind_of_machine_is_explained(file: str, lines: list[str]) -> None:
+    text = explained(file)
+    for line in lines:
+        assert re.search(line, text, re.MULTILINE), (line, text)
+
+
+def test_no_step_is_without_its_equations() -> None:
+    """Every step of these machines is found again from the equations that are named."""
+    for file in (
+        "kin_articulatedrobot_6dof.py",
+        "kin_ac6_threeparallel.py",
+        "kin_polar.py",
+        "softkin_tabletable_ac.py",
+    ):
+        steps = re.findall(r"^  \d+\. (.*)$", explained(file), re.MULTILINE)
+        assert steps
+        assert not [s for s in steps if s.endswith("the equations above")], steps
+
+
+def test_a_machine_that_cannot_be_derived_is_one_message(folder: Folder) -> None:
+    folder.write("rail.py", RAIL)
+    folder.write("wrong.py", RAIL.replace("Ty(A2)", "Tx(A2)"))
+    said = folder.run("explain", "wrong.py", "rail.py")
+    assert said.status == 2 and said.err.count("\n") == 1
+    assert said.err.startswith("error: wrong.py:9: the closure does not determine a1, a2")
+    assert "A2 <- affine <- y" in said.out
+
+
+def test_the_steps_before_a_refusal_are_shown(folder: Folder) -> None:
+    """Where no rule fits what is left, the author sees how far it went."""
+    cubic = changed(
+        RAIL, ("chain=Tx(A1) * Ty(A2)", "closure=(X - A1, Y - A2 - A2**3)"), ("Task, linear", "Task, X, Y, linear")
+    )
+    folder.write("cubic.py", cubic)
+    said = folder.run("explain", "cubic.py")
+    assert said.status == 2 and "no subproblem determines a2: 1 unknown in 1 equation" in said.err
+    assert "Inverse kinematics, as far as it goes\n  1. A1 <- affine <- x\n" in said.out, said.out

@@ -1,0 +1,68 @@
+"""A drawing that cannot be made is a warning with its reason: package and block are written, and proven."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from derive.pipeline import derive_one
+from tests.command.files import Folder
+from tests.command.guide import MACHINES
+from tests.command.wrong import changed
+from tests.mechanisms import named
+
+NO_POSE = changed(
+    MACHINES["five_bar"],
+    ("nominal=120.0", "nominal=-90.0"),
+    ("nominal=60.0", "nominal=90.0"),
+    ("nominal=320.0", "nominal=120.0"),
+    ("nominal=280.0", "nominal=130.0"),
+)
+"""The nominal values of the joints fit no pose of these lengths."""
+
+
+def test_a_machine_that_cannot_be_drawn_is_written_without_a_picture(folder: Folder) -> None:
+    folder.write("five_bar.py", NO_POSE)
+    said = folder.run("derive", "five_bar.py")
+    assert (said.status, said.err) == (0, "")
+    assert re.search(
+        r"^  warning: five_bar\.py:\d+: not drawn: no pose can be drawn: the nominal values", said.out, re.M
+    )
+    names = folder.names("build")
+    assert "st/own/FiveBar.st" in names and not [n for n in names if n.startswith("st/pictures")]
+    assert "image::" not in (folder.path / "build/st/own/FiveBar.st").read_text()
+    assert re.search(
+        r"^\| \[`FiveBar`\]\(own/FiveBar\.st\) \| no \|", (folder.path / "build/st/README.md").read_text(), re.M
+    )
+
+
+def test_whatever_a_drawing_meets_is_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also an error that nobody expects; the machine is that of a run in which it is drawn."""
+
+    def broken(_: object) -> dict[str, bytes]:
+        raise ZeroDivisionError("no size")
+
+    gantry = named("Kin_Gantry2")
+    drawn = derive_one(gantry)
+    monkeypatch.setattr("derive.emit.softmotion.pictures.pictures_of", broken)
+    built = derive_one(gantry)
+    assert (drawn.undrawn, built.undrawn) == ("", "ZeroDivisionError: no size")
+    assert drawn.pictures and not built.pictures
+    assert built.parts["python"] == drawn.parts["python"]
+
+
+def test_a_machine_with_seven_axes_has_a_package_and_no_block(folder: Folder) -> None:
+    """A position in SoftMotion has six axes; Python has as many as there are."""
+    slides = changed(
+        MACHINES["arm_on_track"],
+        ("joints=(E1, A1, A2)", "joints=(E1, *MORE, A1, A2)"),
+        ("held=(E1,)", "held=(E1, *MORE)"),
+        ("chain=Tx(E1) * ", "chain=Tx(E1) * Tx(MORE[0]) * Tx(MORE[1]) * Tx(MORE[2]) * Tx(MORE[3]) * "),
+        ("MECHANISM =", 'MORE = [linear(f"E{k}", "another track") for k in (2, 3, 4, 5)]\n\nMECHANISM ='),
+    )
+    folder.write("tracks.py", slides)
+    said = folder.run("derive", "tracks.py")
+    assert (said.status, said.err) == (0, "")
+    assert "note: no block: it has 7 axes, and SoftMotion knows six" in said.out
+    assert {n.split("/")[0] for n in folder.names("build")} == {"python"}

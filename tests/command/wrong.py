@@ -1,0 +1,159 @@
+"""For every refusal that the guide lists, a description that is refused so: a machine of the guide, changed."""
+
+from __future__ import annotations
+
+from derive.command.new import description
+from tests.command.files import RAIL
+from tests.command.guide import MACHINES
+
+SCARA = description("scara.py", "MyScara")
+ARM, PALLETIZER, FIVE_BAR, MILL, PLATFORM = (
+    MACHINES[name] for name in ("arm_on_track", "palletizer", "five_bar", "trunnion", "planar_3rrr")
+)
+ELBOW = 'branch("elbow", sin(A2), left=+1, right=-1)'
+Change = tuple[str, str]
+
+
+def changed(text: str, *changes: Change) -> str:
+    """The text with parts replaced; each stands in it once."""
+    for old, new in changes:
+        assert text.count(old) == 1, (old, text.count(old))
+        text = text.replace(old, new)
+    return text
+
+
+def with_parameter(name: str) -> str:
+    """The arm, with another name for its first length."""
+    return changed(ARM, ('"link_length_1"', repr(name)))
+
+
+WRONG: dict[str, str] = {
+    "SyntaxError: …": changed(ARM, ("MECHANISM = Mechanism(", "MECHANISM = Mechanism((")),
+    "NameError: name '…' is not defined; define it above this line": changed(ARM, ("Rz(A2)", "Rz(A3)")),
+    "ImportError: cannot import name …; joints and lengths are in derive.mechanism": changed(
+        ARM, ("rotary\n", "turn\n")
+    ),
+    "TypeError: … got an unexpected keyword argument '…'; did you mean '…'?": changed(ARM, ("chain=", "chian=")),
+    "TypeError: … missing 1 required positional argument: '…'; state what is missing": changed(
+        ARM, ('    task=Task("xy"),\n', "")
+    ),
+    "defines no MECHANISM; assign the description": changed(ARM, ("MECHANISM =", "ARM =")),
+    "the description ends the program; let the file define MECHANISM": ARM + "\nexit()\n",
+    "branch '…' needs two names with the signs +1 and -1": changed(ARM, ("right=-1", "right=+1")),
+    "… must be a tuple, not a …: a comma makes the tuple": changed(ARM, ("held=(E1,)", "held=(E1)")),
+    "… must not be …: as in …": changed(ARM, ('Task("xy")', '"xy"')),
+    "… must not hold …: as in …": changed(ARM, ("joints=(E1, A1, A2)", 'joints=("E1", "A1", "A2")')),
+    "task: '…' is no Turning": changed(MILL, ("Turning.DIRECTION),", '"direction"),')),
+    "TypeError: …; take sin, cos and sqrt from sympy": changed(ARM, ("from sympy", "from math")),
+    "TypeError: …; a chain is a product": changed(ARM, ("Tx(L1) * Rz", "Tx(L1) + Rz")),
+    "TypeError: length() missing 1 required …; as in length(": changed(ARM, (", nominal=400.0", "")),
+    "parameter '…': '…' is not a number": changed(ARM, ("nominal=400.0", 'nominal="400"')),
+    "…: its text holds …, which would end a comment or a text": changed(ARM, ("Axis A1 to axis A2", "A1 (* to *) A2")),
+    "branch '…': '…' cannot name it, or a side of it: lower-case words": changed(ARM, ('"elbow"', '"my elbow"')),
+    "rod '…': its ends have 2 and 3 coordinates": changed(
+        FIVE_BAR, ('rod("1", KNEE_1, TOOL, ROD_1)', 'rod("1", KNEE_1, (X, Y, 0), ROD_1)')
+    ),
+    "… is taken by …: choose another name": changed(ARM, ('"ArmOnTrack"', '"Softkin_Root"')),
+    "… declares …, which is a word of IEC 61131-3": changed(ARM, ('"ArmOnTrack"', '"Array"')),
+    "'…' cannot name a function block; take letters, digits and single _": changed(
+        ARM, ('"ArmOnTrack"', '"Arm on track"')
+    ),
+    "'…' cannot name a family": changed(ARM, ('"ArmOnTrack",', '"ArmOnTrack", family="my machines",')),
+    "'…' cannot name a joint: a capital letter, then letters and digits": changed(ARM, ('rotary("A1"', 'rotary("a_1"')),
+    "'…' cannot name a parameter: lower-case words joined by _": with_parameter("linkLength"),
+    "'…' cannot name a parameter: programs of this mechanism have another value of that name": with_parameter(
+        "offset_a1"
+    ),
+    "parameter '…' has a name that the derivation itself uses: choose another": with_parameter("reach"),
+    "joint '…' is given 2 times; give each thing a name of its own": changed(ARM, ('rotary("A2"', 'rotary("A1"')),
+    "parameter '…': its nominal value … is outside its range …": changed(ARM, ("nominal=400.0", "nominal=0.0")),
+    "joint '…': its limit_range … is empty; state the lower end first": changed(
+        ARM, ('"Link 1 about Z, from +X"', '"Link 1", limit_range=(90.0, -90.0)')
+    ),
+    "joint '…' carries a pitch: it needs a limit_range": changed(
+        ARM, ('"Link 2 about Z, from link 1"', '"2", pitch=L1')
+    ),
+    "coupling of joint '…' reads '…', which is not the motor of an earlier joint": changed(
+        ARM, ('"Link 2 about Z, from link 1"', '"2", coupling=rotary("A3", "later").motor')
+    ),
+    "chain reads '…', which is not a joint or a parameter of this mechanism; list it": changed(
+        ARM, ("parameters=(L1, L2)", "parameters=(L1,)")
+    ),
+    "joint '…' occurs nowhere in the closure; use it": changed(ARM, ("chain=Tx(E1) * ", "chain=")),
+    "periods names '…', which is no multi-turn joint of this mechanism; leave out periods=": changed(
+        ARM, ("held=(E1,),", 'held=(E1,), periods=("E1", "A1", "A2"),')
+    ),
+    "the nominal parameters break the constraint '…'; choose nominal values": changed(
+        FIVE_BAR, ("BASE < ARM_1", "BASE > ARM_1")
+    ),
+    "one joint too many: the task commands …": changed(ARM, ("    held=(E1,),\n", "")),
+    "the task commands …, and there are only … joints; command less": changed(
+        SCARA, ("Turning.ABOUT_Z),", "Turning.FULL),")
+    ),
+    "held names '…', which is no joint of this mechanism": changed(ARM, ("joints=(E1, A1", "joints=(A1")),
+    "held joints need a chain: of a closed loop every joint follows from the pose": changed(
+        FIVE_BAR, ("joints=(A1, A2),", "joints=(A1, A2), held=(A1,),")
+    ),
+    "the closure has … equations, and the task commands only …": changed(
+        FIVE_BAR, ('rod("2", KNEE_2, TOOL, ROD_2)', 'rod("2", KNEE_2, TOOL, ROD_2), rod("3", KNEE_2, TOOL, ROD_1)')
+    ),
+    "the mechanism needs either a chain or closure equations; state chain=": changed(
+        RAIL, ("chain=Tx(A1) * Ty(A2), ", "")
+    ),
+    "the task commands '…': it must be 'xy', 'xyz', or ''": changed(ARM, ('Task("xy")', 'Task("zx")')),
+    "… is not commanded but the joints move it; command it too": changed(
+        SCARA,
+        ('Task("xyz", Turning', 'Task("xy", Turning'),
+        ("    joints=(A1, A2, A3, A4),", "    joints=(A1, A2, A4),"),
+        ("Tz(HEIGHT + A3)", "Tz(L2 * sin(A2))"),
+    ),
+    "the chain must turn the flange about z alone: …": changed(
+        SCARA, ("import Rz,", "import Rx, Rz,"), ("* Rz(A4),", "* Rx(A4),")
+    ),
+    "the closure does not determine …": changed(RAIL, ("Ty(A2)", "Tx(A2)")),
+    "no subproblem determines …": changed(
+        SCARA,
+        ("import Rz,", "import Rx, Rz,"),
+        ("Tx(L2) * Tz(HEIGHT + A3) * Rz(A4),", "Tx(L2) * Rx(0.7) * Rz(A4) * Tx(90),"),
+        ("Tx(L1) * ", "Tx(L1) * Rx(0.4) * Tz(70) * "),
+        ("joints=(A1, A2, A3, A4)", "joints=(A1, A2, A4)"),
+        (", Turning.ABOUT_Z),", "),"),
+        ('branches=(branch("elbow", sin(A2), right=+1, left=-1),),', ""),
+    ),
+    "with offset_interface=False it could be built, but for a point off the flange …": changed(
+        MILL, ("    offset_interface=False,\n", "")
+    ),
+    "branch '…': its indicator agrees with 0 steps, not one; …softkin explain…": changed(ARM, ("sin(A2)", "sin(A1)")),
+    "branches '…' and '…' name the same two solutions; leave one of them out": changed(
+        ARM, (f"branches=({ELBOW},)", f'branches=({ELBOW}, branch("bend", -sin(A2), inward=+1, outward=-1))')
+    ),
+    "forward kinematics has 1 two-root steps: one assembly names one; as in assembly(": changed(
+        FIVE_BAR,
+        ('    assembly=assembly("tool", cross(BAR_1, BAR_2), margin="rods_aligned", above=+1, below=-1),\n', ""),
+    ),
+    "assembly '…': its indicator does not tell the two solutions apart": changed(
+        FIVE_BAR, ("cross(BAR_1, BAR_2), margin", "cross(REACH_1, REACH_2), margin")
+    ),
+    "no sampled pose is possible: a quantity that must be positive never is, or the loop never closes; check": changed(
+        ARM, ("held=(E1,),", "held=(E1,), positive=(sin(A2) - 2,),")
+    ),
+    "a loop that turns its platform needs offset_interface=False": changed(
+        PLATFORM, ("    offset_interface=False,\n", "")
+    ),
+    "a loop that turns its platform needs no assembly: its home pose tells the mode": changed(
+        PLATFORM,
+        ("rotary\n", "rotary, assembly\n"),
+        ("home=(0, 0, 0),", 'home=(0, 0, 0), assembly=assembly("p", ROD, margin="m", a=+1, b=-1),'),
+    ),
+    "a platform that a loop turns needs a rod for each of the … quantities of the task": changed(
+        PLATFORM,
+        (
+            "for k, (knee, end) in enumerate(zip(KNEES, ENDS), 1)),",
+            "for k, (knee, end) in enumerate(zip(KNEES[1:], ENDS[1:]), 1)), closure=(KNEES[0][0] - ENDS[0][0],),",
+        ),
+    ),
+    "no pose near the home pose is possible: is it where the legs reach it?": changed(
+        PLATFORM, ("home=(0, 0, 0),", "home=(0, 2000, 0),")
+    ),
+}
+"""Refusal of the guide → description. The parts of the guide that a machine, or a folder, says are tested elsewhere."""
