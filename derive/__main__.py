@@ -1,7 +1,8 @@
 """The command line: `python -m derive generate` writes `generated/`, `python -m derive check` compares it.
 
 `generate` keeps what it derived beside the output folder, and derives again only what depends on something that
-changed; `--fresh` neither reads nor writes that cache, and `check` never does.
+changed; `--fresh` neither reads nor writes that cache, and `check` never does. `import` writes a description of a robot
+file.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from pathlib import Path
 from derive.cache import Cache, foundation
 from derive.description.catalogue import MECHANISMS, Entry, catalogue
 from derive.description.mechanism import DescriptionError
+from derive.importing import line as importing
 from derive.output import ForeignFolder, differences, replace_folder
 from derive.pipeline import Built, GenerationError, derive_all, files_of, languages, work_of
 from derive.progress import Progress
@@ -25,6 +27,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; 0 where it succeeded, else one message on stderr and 1."""
     options = _options(arguments)
     try:
+        if options.command == "import":
+            return importing.run(options)
         return _check(options) if options.command == "check" else _generate(options)
     except (DescriptionError, GenerationError, ForeignFolder, OSError) as problem:
         message = str(problem).replace(f"{Path.cwd()}/", "")  # paths as the user would type them
@@ -53,6 +57,8 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
             command.add_argument(
                 "--fresh", action="store_true", default=False, help="derive everything, without the cache"
             )
+    text = "write a description of a robot file, to be read, edited and derived"
+    importing.add_arguments(commands.add_parser("import", help=text, description=text))
     return parser.parse_args(arguments)
 
 
