@@ -44,7 +44,7 @@ class Skeleton:
         return self.amounts[self.turns[turn]]
 
     def is_shifted(self, start: int, end: int) -> bool:
-        """Whether anything but shifts stands between two turns."""
+        """Whether nothing but shifts stands between two turns."""
         between = self.pieces[self.turns[start] + 1 : self.turns[end]]
         return all(p.motion is Motion.SHIFT for p in between)
 
@@ -89,7 +89,7 @@ def branches(pieces: Sequence[Piece], amounts: Sequence[sp.Expr], task: Followed
     if task.turning == "FULL" and task.position == "xyz" and len(turns) == 6:
         if arm.meet(3, 4) and arm.meet(4, 5):
             return _with_wrist(arm)
-        if all(arm.letter(k) == arm.letter(1) and arm.is_shifted(1, k) for k in (2, 3)) and arm.meet(4, 5):
+        if all(arm.letter(k) == arm.letter(1) and arm.is_shifted(k - 1, k) for k in (2, 3)) and arm.meet(4, 5):
             return _three_parallel(arm)
     is_planar = task.turning in ("NONE", "ABOUT_Z") and len(turns) in (2, 3) and not held
     if is_planar and arm.letter(0) == arm.letter(1) and arm.is_shifted(0, 1):
@@ -130,7 +130,8 @@ def _wrist(arm: Skeleton, first: int) -> Named | None:
     if letters[1] in (letters[0], letters[2]):
         return None
     turn = sp.sin if letters[0] == letters[2] else sp.cos
-    return Named("wrist", turn(arm.amount(first + 1)), ("positive", "negative"))
+    between = turn(arm.amount(first + 1))
+    return Named("wrist", -between if between.could_extract_minus_sign() else between, ("positive", "negative"))
 
 
 def _shoulder(arm: Skeleton, centre: int) -> Named:
@@ -145,8 +146,13 @@ def _elbow(arm: Skeleton, before: int, at: int, end: int, names: tuple[str, str]
     i, j = (letter + 1) % 3, (letter + 2) % 3
     first = _back(arm, arm.turns[before], arm.turns[at])
     second = _turned([(letter, arm.amount(at))], arm.along(arm.turns[at], end))
-    crossed = sp.expand(first[i] * second[j] - first[j] * second[i])
+    crossed = sp.expand(first[i] * second[j] - first[j] * second[i]) * _up(arm, letter)
     return Named("elbow", _without_lengths(crossed), names)
+
+
+def _up(arm: Skeleton, letter: int) -> int:
+    """Which way round an axis turns a link up: +1 where it does as y does, with axis 1 along z and x in front."""
+    return -1 if (letter - arm.letter(0)) % 3 == 1 else 1
 
 
 def _back(arm: Skeleton, start: int, end: int) -> sp.Matrix:

@@ -62,7 +62,8 @@ def factor_text(piece: Piece, axes: Sequence[str], dimension: Dimension | None) 
 
 def amount_text(piece: Piece, axes: Sequence[str], dimension: Dimension | None) -> str:
     """The amount of a piece: axes with their multipliers, positive ones first, then the constant."""
-    ordered = sorted(piece.drives, key=lambda d: (d[1] < 0.0, -d[0]))
+    up = any(multiplier > 0.0 for _, multiplier in piece.drives)
+    ordered = sorted(piece.drives, key=lambda d: (d[1] < 0.0, -d[0] if up else d[0]))
     terms = [(multiplier < 0.0, _multiple(axes[axis], abs(multiplier))) for axis, multiplier in ordered]
     if dimension is not None and dimension.is_angle:
         terms.append((False, f"radians({dimension.variable})"))

@@ -12,8 +12,11 @@ from derive.importing.arms.pieces import simple
 from derive.importing.arms.snapping import Snapped, snapped_robot
 from derive.importing.arms.tasks import Followed, followed
 from derive.importing.branches import Named
+from derive.importing.formats.documents import parsed
+from derive.importing.formats.mjcf import read_mjcf
+from derive.importing.formats.tables import read_table
 from derive.importing.formats.urdf import read_urdf
-from derive.importing.naming import axis_names
+from derive.importing.naming import axis_names, place_names
 from derive.importing.report import Bounds, bounds, neighbours, snaps
 from derive.importing.robot import Robot, UnreadableRobot
 from derive.importing.writing import Description, description_of, written
@@ -69,7 +72,13 @@ def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa:
 
 
 def _reader(path: Path) -> Reader:
-    return read_urdf
+    """The reader of a file, by its name; of XML by what it says."""
+    suffix = path.suffix.lower()
+    if suffix == ".xacro":
+        raise UnreadableRobot(f"{path}: expand it first: `xacro {path.name} > {path.stem}.urdf`, and import that")
+    if suffix in (".toml", ".csv"):
+        return read_table
+    return read_mjcf if parsed(path).tag == "mujoco" else read_urdf
 
 
 def _imported(robot: Robot, options: Options) -> Imported:
@@ -77,7 +86,7 @@ def _imported(robot: Robot, options: Options) -> Imported:
     put_back, moved = snapped_robot(robot, options.snap)
     arm = arm_of(put_back)
     axes = axis_names(robot)
-    places = [axes[line.drives[0][0]] for line in arm.lines]
+    places = place_names(arm, axes)
     chain = simple(arm, places, options.snap)
     moved += chain.moved
     task = followed(arm, len(axes), _held(robot, axes, options.hold))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from derive.importing.arms.lines import Arm
 from derive.importing.arms.pieces import Piece
 from derive.importing.robot import Robot
 
@@ -26,6 +27,16 @@ def axis_names(robot: Robot) -> tuple[str, ...]:
     if len(names) == len(found) == len(set(names)):
         return tuple(names)
     return tuple(f"A{k}" for k in range(1, len(found) + 1))
+
+
+def place_names(arm: Arm, axes: Sequence[str]) -> list[str]:
+    """A name for every line: its axis; where an axis moves several, A2, A2b, A2c."""
+    names: list[str] = []
+    for line in arm.lines:
+        axis = axes[line.drives[0][0]]
+        others = sum(name.rstrip("bcdefgh") == axis for name in names)
+        names.append(f"{axis}{'abcdefgh'[others] if others else ''}")
+    return names
 
 
 def _short(name: str) -> str | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from textwrap import wrap
 
 import numpy as np
@@ -16,7 +16,7 @@ from derive.importing.arms.pieces import Simple
 from derive.importing.arms.tasks import Followed
 from derive.importing.branches import Named, branches
 from derive.importing.expressions import Dimension, amount_text, dimension_of, factor_text
-from derive.importing.naming import axis_names, block_name
+from derive.importing.naming import axis_names, block_name, place_names
 from derive.importing.robot import Axis, Robot
 
 _WIDTH = 118
@@ -37,8 +37,8 @@ class Description:
 def description_of(robot: Robot, arm: Arm, chain: Simple, task: Followed) -> Description:
     """The names and texts of a chain."""
     axes = axis_names(robot)
-    places = [axes[line.drives[0][0]] for line in arm.lines]
-    dimensions = [dimension_of(piece, places, arm.size) for piece in chain.pieces]
+    places = place_names(arm, axes)
+    dimensions = _distinct([dimension_of(piece, places, arm.size) for piece in chain.pieces])
     factors = tuple(factor_text(p, axes, d) for p, d in zip(chain.pieces, dimensions, strict=True))
     symbols: dict[str, object] = {name: sp.Symbol(name, real=True) for name in axes}
     symbols |= {d.variable: sp.Symbol(d.variable, positive=True) for d in dimensions if d is not None}
@@ -48,8 +48,16 @@ def description_of(robot: Robot, arm: Arm, chain: Simple, task: Followed) -> Des
     found = branches(chain.pieces, amounts, task)
     if any(b.indicator.has(sp.Symbol("DEGREE", positive=True)) for b in found):
         found = ()
-    kept = {d.name: d for d in dimensions if d is not None}
-    return Description(block_name(robot), axes, tuple(kept.values()), factors, found)
+    return Description(block_name(robot), axes, tuple(d for d in dimensions if d is not None), factors, found)
+
+
+def _distinct(dimensions: Sequence[Dimension | None]) -> list[Dimension | None]:
+    """The dimensions with names that differ: two turns between the same axes may be about the same letter."""
+    found: list[Dimension | None] = []
+    for one in dimensions:
+        count = sum(d is not None and one is not None and d.meaning == one.meaning for d in found)
+        found.append(replace(one, name=f"{one.name}_{count + 1}") if one is not None and count else one)
+    return found
 
 
 def written(robot: Robot, description: Description, task: Followed, unit: str, notes: Sequence[str]) -> str:

@@ -18,7 +18,7 @@ from derive.importing.robot import Array
 _FAR = 20.0
 """Candidates farther away than this many sizes of the machine are feet of axes that are nearly parallel."""
 Cost = tuple[int, int, int, float]
-"""Shifts that remain, places where there is one, lines that miss the points, and their length."""
+"""Shifts that remain, lines that miss the points, places where there is a shift, and their length."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Search:
         """The cost of the way from one point to the next."""
         between = end - start
         shifts = self.shifts(index, between)
-        return shifts, int(shifts > 0), self.missed(index, end), round(float(np.abs(between).sum()) / self.arm.size, 6)
+        return shifts, self.missed(index, end), int(shifts > 0), round(float(np.abs(between).sum()) / self.arm.size, 6)
 
     def missed(self, index: int, point: Array) -> int:
         """The rotary axes that do not pass through a point, counted from an axis on to both sides; points of the first
@@ -73,8 +73,8 @@ def _cost(way: tuple[Cost, list[Array]]) -> Cost:
 
 
 def _extended(search: Search, index: int, way: tuple[Cost, list[Array]], end: Array) -> tuple[Cost, list[Array]]:
-    shifts, places, missed, length = (a + b for a, b in zip(way[0], search.cost(index, way[1][-1], end), strict=True))
-    return (int(shifts), int(places), int(missed), float(length)), [*way[1], end]
+    shifts, missed, places, length = (a + b for a, b in zip(way[0], search.cost(index, way[1][-1], end), strict=True))
+    return (int(shifts), int(missed), int(places), float(length)), [*way[1], end]
 
 
 def _candidates(arm: Arm, limit: float) -> list[list[Array]]:

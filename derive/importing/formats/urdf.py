@@ -44,7 +44,7 @@ def read_urdf(path: Path, base: str | None, tip: str | None, scale: float) -> Ro
     base, tip = ends_of(path, edges, links, base, tip)
     joints = {required(path, j, "name"): j for j in root.findall("joint")}
     passed = path_between(path, edges, links, base, tip)
-    followers = {name: f for name, j in joints.items() if (f := _follower(path, j)) is not None}
+    followers = {n: f for n, j in joints.items() if (f := _follower(path, joints, j, scale)) is not None}
     steps = tuple(
         step
         for edge, is_up in passed
@@ -84,8 +84,7 @@ def _step(path: Path, joint: Element, followers: Mapping[str, Follower], scale: 
     if kind is None:
         return Step(name, places)
     drives, offset = driven(path, name, followers)
-    unit = scale if kind is Kind.LINEAR else 1.0
-    return Step(name, places, Moving(kind, _direction(path, joint, name), drives, offset * unit))
+    return Step(name, places, Moving(kind, _direction(path, joint, name), drives, offset))
 
 
 def _kind(path: Path, joint: Element) -> Kind | None:
@@ -122,18 +121,21 @@ def _direction(path: Path, joint: Element, name: str) -> Triple:
     return (stated[0] / size, stated[1] / size, stated[2] / size)
 
 
-def _follower(path: Path, joint: Element) -> Follower | None:
+def _follower(path: Path, joints: Mapping[str, Element], joint: Element, scale: float) -> Follower | None:
     mimic = joint.find("mimic")
-    if mimic is None:
+    if mimic is None or joint.get("type") == "fixed":
         return None
     place = f"the mimic of joint {joint.get('name')!r}"
     leader = mimic.get("joint")
     if not leader:
         raise UnreadableRobot(f"{path}: {place} names no joint")
+    unit, of_leader = (
+        scale if _kind(path, j) is Kind.LINEAR else 1.0 for j in (joint, _commanded(path, joints, leader))
+    )
     return Follower(
         leader,
-        number(path, mimic.get("multiplier", "1"), f"{place}, multiplier"),
-        number(path, mimic.get("offset", "0"), f"{place}, offset"),
+        number(path, mimic.get("multiplier", "1"), f"{place}, multiplier") * unit / of_leader,
+        number(path, mimic.get("offset", "0"), f"{place}, offset") * unit,
     )
 
 
