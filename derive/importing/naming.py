@@ -9,7 +9,7 @@ from derive.importing.arms.lines import Arm
 from derive.importing.arms.pieces import Piece
 from derive.importing.robot import Robot
 
-_SHORT = re.compile(r"[A-Z][0-9]{1,2}\Z")
+_SHORT = re.compile(r"[A-Z][0-9]\Z")
 _TAKEN = {"X", "Y", "Z", "Rx", "Ry", "Rz", "Tx", "Ty", "Tz", "TURN", "ROTATION", "MECHANISM"}
 """What a mechanism file imports or defines."""
 LETTERS = "xyz"
@@ -21,12 +21,12 @@ def words(name: str) -> list[str]:
 
 
 def axis_names(robot: Robot) -> tuple[str, ...]:
-    """The names of the file where they are short (`joint_a1` is A1), else A1, A2 ... in the order of the chain."""
+    """The names of the file where they are short (`joint_a1` is A1), else A1 to A9, B1 to B9, in their order."""
     found = [_short(axis.name) for axis in robot.axes]
     names = [name for name in found if name is not None]
     if len(names) == len(found) == len(set(names)):
         return tuple(names)
-    return tuple(f"A{k}" for k in range(1, len(found) + 1))
+    return tuple(f"{'ABCDEFGH'[k // 9]}{k % 9 + 1}" for k in range(len(found)))  # A12 is the sum of A1 and A2
 
 
 def place_names(arm: Arm, axes: Sequence[str]) -> list[str]:

@@ -39,7 +39,7 @@ def neighbours(arm: Arm, names: Sequence[str], limit: float, unit: str) -> Itera
         degrees = float(np.degrees(stands.angle))
         is_slide = Kind.LINEAR in (first.kind, second.kind)
         distance = "a slide" if is_slide else f"distance {stands.distance:.6g} {unit}"
-        hints = list(_hints(stands.distance / (arm.size or 1.0), stands.angle, limit, is_slide))
+        hints = list(_hints(stands.distance / arm.size, stands.angle, limit, is_slide))
         yield f"  {one}-{other}: {distance}, angle {degrees:.6g}°{'; ' if hints else ''}{'; '.join(hints)}"
 
 

@@ -32,7 +32,9 @@ class Arm:
     lines: tuple[Line, ...]
     tip: Array
     size: float
-    """The length of the way from the base along all joints to the tip: what lengths are compared with."""
+    """The length of the way from the base along all joints to the tip, one unit where it is nothing: what lengths are
+    compared with.
+    """
 
 
 def arm_of(robot: Robot) -> Arm:
@@ -50,7 +52,7 @@ def arm_of(robot: Robot) -> Arm:
             if drives:
                 lines.append(Line(step.moving.kind, frame[:3, 3].copy(), direction, drives))
             frame = frame @ motion(step.moving, step.moving.offset)
-    return Arm(tuple(lines), frame, way)
+    return Arm(tuple(lines), frame, way or 1.0)
 
 
 def motion(moving: Moving, value: float) -> Array:

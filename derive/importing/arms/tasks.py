@@ -61,7 +61,7 @@ def motions(arm: Arm, count: int) -> Motions:
 def _unit(arm: Arm, axis: int) -> float:
     """The size of a slide's values; 1 for an angle."""
     kinds = [line.kind for line in arm.lines for k, _ in line.drives if k == axis]
-    return (arm.size or 1.0) if Kind.LINEAR in kinds else 1.0
+    return arm.size if Kind.LINEAR in kinds else 1.0
 
 
 def _jacobian(arm: Arm, values: Array) -> tuple[Array, Array]:
@@ -71,7 +71,7 @@ def _jacobian(arm: Arm, values: Array) -> tuple[Array, Array]:
         columns.append((line, frame[:3, :3] @ line.direction, (frame @ np.append(line.point, 1.0))[:3]))
         frame = frame @ moved(line, float(sum(values[k] * m for k, m in line.drives)))
     tip = (frame @ arm.tip)[:3, 3]
-    size = arm.size or 1.0
+    size = arm.size
     jacobian = np.zeros((6, len(values)))
     for line, direction, point in columns:
         for axis, multiplier in line.drives:
