@@ -13,7 +13,7 @@ from derive.importing.arms.pieces import Piece
 from derive.importing.arms.snapping import STEP, nearest_angle
 from derive.importing.naming import parameter_meaning, parameter_name
 
-_DIGITS = 13
+_DIGITS = 14
 """Decimal digits of the machine's size that a length is written with: more are rounding of the calculation."""
 
 
@@ -49,13 +49,20 @@ def dimension_of(piece: Piece, places: Sequence[str], size: float) -> Dimension 
     return Dimension(name, parameter_meaning(piece, places, False), float(np.degrees(piece.constant)), True)
 
 
+def is_half_turn(piece: Piece) -> bool:
+    """Whether a piece is half a fixed turn about x."""
+    return piece.motion is Motion.TURN and piece.letter == 0 and not piece.drives and abs(piece.constant) == np.pi
+
+
 def is_plain(piece: Piece) -> bool:
     """Whether the constant of a piece is written as a multiple of pi."""
     return piece.motion is Motion.TURN and abs(piece.constant - nearest_angle(piece.constant)) < 1e-15
 
 
-def factor_text(piece: Piece, axes: Sequence[str], dimension: Dimension | None) -> str:
-    """The piece as the file writes it: `Ry(A3 - A2 + pi/2)`."""
+def factor_text(piece: Piece, axes: Sequence[str], dimension: Dimension | None, flips: bool = False) -> str:
+    """The piece as the file writes it: `Ry(A3 - A2 + pi/2)`. flips: half a turn about x is a flange that looks down."""
+    if flips and is_half_turn(piece):
+        return "flip_x(1)"
     name = f"{'R' if piece.motion is Motion.TURN else 'T'}{'xyz'[piece.letter]}"
     return f"{name}({amount_text(piece, axes, dimension)})"
 

@@ -11,16 +11,17 @@ import numpy as np
 import sympy as sp
 
 from derive.description.joints import Kind
+from derive.geometry.frames import Motion
 from derive.importing.arms.lines import Arm
 from derive.importing.arms.pieces import Simple
 from derive.importing.arms.tasks import Followed
 from derive.importing.branches import Named, branches
-from derive.importing.expressions import Dimension, amount_text, dimension_of, factor_text
+from derive.importing.expressions import Dimension, amount_text, dimension_of, factor_text, is_half_turn
 from derive.importing.naming import axis_names, block_name, place_names
-from derive.importing.robot import Axis, Robot
+from derive.importing.robot import Axis, Robot, UnreadableRobot
 
 _WIDTH = 118
-_FRAMES = ("Rx", "Ry", "Rz", "Tx", "Ty", "Tz")
+_FRAMES = ("Rx", "Ry", "Rz", "Tx", "Ty", "Tz", "flip_x")
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,10 @@ def description_of(robot: Robot, arm: Arm, chain: Simple, task: Followed) -> Des
     axes = axis_names(robot)
     places = place_names(arm, axes)
     dimensions = _distinct([dimension_of(piece, places, arm.size) for piece in chain.pieces])
-    factors = tuple(factor_text(p, axes, d) for p, d in zip(chain.pieces, dimensions, strict=True))
+    flips = task.turning == "ABOUT_Z"
+    if flips:
+        _refuse_leaning(chain, len(arm.lines))
+    factors = tuple(factor_text(p, axes, d, flips) for p, d in zip(chain.pieces, dimensions, strict=True))
     symbols: dict[str, object] = {name: sp.Symbol(name, real=True) for name in axes}
     symbols |= {d.variable: sp.Symbol(d.variable, positive=True) for d in dimensions if d is not None}
     symbols |= {"pi": sp.pi, "radians": lambda angle: angle * sp.Symbol("DEGREE", positive=True)}
@@ -49,6 +53,15 @@ def description_of(robot: Robot, arm: Arm, chain: Simple, task: Followed) -> Des
     if any(b.indicator.has(sp.Symbol("DEGREE", positive=True)) for b in found):
         found = ()
     return Description(block_name(robot), axes, tuple(d for d in dimensions if d is not None), factors, found)
+
+
+def _refuse_leaning(chain: Simple, tip: int) -> None:
+    """A chain that turns its tip about z commands that turn: the tip's z axis must be along it."""
+    turns = [p for p in chain.pieces if p.place == tip and p.motion is Motion.TURN and not p.drives]
+    if any(p.letter != 2 and not is_half_turn(p) for p in turns):
+        raise UnreadableRobot(
+            "its tip turns about z of the base, and its own z axis is not along that: choose a --tip whose z axis is"
+        )
 
 
 def _distinct(dimensions: Sequence[Dimension | None]) -> list[Dimension | None]:

@@ -58,6 +58,7 @@ def elementary(motion: Motion, axis: int, amount: float) -> Array:
     if motion is Motion.SHIFT:
         pose[axis, 3] = amount
         return pose
+    amount = amount * np.pi if motion is Motion.FLIP else amount
     i, j = (axis + 1) % 3, (axis + 2) % 3
     pose[i, i] = pose[j, j] = np.cos(amount)
     pose[j, i] = np.sin(amount)

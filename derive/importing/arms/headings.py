@@ -81,10 +81,17 @@ def _in_plane(direction: Array, flat: int, limit: float) -> tuple[Turns, int, in
 
 
 def orientation(rotation: Array, limit: float) -> tuple[Turns, float]:
-    """The fewest turns about x, y and z that make a rotation, and the angle by which their product differs from it."""
+    """The fewest turns about x, y and z that make a rotation, and the angle by which their product differs from it; a
+    flange that looks down is turned about z, then by half a turn about x.
+    """
+    limit = max(limit, ROUNDING)
+    if np.linalg.norm(rotation[:2, 2]) <= limit and rotation[2, 2] < 0.0:
+        about_z = _snapped(_about(2, rotation @ about(np.eye(3)[0], np.pi).T), limit)
+        down = (*(((2, about_z),) if about_z else ()), (0, float(np.pi)))
+        return down, angle_between(product(down), rotation)
     choices: list[tuple[int, int, int, Turns]] = []
     for order in ((2, 1, 0), *permutations(range(3))):
-        turns = _three_turns(rotation, order, max(limit, ROUNDING))
+        turns = _three_turns(rotation, order, limit)
         odd = sum(nearest_angle(a) != a for _, a in turns)
         choices.append((len(turns), odd, len(choices), turns))
     turns = min(choices)[3]

@@ -9,7 +9,7 @@ import numpy as np
 
 from derive.description.joints import Kind
 from derive.geometry.frames import Motion
-from derive.importing.arms.headings import Heading, Turns, headings, orientation, product
+from derive.importing.arms.headings import Heading, headings, orientation, product
 from derive.importing.arms.lines import Arm
 from derive.importing.arms.points import points
 from derive.importing.arms.snapping import ROUNDING, Snapped
@@ -72,7 +72,8 @@ def simple(arm: Arm, names: Sequence[str], limit: float) -> Simple:
     for place, target in enumerate(targets):
         is_tip = place == len(ways)
         way = Heading(turns, frame @ product(turns), 0, 1) if is_tip else ways[place]
-        shifted, there = _way(frame, way.frame, way.turns, target - here, smallest, place)
+        before = ways[place - 1].letter if place else None
+        shifted, there = _way(frame, way, target - here, smallest, place, before)
         pieces += shifted
         here = here + there
         off = _off(straight, place, here, target)
@@ -85,18 +86,22 @@ def simple(arm: Arm, names: Sequence[str], limit: float) -> Simple:
 
 
 def _way(
-    before: Array, after: Array, turns: Turns, between: Array, smallest: float, place: int
+    frame: Array, way: Heading, between: Array, smallest: float, place: int, letter: int | None
 ) -> tuple[list[Piece], Array]:
-    """The shifts and turns to the next line, the shifts where they are fewest; and how far they lead."""
-    turned = [Piece(Motion.TURN, letter, (), angle, place) for letter, angle in turns]
+    """The shifts and turns to the next line, the shifts where they are fewest; and how far they lead.
+
+    letter: that of the joint before, which takes a first turn about the same letter up.
+    """
+    turned = [Piece(Motion.TURN, axis, (), angle, place) for axis, angle in way.turns]
     choices = []
-    for frame in (before, after):
-        amounts = frame.T @ between
+    for own in (frame, way.frame):
+        amounts = own.T @ between
         amounts = np.where(np.abs(amounts) > smallest, amounts, 0.0)
         pieces = [Piece(Motion.SHIFT, k, (), float(a), place) for k, a in enumerate(amounts) if a != 0.0]
-        choices.append((pieces, frame @ amounts))
+        choices.append((pieces, own @ amounts))
     first, second = choices
-    if len(second[0]) < len(first[0]):
+    is_taken_up = bool(turned) and turned[0].letter == letter
+    if len(second[0]) < len(first[0]) + is_taken_up:
         return [*turned, *second[0]], second[1]
     return [*first[0], *turned], first[1]
 

@@ -34,11 +34,11 @@ class Search:
         """The shifts from the place before a line to it, in the frame where they are fewest."""
         return min(int(np.sum(np.abs(frame.T @ between) > self.limit)) for frame in self.frames[index : index + 2])
 
-    def cost(self, index: int, start: Array, end: Array) -> Cost:
-        """The cost of the way from one point to the next."""
+    def cost(self, index: int, start: Array, end: Array, missed: int) -> Cost:
+        """The cost of the way from one point to the next, which so many lines miss."""
         between = end - start
         shifts = self.shifts(index, between)
-        return shifts, self.missed(index, end), int(shifts > 0), round(float(np.abs(between).sum()) / self.arm.size, 6)
+        return shifts, missed, int(shifts > 0), round(float(np.abs(between).sum()) / self.arm.size, 6)
 
     def missed(self, index: int, point: Array) -> int:
         """The rotary axes that do not pass through a point, counted from an axis on to both sides; points of the first
@@ -62,18 +62,25 @@ def points(arm: Arm, ways: tuple[Heading, ...], tip_frame: Array, limit: float) 
     """A point for every line, by dynamic programming over the candidates, so that the whole way costs least."""
     search = Search(arm, (np.eye(3), *(w.frame for w in ways), tip_frame), limit)
     best: list[tuple[Cost, list[Array]]] = [((0, 0, 0, 0.0), [np.zeros(3)])]
-    for index, candidates in enumerate(_candidates(arm, limit)):
-        best = [min((_extended(search, index, way, end) for way in best), key=_cost) for end in candidates]
-    last = min((_extended(search, len(arm.lines), way, arm.tip[:3, 3]) for way in best), key=_cost)
-    return last[1][1:-1]
+    for index, candidates in enumerate([*_candidates(arm, limit), [arm.tip[:3, 3]]]):
+        missed = [search.missed(index, end) for end in candidates]
+        best = [
+            min((_extended(search, index, way, end, miss) for way in best), key=_cost)
+            for end, miss in zip(candidates, missed, strict=True)
+        ]
+    return best[0][1][1:-1]
 
 
 def _cost(way: tuple[Cost, list[Array]]) -> Cost:
     return way[0]
 
 
-def _extended(search: Search, index: int, way: tuple[Cost, list[Array]], end: Array) -> tuple[Cost, list[Array]]:
-    shifts, missed, places, length = (a + b for a, b in zip(way[0], search.cost(index, way[1][-1], end), strict=True))
+def _extended(
+    search: Search, index: int, way: tuple[Cost, list[Array]], end: Array, missed_here: int
+) -> tuple[Cost, list[Array]]:
+    shifts, missed, places, length = (
+        a + b for a, b in zip(way[0], search.cost(index, way[1][-1], end, missed_here), strict=True)
+    )
     return (int(shifts), int(missed), int(places), float(length)), [*way[1], end]
 
 
