@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+
+import numpy as np
 
 from derive.description.joints import Kind
 from derive.importing.arms.lines import Arm, arm_of
@@ -18,7 +20,7 @@ from derive.importing.formats.tables import read_table
 from derive.importing.formats.urdf import read_urdf
 from derive.importing.naming import axis_names, place_names
 from derive.importing.report import Bounds, bounds, neighbours, snaps
-from derive.importing.robot import Robot, UnreadableRobot
+from derive.importing.robot import Robot, UnreadableRobot, about
 from derive.importing.writing import Description, description_of, written
 
 SNAP = 1e-6
@@ -52,6 +54,8 @@ class Imported:
     """How far forward kinematics of the description can be from the file's."""
     robot: Robot
     axes: tuple[str, ...]
+    facing: int
+    """Which axis of the file's tip (0, 1, 2) is z of the description's: 2, unless the task is about another one."""
 
 
 def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa: B008
@@ -87,21 +91,37 @@ def _imported(robot: Robot, options: Options) -> Imported:
     arm = arm_of(put_back)
     axes = axis_names(robot)
     places = place_names(arm, axes)
+    task = followed(arm, len(axes), _held(robot, axes, options.hold))
+    arm, turned = _faced(arm, task)
     chain = simple(arm, places, options.snap)
     moved += chain.moved
-    task = followed(arm, len(axes), _held(robot, axes, options.hold))
     description = description_of(robot, arm, chain, task)
+    notes = (*turned, *robot.notes)
     found = bounds(moved, raw, _strokes(robot, raw))
     report = "\n".join(
         [
             _head(robot, description, task, options.unit),
             *neighbours(raw, places, options.snap, options.unit),
             *snaps(moved, found, options.snap, options.unit),
-            *robot.notes,
+            *notes,
         ]
     )
-    text = written(robot, description, task, options.unit, robot.notes)
-    return Imported(description.name, text, report, moved, found, robot, axes)
+    text = written(robot, description, task, options.unit, notes)
+    return Imported(description.name, text, report, moved, found, robot, axes, task.facing)
+
+
+def _faced(arm: Arm, task: Followed) -> tuple[Arm, tuple[str, ...]]:
+    """The arm with its tip turned so that z is the direction of the tool, and a note that says so."""
+    if task.facing == 2:
+        return arm, ()
+    frame = np.eye(4)
+    axis, angle = ((1, np.pi / 2), (0, -np.pi / 2))[task.facing]
+    frame[:3, :3] = about(np.eye(3)[axis], angle)
+    letter, turn = "xy"[task.facing], ("Ry(pi/2)", "Rx(-pi/2)")[task.facing]
+    note = (
+        f"The tip is turned by {turn}: the tool points along {letter} of the file's tip, which a description calls z."
+    )
+    return replace(arm, tip=arm.tip @ frame), (note,)
 
 
 def _held(robot: Robot, axes: Sequence[str], names: Sequence[str]) -> tuple[int, ...]:

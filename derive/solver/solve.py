@@ -152,7 +152,7 @@ def _with_one_root(problem: Problem, found: Binding) -> Binding:
     """The step, or one for the same unknowns with a single root, where the point seen from the joints that are known
     tells which of two roots it is.
     """
-    if found.determinant is None:
+    if found.determinant is None or problem.is_overdetermined:
         return found
     both = (*_stated(problem), *positions(problem))
     single = [b for b in _candidates(problem, both, found.unknowns[0]) if b.determinant is None]

@@ -77,6 +77,13 @@ def by_yourdfpy(path: Path, base: str, tip: str) -> Pose:
     return pose
 
 
+def facing(found: Imported) -> Array:
+    """The turn that makes the tool's direction z, where the file has it along x or y."""
+    if found.facing == 2:
+        return np.eye(4)
+    return elementary(Motion.TURN, *((1, np.pi / 2), (0, -np.pi / 2))[found.facing])
+
+
 def samples(found: Imported, count: int = 12) -> list[dict[str, float]]:
     """Values of the file's joints: zero, and others up to a turn and half a metre."""
     rng = np.random.default_rng(11)
@@ -93,7 +100,7 @@ def differences(found: Imported, mechanism: Mechanism, pose: Pose, unit: float =
             own: values[axis.name] * (unit if axis.kind.value == "linear" else 1.0)
             for own, axis in zip(found.axes, found.robot.axes, strict=True)
         }
-        ours, theirs = chain_pose(mechanism, scaled), pose(values)
+        ours, theirs = chain_pose(mechanism, scaled), pose(values) @ facing(found)
         positions.append(float(np.linalg.norm(ours[:3, 3] - unit * theirs[:3, 3])))
         rotations.append(float(np.linalg.norm(ours[:3, :3] - theirs[:3, :3], 2)))
     return max(positions), max(rotations)

@@ -17,8 +17,8 @@ from derive.importing.robot import Array
 
 _FAR = 20.0
 """Candidates farther away than this many sizes of the machine are feet of axes that are nearly parallel."""
-Cost = tuple[int, int, int, float]
-"""Shifts that remain, lines that miss the points, places where there is a shift, and their length."""
+Cost = tuple[int, int, int, int, float]
+"""Shifts that remain, lines that miss the points, shifts between axes, places with a shift, and their length."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,8 @@ class Search:
         """The cost of the way from one point to the next, which so many lines miss."""
         between = end - start
         shifts = self.shifts(index, between)
-        return shifts, missed, int(shifts > 0), round(float(np.abs(between).sum()) / self.arm.size, 6)
+        inner = shifts if 0 < index < len(self.arm.lines) else 0
+        return shifts, missed, inner, int(shifts > 0), round(float(np.abs(between).sum()) / self.arm.size, 6)
 
     def missed(self, index: int, point: Array) -> int:
         """The rotary axes that do not pass through a point, counted from an axis on to both sides; points of the first
@@ -61,7 +62,7 @@ class Search:
 def points(arm: Arm, ways: tuple[Heading, ...], tip_frame: Array, limit: float) -> list[Array]:
     """A point for every line, by dynamic programming over the candidates, so that the whole way costs least."""
     search = Search(arm, (np.eye(3), *(w.frame for w in ways), tip_frame), limit)
-    best: list[tuple[Cost, list[Array]]] = [((0, 0, 0, 0.0), [np.zeros(3)])]
+    best: list[tuple[Cost, list[Array]]] = [((0, 0, 0, 0, 0.0), [np.zeros(3)])]
     for index, candidates in enumerate([*_candidates(arm, limit), [arm.tip[:3, 3]]]):
         missed = [search.missed(index, end) for end in candidates]
         best = [
@@ -78,10 +79,9 @@ def _cost(way: tuple[Cost, list[Array]]) -> Cost:
 def _extended(
     search: Search, index: int, way: tuple[Cost, list[Array]], end: Array, missed_here: int
 ) -> tuple[Cost, list[Array]]:
-    shifts, missed, places, length = (
-        a + b for a, b in zip(way[0], search.cost(index, way[1][-1], end, missed_here), strict=True)
-    )
-    return (int(shifts), int(missed), int(places), float(length)), [*way[1], end]
+    cost = search.cost(index, way[1][-1], end, missed_here)
+    shifts, missed, inner, places, length = (a + b for a, b in zip(way[0], cost, strict=True))
+    return (int(shifts), int(missed), int(inner), int(places), float(length)), [*way[1], end]
 
 
 def _candidates(arm: Arm, limit: float) -> list[list[Array]]:

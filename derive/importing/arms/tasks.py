@@ -13,6 +13,7 @@ from derive.importing.robot import Array, UnreadableRobot
 
 _SAMPLES = 6
 _SMALL = 1e-9
+_NEARLY = 1e-6
 _WELL = 5e-3
 """A motion smaller than this share is no reason to hold a joint: it stems from axes that nearly meet."""
 
@@ -24,6 +25,8 @@ class Followed:
     position: str
     turning: str
     held: tuple[int, ...] = ()
+    facing: int = 2
+    """Which of x, y and z (0, 1, 2) of the tip is the direction of the tool, which a description calls z."""
 
 
 @dataclass(frozen=True)
@@ -93,8 +96,29 @@ def followed(arm: Arm, count: int, held: Sequence[int] = ()) -> Followed:
         held = tuple(sorted((*held, *_to_hold(arm, seen, free, len(free) - rank))))
         free = [k for k in range(count) if k not in held]
         rank = seen.rank(axes=free)
-    position, turning = _task(Motions(seen.jacobians[:, :, free], seen.rotations), rank)
+    solved = Motions(seen.jacobians[:, :, free], seen.rotations)
+    if rank == 5 or (rank == 4 and solved.rank(slice(0, 3)) == 3 and len(solved.span(slice(3, 6))) > 1):
+        return _with_direction(solved, arm, rank, tuple(held))
+    position, turning = _task(solved, rank)
     return Followed(position, turning, tuple(held))
+
+
+def _with_direction(seen: Motions, arm: Arm, rank: int, held: tuple[int, ...]) -> Followed:
+    """The task of a chain that follows a part of the tool's direction: which axis of its tip that is."""
+    last = next((line.direction for line in reversed(arm.lines) if line.kind is Kind.ROTARY), np.zeros(3))
+    seen_from_tip = np.abs(arm.tip[:3, :3].T @ last)
+    if rank == 4:
+        square = [k for k in (2, 0, 1) if seen_from_tip[k] < _NEARLY]
+        found = [("PITCH", k) for k in square]
+    else:
+        along = [("PITCH_ROLL", k) for k in range(3) if seen_from_tip[k] > 1.0 - _NEARLY]
+        aimed = [("DIRECTION", k) for k in (2, 0, 1) if _aims(seen, k)]
+        found = [*(a for a in aimed if a[1] == 2), *along, *aimed]
+    if not found:
+        raise UnreadableRobot(
+            "no axis of its tip is a direction that the chain can follow: choose a --tip whose z axis is the tool's"
+        )
+    return Followed("xyz", found[0][0], held, found[0][1])
 
 
 def _task(seen: Motions, rank: int) -> tuple[str, str]:
@@ -112,10 +136,6 @@ def _task(seen: Motions, rank: int) -> tuple[str, str]:
         return "", "FULL"
     if rank == 6:
         return "xyz", "FULL"
-    if rank == 5:
-        return "xyz", "DIRECTION" if _aims(seen) else "PITCH_ROLL"
-    if rank == 4 and seen.rank(slice(0, 3)) == 3:
-        return "xyz", "PITCH"
     raise UnreadableRobot(
         f"its tip moves in {rank} ways that are no task of a description: choose another base or tip, or write the "
         "description by hand"
@@ -133,11 +153,12 @@ def _position(shifts: Array, rank: int) -> str:
     )
 
 
-def _aims(seen: Motions) -> bool:
-    """Whether all positions and directions of the tool's z axis can be commanded together."""
+def _aims(seen: Motions, axis: int) -> bool:
+    """Whether all positions and directions of an axis of the tip can be commanded together."""
     ranks = []
+    others = [k for k in range(3) if k != axis]
     for jacobian, rotation in zip(seen.jacobians, seen.rotations, strict=True):
-        aimed = np.concatenate([jacobian[:3], rotation[:, :2].T @ jacobian[3:]])
+        aimed = np.concatenate([jacobian[:3], rotation[:, others].T @ jacobian[3:]])
         ranks.append(np.linalg.matrix_rank(aimed, tol=1e-7))
     return bool(max(ranks) == 5)
 
