@@ -11,7 +11,7 @@ import numpy as np
 from derive.description.joints import Kind
 from derive.importing.arms.lines import Arm, arm_of
 from derive.importing.arms.pieces import simple
-from derive.importing.arms.snapping import Snapped, snapped_robot
+from derive.importing.arms.snapping import Snapped, nearly, snapped_robot
 from derive.importing.arms.tasks import Followed, followed
 from derive.importing.branches import Named
 from derive.importing.formats.documents import parsed
@@ -19,7 +19,7 @@ from derive.importing.formats.mjcf import read_mjcf
 from derive.importing.formats.tables import read_table
 from derive.importing.formats.urdf import read_urdf
 from derive.importing.naming import axis_names, place_names
-from derive.importing.report import Bounds, bounds, neighbours, snaps
+from derive.importing.report import Bounds, bounds, closed_form, neighbours, snaps
 from derive.importing.robot import Robot, UnreadableRobot, about
 from derive.importing.writing import Description, description_of, written
 
@@ -102,7 +102,8 @@ def _imported(robot: Robot, options: Options) -> Imported:
         [
             _head(robot, description, task, options.unit),
             *neighbours(raw, places, options.snap, options.unit),
-            *snaps(moved, found, options.snap, options.unit),
+            *([closed_form(raw, places, options.snap)] if task.turning == "FULL" else []),
+            *snaps(moved, nearly(robot, options.snap), found, options.snap, options.unit),
             *notes,
         ]
     )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from derive.description.joints import Kind
-from derive.importing.arms.lines import Arm, relation
+from derive.importing.arms.lines import Arm, Line, feet, relation
 from derive.importing.arms.snapping import ROUNDING, Snapped
 
 _NEARLY = 2e-2
@@ -43,6 +43,36 @@ def neighbours(arm: Arm, names: Sequence[str], limit: float, unit: str) -> Itera
         yield f"  {one}-{other}: {distance}, angle {degrees:.6g}°{'; ' if hints else ''}{'; '.join(hints)}"
 
 
+def closed_form(arm: Arm, names: Sequence[str], limit: float) -> str:
+    """Whether three neighbouring axes meet in one point or are parallel, or by how much they miss that least."""
+    found: list[tuple[float, str]] = []
+    for k in range(len(arm.lines) - 2):
+        three, three_names = arm.lines[k : k + 3], ", ".join(names[k : k + 3])
+        if any(line.kind is Kind.LINEAR for line in three):
+            continue
+        apart = max(relation(a, b).angle for a, b in zip(three, three[1:], strict=False))
+        found.append((_spread(three) / arm.size, f"{three_names} meet in one point"))
+        found.append((apart, f"{three_names} are parallel"))
+    if not found:
+        return "Slides among the axes: most chains with them have a closed form."
+    amount, words = min(found)
+    if amount <= max(limit, ROUNDING * 100):
+        return f"A closed form is likely: {words}."
+    if amount > _NEARLY:
+        return "No three neighbouring axes meet in one point or are parallel: a closed form is unlikely."
+    return f"No three neighbouring axes meet in one point or are parallel; with --snap {_above(amount)} {words}."
+
+
+def _spread(lines: Sequence[Line]) -> float:
+    """How far three lines are from meeting in one point: their distances, and how far apart they pass the middle."""
+    first, middle, last = lines
+    before, behind = feet(first, middle), feet(middle, last)
+    if before is None or behind is None:
+        return float("inf")
+    gaps = (before[0] - before[1], behind[0] - behind[1], before[1] - behind[0])
+    return float(max(np.linalg.norm(gap) for gap in gaps))
+
+
 def _hints(distance: float, angle: float, limit: float, is_slide: bool) -> Iterator[str]:
     """distance: a share of the size."""
     yield from _angle_hints(angle, limit)
@@ -72,8 +102,13 @@ def _above(amount: float) -> str:
     return f"{np.ceil(amount / digits * (1 - 1e-12)) * digits:.2g}"
 
 
-def snaps(moved: Sequence[Snapped], found: Bounds, snap: float, unit: str) -> Iterator[str]:
+def snaps(moved: Sequence[Snapped], missed: Sequence[float], found: Bounds, snap: float, unit: str) -> Iterator[str]:
     """What was moved, and what that can make of a pose."""
+    if missed:
+        count, them = f"{len(missed)} angles of the file are nearly multiples", "them"
+        if len(missed) == 1:
+            count, them = "1 angle of the file is nearly a multiple", "it"
+        yield f"{count} of 15°: --snap {_above(max(missed))} puts {them} back."
     if not moved:
         yield f"Nothing was snapped (--snap {snap:g})."
         return

@@ -14,6 +14,8 @@ from derive.importing.robot import Array, Oriented, Place, Robot, Shifted, Step,
 
 STEP = np.pi / 12
 """Angles are put back to multiples of 15 degrees: right angles, and those that inclined wrists have."""
+_NEARLY = 2e-3
+"""What is farther from a multiple of 15 degrees is an angle of the machine's own: 3.142 is 4e-4 off."""
 ROUNDING = 2e-14
 """Below this share a difference is the rounding of our own calculation, and is not listed."""
 
@@ -37,6 +39,12 @@ def snapped_robot(robot: Robot, limit: float) -> tuple[Robot, tuple[Snapped, ...
     moved: list[Snapped] = []
     steps = tuple(replace(s, places=tuple(_place(s, p, limit, moved) for p in s.places)) for s in robot.steps)
     return replace(robot, steps=steps), tuple(moved)
+
+
+def nearly(robot: Robot, limit: float) -> list[float]:
+    """By how much angles of the file miss a multiple of 15 degrees, where that is above the limit, and little."""
+    angles = [p.angle for s in robot.steps for p in s.places if isinstance(p, Turned)]
+    return [m for a in angles if max(limit, ROUNDING) < (m := abs(a - nearest_angle(a))) < _NEARLY]
 
 
 def _place(step: Step, place: Place, limit: float, moved: list[Snapped]) -> Place:

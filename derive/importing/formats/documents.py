@@ -13,9 +13,9 @@ Element = ElementTree.Element
 
 def parsed(path: Path) -> Element:
     """The root of an XML file. Raises `UnreadableRobot` where there is none, or it is broken."""
-    text = text_of(path)
+    data = _bytes_of(path)
     try:
-        return ElementTree.fromstring(text)
+        return ElementTree.fromstring(data)
     except ElementTree.ParseError as problem:
         raise UnreadableRobot(f"{path}:{problem.position[0]}: broken XML: {problem.msg}") from None
 
@@ -23,13 +23,23 @@ def parsed(path: Path) -> Element:
 def text_of(path: Path) -> str:
     """The text of a file. Raises `UnreadableRobot` where there is no such file, or it is no text."""
     try:
-        return path.read_text(encoding="utf-8-sig")
+        return _bytes_of(path).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise UnreadableRobot(f"{path}: is no text in UTF-8") from None
+
+
+def _bytes_of(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
     except FileNotFoundError:
         raise UnreadableRobot(f"{path}: there is no such file") from None
     except IsADirectoryError:
         raise UnreadableRobot(f"{path}: is a folder; name the robot file in it") from None
-    except UnicodeDecodeError:
-        raise UnreadableRobot(f"{path}: is no text in UTF-8") from None
+
+
+def limit(path: Path, text: str, place: str) -> float:
+    """A number that may be infinite: no limit on that side."""
+    return float(text) if text.strip().lstrip("+-").lower() in ("inf", "infinity") else number(path, text, place)
 
 
 def required(path: Path, element: Element, attribute: str) -> str:

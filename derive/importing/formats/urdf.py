@@ -12,7 +12,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from derive.description.joints import Kind
-from derive.importing.formats.documents import number, numbers, parsed, required
+from derive.importing.formats.documents import limit, number, numbers, parsed, required
 from derive.importing.formats.mimics import Follower, driven
 from derive.importing.formats.trees import Edge, ends_of, path_between
 from derive.importing.robot import (
@@ -149,11 +149,11 @@ def _axis(path: Path, joint: Element, scale: float) -> Axis:
     name, kind = joint.get("name", ""), _kind(path, joint)
     if kind is None:
         raise UnreadableRobot(f"{path}: a joint mimics {name!r}, which is fixed")
-    limit = joint.find("limit")
-    if joint.get("type") == "continuous" or limit is None:
+    limits = joint.find("limit")
+    if joint.get("type") == "continuous" or limits is None:
         return Axis(name, kind)
     unit = scale if kind is Kind.LINEAR else 1.0
-    low, high = (number(path, limit.get(end, "0"), f"joint {name!r}, {end} limit") * unit for end in ("lower", "upper"))
+    low, high = (limit(path, limits.get(end, "0"), f"joint {name!r}, {end} limit") * unit for end in ("lower", "upper"))
     if low > high:
         raise UnreadableRobot(f"{path}: joint {name!r}: its lower limit {low:g} is above its upper limit {high:g}")
     return Axis(name, kind, (low, high) if low < high else None)
