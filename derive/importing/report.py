@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from derive.description.joints import Kind
-from derive.importing.arms.lines import Arm, Line, feet, relation
-from derive.importing.arms.snapping import ROUNDING, Snapped
+from derive.importing.arms.lines import ROUNDING, Arm, Line, feet, relation
+from derive.importing.arms.snapping import Snapped
 
 _NEARLY = 2e-2
 """A share of the size (or of one radian) up to which axes are said to stand nearly so."""

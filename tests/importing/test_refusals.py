@@ -177,7 +177,7 @@ REFUSALS: Mapping[str, Refusal] = {
         "r.urdf",
         urdf("r", joint("a", "prismatic")),
         O(),
-        r"its tip moves in 1 directions?, and a description commands x, y and z, or x and y",
+        r"its tip moves along one line, and a description commands x, y and z, or x and y",
     ),
     "a file that is not there": ("", "", O(), r"there is no such file$"),
     "MJCF: no body": ("r.xml", MODEL.format("", "", ""), O("a", "z"), r"no body or site is called 'z' \(--tip\)"),

@@ -12,8 +12,8 @@ from itertools import permutations
 
 import numpy as np
 
-from derive.importing.arms.lines import Arm
-from derive.importing.arms.snapping import ROUNDING, Snapped, angle_between, nearest_angle
+from derive.importing.arms.lines import ROUNDING, Arm
+from derive.importing.arms.snapping import Snapped, angle_between, nearest_angle
 from derive.importing.robot import Array, about
 
 Turns = tuple[tuple[int, float], ...]

@@ -13,6 +13,9 @@ import numpy as np
 from derive.description.joints import Kind
 from derive.importing.robot import Array, Moving, Robot, about
 
+ROUNDING = 2e-14
+"""Below this share a difference is the rounding of our own calculation, and is not listed."""
+
 
 @dataclass(frozen=True)
 class Line:
@@ -32,27 +35,32 @@ class Arm:
     lines: tuple[Line, ...]
     tip: Array
     size: float
-    """The length of the way from the base along all joints to the tip, one unit where it is nothing: what lengths are
-    compared with.
+    """The length of the way from the first joint along all others to the tip, one unit where it is nothing: what
+    lengths are compared with.
     """
+    rounding: float
+    """A length below which differences are the rounding of our own calculation."""
 
 
 def arm_of(robot: Robot) -> Arm:
     """The lines of a robot. Offsets of joints that follow others are part of its zero."""
     number = {axis.name: k for k, axis in enumerate(robot.axes)}
-    frame, lines, way = np.eye(4), [], 0.0
+    frame, way, base = np.eye(4), 0.0, 0.0
+    lines: list[Line] = []
     for step in robot.steps:
         for place in step.places:
             matrix = place.matrix()
             frame = frame @ matrix
-            way += float(np.linalg.norm(matrix[:3, 3]))
+            length = float(np.linalg.norm(matrix[:3, 3]))
+            way, base = (way + length, base) if lines else (way, base + length)
         if step.moving is not None:
             direction = frame[:3, :3] @ np.array(step.moving.direction)
             drives = tuple((number[name], multiplier) for name, multiplier in step.moving.drives)
             if drives:
                 lines.append(Line(step.moving.kind, frame[:3, 3].copy(), direction, drives))
             frame = frame @ motion(step.moving, step.moving.offset)
-    return Arm(tuple(lines), frame, way or 1.0)
+    size = way or base or 1.0
+    return Arm(tuple(lines), frame, size, ROUNDING * (size + base))
 
 
 def motion(moving: Moving, value: float) -> Array:

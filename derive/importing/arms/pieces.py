@@ -10,9 +10,9 @@ import numpy as np
 from derive.description.joints import Kind
 from derive.geometry.frames import Motion
 from derive.importing.arms.headings import Heading, headings, orientation, product
-from derive.importing.arms.lines import Arm
+from derive.importing.arms.lines import ROUNDING, Arm
 from derive.importing.arms.points import points
-from derive.importing.arms.snapping import ROUNDING, Snapped
+from derive.importing.arms.snapping import Snapped
 from derive.importing.robot import Array, about
 
 
@@ -65,7 +65,7 @@ def simple(arm: Arm, names: Sequence[str], limit: float) -> Simple:
     last = ways[-1].frame if ways else np.eye(3)
     turns, amount = orientation(last.T @ arm.tip[:3, :3], limit)
     moved = [*turned, *([Snapped("tip: its orientation", amount, True)] if amount > 10 * ROUNDING else [])]
-    smallest = max(limit, ROUNDING) * arm.size
+    smallest = max(limit * arm.size, arm.rounding)
     targets = [*points(straight, ways, last @ product(turns), smallest), arm.tip[:3, 3]]
     pieces: list[Piece] = []
     frame, here = np.eye(3), np.zeros(3)
@@ -77,7 +77,7 @@ def simple(arm: Arm, names: Sequence[str], limit: float) -> Simple:
         pieces += shifted
         here = here + there
         off = _off(straight, place, here, target)
-        if off > ROUNDING * arm.size * 10:
+        if off > 10 * arm.rounding:
             moved.append(Snapped(f"{'tip' if is_tip else names[place]}: its position", off, False))
         if not is_tip:
             pieces.append(_motion(arm, way, place))

@@ -10,14 +10,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from derive.importing.arms.lines import ROUNDING
 from derive.importing.robot import Array, Oriented, Place, Robot, Shifted, Step, Turned
 
 STEP = np.pi / 12
 """Angles are put back to multiples of 15 degrees: right angles, and those that inclined wrists have."""
 _NEARLY = 2e-3
 """What is farther from a multiple of 15 degrees is an angle of the machine's own: 3.142 is 4e-4 off."""
-ROUNDING = 2e-14
-"""Below this share a difference is the rounding of our own calculation, and is not listed."""
 
 
 @dataclass(frozen=True)

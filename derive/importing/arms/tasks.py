@@ -113,7 +113,10 @@ def _with_direction(seen: Motions, arm: Arm, rank: int, held: tuple[int, ...]) -
     else:
         along = [("PITCH_ROLL", k) for k in range(3) if seen_from_tip[k] > 1.0 - _NEARLY]
         aimed = [("DIRECTION", k) for k in (2, 0, 1) if _aims(seen, k)]
+        is_arm = all(line.kind is Kind.ROTARY for line in arm.lines)
         found = [*(a for a in aimed if a[1] == 2), *along, *aimed]
+        if is_arm and along:  # a tip that turns about the last axis points along it
+            found = [a for a in aimed if a[1] == along[0][1]] or along
     if not found:
         raise UnreadableRobot(
             "no axis of its tip is a direction that the chain can follow: choose a --tip whose z axis is the tool's"
@@ -145,6 +148,10 @@ def _task(seen: Motions, rank: int) -> tuple[str, str]:
 def _position(shifts: Array, rank: int) -> str:
     if rank == 3:
         return "xyz"
+    if rank == 1:
+        raise UnreadableRobot(
+            "its tip moves along one line, and a description commands x, y and z, or x and y: choose another tip"
+        )
     if rank == 2 and np.abs(shifts[:, 2]).max() < _SMALL:
         return "xy"
     raise UnreadableRobot(
