@@ -72,7 +72,7 @@ def parameter_meaning(piece: Piece, places: Sequence[str], is_negative: bool) ->
 def _between(place: int, places: Sequence[str], by: str) -> str:
     if place == 0:
         return "base"
-    return "tool" if place == len(places) else f"{places[place - 1]}{by}{places[place]}"
+    return "tip" if place == len(places) else f"{places[place - 1]}{by}{places[place]}"
 
 
 def _where(place: int, places: Sequence[str]) -> str:
