@@ -18,6 +18,7 @@ from pathlib import Path
 from derive.command import catalogue, explain, new, own
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
+from derive.importing import line as importing
 from derive.output import ForeignFolder
 from derive.pipeline import GenerationError
 
@@ -88,6 +89,10 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     fresh = commands.add_parser("new", help=text, description=text)
     fresh.add_argument("file", type=Path, nargs="?", default=Path("my_machine.py"), metavar="FILE")
     fresh.set_defaults(run=new.new)
+    text = "write a description of a robot file (URDF, MJCF, a DH table), to be read, edited and derived"
+    imported = commands.add_parser("import", help=text, description=text)
+    importing.add_arguments(imported)
+    imported.set_defaults(run=importing.run)
 
 
 _PROFILE = "a profile of templates/st/softmotion.toml, for an older library"

@@ -40,7 +40,7 @@ class Role(Enum):
 
 @dataclass(frozen=True)
 class Parameter(Quantity):
-    """An input of the machine. A length has no default: a forgotten one must not move a machine."""
+    """An input of the machine. A length of a geometry has no default: a forgotten one must not move a machine."""
 
     name: str
     role: Role
@@ -62,10 +62,10 @@ class Parameter(Quantity):
         return self.high < 1e9
 
 
-def length(name: str, meaning: str, *, nominal: float, high: float = 1e9) -> Parameter:
-    """A length that must be given and be more than zero."""
+def length(name: str, meaning: str, *, nominal: float, high: float = 1e9, default: float | None = None) -> Parameter:
+    """A length that is more than zero, and must be given where the description, which is of one machine, gives none."""
     symbol = sp.Symbol(name, positive=True)
-    return Parameter(symbol, name, Role.LENGTH, meaning, "u", 0.0, high, True, None, nominal)
+    return Parameter(symbol, name, Role.LENGTH, meaning, "u", 0.0, high, True, default, nominal)
 
 
 def optional_length(name: str, meaning: str, *, nominal: float, high: float = 1e9) -> Parameter:
@@ -113,9 +113,9 @@ def coordinate(name: str, meaning: str, *, nominal: float) -> Parameter:
     return Parameter(real(name), name, Role.DISTANCE, meaning, "u", -1e9, 1e9, False, None, nominal)
 
 
-def distance(name: str, meaning: str, *, nominal: float, low: float = -1e9) -> Parameter:
-    """A length with a sign, zero when not given."""
-    return Parameter(real(name), name, Role.DISTANCE, meaning, "u", low, 1e9, False, 0.0, nominal)
+def distance(name: str, meaning: str, *, nominal: float, low: float = -1e9, default: float = 0.0) -> Parameter:
+    """A length with a sign; when not given it is zero, or what the description of one machine gives."""
+    return Parameter(real(name), name, Role.DISTANCE, meaning, "u", low, 1e9, False, default, nominal)
 
 
 def radians(parameter: Parameter) -> sp.Expr:

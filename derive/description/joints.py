@@ -46,6 +46,8 @@ class Joint(Quantity):
     offset_range: Interval | None = None
     limit_range: Interval | None = None
     """The vendor's ranges, where the vendor gives them."""
+    limits: Interval | None = None
+    """The limits of the axis when none are given (degrees or length), of a description of one machine."""
     coupling: sp.Expr = sp.Integer(0)
     """The gear coupling: what the motors of earlier axes add to this joint, linear in their `motor` symbols."""
     ratio: sp.Expr = sp.Integer(1)
@@ -129,6 +131,7 @@ class JointDetails(TypedDict, total=False):
 
     offset_range: Interval
     limit_range: Interval
+    limits: Interval
     coupling: sp.Expr
     ratio: sp.Expr
     pitch: sp.Expr

@@ -168,6 +168,7 @@ def _joint(mechanism: Mechanism, joint: Joint) -> Iterator[str]:
     ranges: dict[str, Interval | None] = {
         "offset_range": joint.offset_range,
         "limit_range": joint.limit_range,
+        "limits": joint.limits,
         "domain": joint.domain,
     }
     for word, interval in ranges.items():

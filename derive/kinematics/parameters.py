@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
 from functools import cache
 
 import sympy as sp
@@ -50,9 +51,9 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
     for joint in mechanism.joints:
         parameters.append(_number(joint, "offset", "axis value at the kinematic zero position", joint.offset_range))
     for joint in mechanism.joints:
-        for word in ("lower", "upper"):
+        for word, end in zip(("lower", "upper"), joint.limits or (0.0, 0.0), strict=True):
             meaning = f"{word} limit of the axis, both 0: {_without_limits(joint)}"
-            parameters.append(_number(joint, word, meaning, joint.limit_range))
+            parameters.append(replace(_number(joint, word, meaning, joint.limit_range), default=end))
     for quantity in mechanism.limited:
         unit = "deg" if quantity.is_angle else "u"
         for word in ("lower", "upper"):

@@ -193,10 +193,8 @@ def _next(
         if binding is not None:
             return problem, binding, sums
     found = _best(candidate for tier in TIERS for candidate in [_candidates(problem, tier(problem))])
-    if found is not None and found.determinant is not None and not problem.is_overdetermined:
-        found = _one_root(problem, found)
     if found is not None and not found.yields_to_a_sum:
-        return problem, found, sums
+        return problem, _with_one_root(problem, found), sums
     for total in candidate_sums(problem, arguments):
         trial = substitute(problem, total)
         wanted = (
@@ -208,14 +206,19 @@ def _next(
     if found is None and not problem.is_overdetermined:
         found = _best(last_resort(problem) for last_resort in _LAST)
     if found is not None:
-        return problem, found, sums
+        return problem, _with_one_root(problem, found), sums
     raise Unsolved(unsolved(problem))
 
 
-def _one_root(problem: Problem, found: Binding) -> Binding:
-    """The one root that the positions seen in a known frame give, where a stated equation alone has two."""
-    seen = _best([_candidates(problem, positions(problem))])
-    return seen if seen is not None and seen.determinant is None and seen.unknowns == found.unknowns else found
+def _with_one_root(problem: Problem, found: Binding) -> Binding:
+    """The step, or one for the same unknowns with a single root, where the point seen from the joints that are known
+    tells which of two roots it is.
+    """
+    if found.determinant is None or problem.is_overdetermined:
+        return found
+    both = (*_stated(problem), *positions(problem))
+    single = [b for b in _candidates(problem, both, found.unknowns[0]) if b.determinant is None]
+    return min((b for b in single if b.unknowns == found.unknowns), key=lambda b: b.rank, default=found)
 
 
 def _along_a_direction(problem: Problem) -> list[Binding]:

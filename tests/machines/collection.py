@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from sympy import Integer, cos, pi, sin
 
-from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz, denavit_hartenberg
+from derive.frames import Chain, Rx, Ry, Rz, Tx, Txyz, Ty, Tz, denavit_hartenberg
 from derive.mechanism import (
     Branch,
     Joint,
@@ -37,6 +37,7 @@ PIVOT_X, PIVOT_Y, PIVOT_Z = (
 BESIDE = distance("beside", "how far the boom is beside its axis", nominal=50.0)
 HEIGHT = distance("height", "height of the shoulder", nominal=200.0)
 L1, L2, L3, L4 = (length(f"link_{k}", f"link {k}", nominal=v) for k, v in enumerate((300.0, 400.0, 350.0, 120.0), 1))
+L5 = length("link_5", "link 5", nominal=30.0)
 LEAN = angle("lean", "lean of one axis against another", nominal=50.0)
 SLIDES = Tx(X) * Ty(Y) * Tz(Z)
 
@@ -198,6 +199,22 @@ HELD = {
             branch(
                 "shoulder", L2 * sin(A2) + L3 * (sin(A2) * cos(A3) + cos(A2) * cos(E1) * sin(A3)), front=+1, back=-1
             ),
+            branch("wrist", sin(A5), positive=+1, negative=-1),
+        ),
+        held=(E1,),
+    ),
+}
+
+FIRST_HELD = {
+    "seven axes beside each other, the first held": _machine(
+        "SevenBeside",
+        (E1, A1, A2, A3, A4, A5, A6),
+        Rz(E1) * Txyz(PIVOT_X, 0, L1) * Rx(A1) * Rz(A2) * Txyz(0, L5, L2) * Rx(A3) * Tz(L3) * Rz(A4) * Rx(A5) * Rz(A6),
+        (PIVOT_X, L1, L2, L3, L5),
+        POSE,
+        (
+            branch("shoulder", cos(A2) * (L3 * sin(A3) - L5), front=+1, back=-1),
+            branch("elbow", L2 * sin(A3) + L5 * cos(A3), positive=+1, negative=-1),
             branch("wrist", sin(A5), positive=+1, negative=-1),
         ),
         held=(E1,),
@@ -392,6 +409,7 @@ MACHINES: Mapping[str, Mechanism] = {
     **SQUARES_WITH_LENGTHS,
     **PARAMETERS_DECIDE,
     **HELD,
+    **FIRST_HELD,
     **ONE_ROOT,
     **OTHERS,
     **SEARCHED,

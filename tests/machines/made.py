@@ -69,7 +69,7 @@ def made(name: str) -> Made:
     """Derive and load a machine; its offsets are not zero."""
     mechanism = validate({**MACHINES, **CARRIED}[name])
     built = derive_one(mechanism)
-    robot_class = _imported(mechanism, built)
+    robot_class = imported_class(mechanism, built)
     offsets = {j.offset.name: 7.0 * k - 20.0 for k, j in enumerate(mechanism.joints)}
     robot = robot_class(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
     lengths = [abs(p.nominal) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
@@ -82,7 +82,7 @@ def made(name: str) -> Made:
     return Made(mechanism, built, robot, closure, reach)
 
 
-def _imported(mechanism: Mechanism, built: Built) -> type[softkin.Mechanism]:
+def imported_class(mechanism: Mechanism, built: Built) -> type[softkin.Mechanism]:
     """The class of the generated package: its modules are read beside those of the catalogue."""
     folder = Path(mkdtemp(prefix="machine-"))
     for path, data in files_of([built], languages()).items():

@@ -1,0 +1,128 @@
+"""A robot as lines: where its axes stand at joint values of zero, in the frame of the base.
+
+Forward kinematics is the product of the motions about these lines, times the pose of the tip at zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from derive.description.joints import Kind
+from derive.importing.robot import Array, Moving, Robot, about
+
+ROUNDING = 2e-14
+"""Below this share a difference is the rounding of our own calculation, and is not listed."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A movement about (or along) a directed line: by the sum of axis values times their multiples."""
+
+    kind: Kind
+    point: Array
+    direction: Array
+    drives: tuple[tuple[int, float], ...]
+    """Numbers of axes, with multipliers."""
+
+
+@dataclass(frozen=True)
+class Arm:
+    """The lines of a robot, and its tip at zero (4 x 4)."""
+
+    lines: tuple[Line, ...]
+    tip: Array
+    size: float
+    """The length of the way from the first joint along all others to the tip, one unit where it is nothing: what
+    lengths are compared with.
+    """
+    rounding: float
+    """A length below which differences are the rounding of our own calculation."""
+
+
+def arm_of(robot: Robot) -> Arm:
+    """The lines of a robot. Offsets of joints that follow others are part of its zero."""
+    number = {axis.name: k for k, axis in enumerate(robot.axes)}
+    frame, way, base = np.eye(4), 0.0, 0.0
+    lines: list[Line] = []
+    for step in robot.steps:
+        for place in step.places:
+            matrix = place.matrix()
+            frame = frame @ matrix
+            length = float(np.linalg.norm(matrix[:3, 3]))
+            way, base = (way + length, base) if lines else (way, base + length)
+        if step.moving is not None:
+            direction = frame[:3, :3] @ np.array(step.moving.direction)
+            drives = tuple((number[name], multiplier) for name, multiplier in step.moving.drives)
+            if drives:
+                lines.append(Line(step.moving.kind, frame[:3, 3].copy(), direction, drives))
+            frame = frame @ motion(step.moving, step.moving.offset)
+    size = way or base or 1.0
+    return Arm(tuple(lines), frame, size, ROUNDING * (size + base))
+
+
+def motion(moving: Moving, value: float) -> Array:
+    """The homogeneous matrix of a joint's movement, in its own frame."""
+    matrix = np.eye(4)
+    direction = np.array(moving.direction)
+    if moving.kind is Kind.LINEAR:
+        matrix[:3, 3] = direction * value
+    elif value != 0.0:
+        matrix[:3, :3] = about(direction, value)
+    return matrix
+
+
+def forward(arm: Arm, values: Sequence[float]) -> Array:
+    """The pose of the tip (4 x 4) at axis values (radians and lengths)."""
+    frame = np.eye(4)
+    for line in arm.lines:
+        frame = frame @ moved(line, sum(values[k] * multiplier for k, multiplier in line.drives))
+    return frame @ arm.tip
+
+
+def moved(line: Line, value: float) -> Array:
+    """The motion of a line by a value, in the frame of the base (4 x 4)."""
+    matrix = np.eye(4)
+    if line.kind is Kind.LINEAR:
+        matrix[:3, 3] = line.direction * value
+    else:
+        rotation = about(line.direction, value)
+        matrix[:3, :3], matrix[:3, 3] = rotation, line.point - rotation @ line.point
+    return matrix
+
+
+@dataclass(frozen=True)
+class Relation:
+    """How two lines stand to each other: their distance, and their angle (radians, at most a right angle)."""
+
+    distance: float
+    angle: float
+
+
+def relation(first: Line, second: Line) -> Relation:
+    """The distance and the angle of two lines; a slide has a direction alone, and no distance from anything."""
+    cross = np.cross(first.direction, second.direction)
+    sine = float(np.linalg.norm(cross))
+    angle = float(np.arctan2(sine, abs(first.direction @ second.direction)))
+    between = second.point - first.point
+    if Kind.LINEAR in (first.kind, second.kind):
+        return Relation(0.0, angle)
+    if sine < 1e-12:
+        return Relation(float(np.linalg.norm(np.cross(between, first.direction))), angle)
+    return Relation(abs(float(between @ cross)) / sine, angle)
+
+
+def feet(first: Line, second: Line) -> tuple[Array, Array] | None:
+    """The points of two lines that are nearest to each other; None where the lines are (nearly) parallel."""
+    cosine = float(first.direction @ second.direction)
+    determinant = 1.0 - cosine**2
+    if determinant < 1e-6:
+        return None
+    between = second.point - first.point
+    along, other = float(between @ first.direction), float(between @ second.direction)
+    return (
+        first.point + first.direction * (along - other * cosine) / determinant,
+        second.point + second.direction * (along * cosine - other) / determinant,
+    )

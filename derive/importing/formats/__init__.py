@@ -1,0 +1,1 @@
+"""Readers of robot files: URDF, MJCF, tables of Denavit-Hartenberg parameters."""

@@ -1,0 +1,268 @@
+"""MJCF: the chain of bodies between two bodies or sites, with the joints in them.
+
+Angles are degrees unless the file says radians. Defaults of joints and geometric frames are read; bodies below a
+tip are not.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+from derive.description.joints import Kind
+from derive.importing.formats.documents import number, numbers, parsed, required
+from derive.importing.formats.mimics import Follower, driven
+from derive.importing.formats.orientations import File, places_of
+from derive.importing.robot import (
+    Axis,
+    Moving,
+    Robot,
+    Shifted,
+    Step,
+    Triple,
+    UnreadableRobot,
+    reversed_step,
+)
+
+Element = ElementTree.Element
+WORLD = "world"
+_FREE = {"free": "moves freely in space", "ball": "turns freely about a point"}
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A body or a site, below another body."""
+
+    name: str
+    element: Element
+    parent: str | None
+    body_class: str | None
+
+
+def read_mjcf(path: Path, base: str | None, tip: str | None, scale: float) -> Robot:
+    """The chain between two bodies (or sites); without a name from the world to the one end there is."""
+    file = _file(path, parsed(path), scale)
+    frames = {frame.name: frame for frame in _frames(file)}
+    for word, name in (("base", base), ("tip", tip)):
+        if name is not None and name not in frames:
+            raise UnreadableRobot(
+                f"{path}: no body or site is called {name!r} (--{word}); there are {', '.join(frames)}"
+            )
+    base = base or WORLD
+    tip = tip or _only_end(path, frames)
+    up, down = _to_world(frames, base), _to_world(frames, tip)
+    while up and down and up[-1] == down[-1]:
+        up, down = up[:-1], down[:-1]
+    if not up and not down:
+        raise UnreadableRobot(f"{path}: base and tip are the same body, {base!r}")
+    joints = _joints(file, frames)
+    followers = _followers(file, joints)
+    passed = [*((name, True) for name in up), *((name, False) for name in reversed(down))]
+    steps = tuple(s for name, is_up in passed for s in _steps(file, frames[name], joints, followers, is_up))
+    used = dict.fromkeys(name for s in steps if s.moving for name, _ in s.moving.drives)
+    axes = tuple(_axis(file, name, joints[name]) for name in used)
+    title = file.root.get("model") or path.stem
+    return Robot(title, f"{path.name} (MJCF)", base, tip, steps, axes, _notes(file, joints, used, steps))
+
+
+def _file(path: Path, root: Element, scale: float) -> File:
+    if root.tag != "mujoco":
+        raise UnreadableRobot(f"{path}: its root is <{root.tag}>, not <mujoco>: this is no MJCF")
+    if root.find(".//include") is not None:
+        raise UnreadableRobot(f"{path}: includes other files: save the whole model as one file, and import that")
+    if root.find(".//replicate") is not None or root.find(".//attach") is not None:
+        raise UnreadableRobot(f"{path}: replicates or attaches parts: save the expanded model, and import that")
+    settings: dict[str, str] = {}
+    for compiler in root.findall("compiler"):
+        settings |= dict(compiler.attrib)
+    if settings.get("coordinate", "local") != "local":
+        raise UnreadableRobot(
+            f"{path}: gives global coordinates, which MuJoCo reads no longer: save it with local ones"
+        )
+    angle = settings.get("angle", "degree")
+    if angle not in ("degree", "radian"):
+        raise UnreadableRobot(f"{path}: angles in {angle!r}: there are degree and radian")
+    degree = math.pi / 180.0 if angle == "degree" else 1.0
+    return File(path, root, degree, settings.get("eulerseq", "xyz"), settings.get("autolimits") != "false", scale)
+
+
+def _defaults(file: File, joint: Element, body_class: str | None) -> dict[str, str]:
+    """The attributes of a joint, with those of its default class."""
+    found: dict[str, str] = {}
+    for default in _classes(file.root, joint.get("class") or body_class):
+        element = default.find("joint")
+        found |= dict(element.attrib) if element is not None else {}
+    return found | dict(joint.attrib)
+
+
+def _classes(root: Element, name: str | None) -> Sequence[Element]:
+    """The default classes that hold for a class, outermost first."""
+    top = root.findall("default")
+
+    def below(defaults: Sequence[Element], before: tuple[Element, ...]) -> tuple[Element, ...] | None:
+        for default in defaults:
+            here = (*before, default)
+            if default.get("class") == name:
+                return here
+            found = below(default.findall("default"), here)
+            if found is not None:
+                return found
+        return None
+
+    return (below(top, ()) if name else None) or tuple(top)
+
+
+def _frames(file: File) -> Iterator[Frame]:
+    """The world, every body, and every site with a name."""
+    world = file.root.find("worldbody")
+    if world is None:
+        raise UnreadableRobot(f"{file.path}: has no worldbody")
+    names: set[str] = set()
+    for frame in (Frame(WORLD, world, None, None), *_below(file, world, WORLD, None)):
+        if frame.name in names:
+            raise UnreadableRobot(f"{file.path}: two bodies or sites are called {frame.name!r}")
+        names.add(frame.name)
+        yield frame
+
+
+def _below(file: File, parent: Element, name: str, body_class: str | None) -> Iterator[Frame]:
+    for number_, element in enumerate(parent):
+        if element.tag == "frame":
+            raise UnreadableRobot(
+                f"{file.path}: body {name!r} holds a <frame>: save the expanded model, and import that"
+            )
+        if element.tag == "site" and element.get("name"):
+            yield Frame(element.get("name", ""), element, name, body_class)
+        if element.tag == "body":
+            own = element.get("name") or f"{name}.{number_}"
+            inner = element.get("childclass") or body_class
+            yield Frame(own, element, name, inner)
+            yield from _below(file, element, own, inner)
+
+
+def _only_end(path: Path, frames: Mapping[str, Frame]) -> str:
+    parents = {frame.parent for frame in frames.values() if frame.element.tag == "body"}
+    ends = [f.name for f in frames.values() if f.element.tag == "body" and f.name not in parents]
+    if len(ends) == 1:
+        return ends[0]
+    if not ends:
+        raise UnreadableRobot(f"{path}: has no bodies")
+    raise UnreadableRobot(f"{path}: has {len(ends)} possible tips: choose with --tip: {', '.join(ends)}")
+
+
+def _to_world(frames: Mapping[str, Frame], name: str) -> list[str]:
+    found = []
+    while (parent := frames[name].parent) is not None:
+        found.append(name)
+        name = parent
+    return found
+
+
+def _steps(
+    file: File, frame: Frame, joints: Mapping[str, dict[str, str]], followers: Mapping[str, Follower], is_up: bool
+) -> list[Step]:
+    """The frame on its parent, then its joints, each about its own point; or the way back over them."""
+    steps = [Step(frame.name, places_of(file, frame.element, f"{frame.element.tag} {frame.name!r}"))]
+    if frame.element.find("freejoint") is not None:
+        raise UnreadableRobot(f"{file.path}: body {frame.name!r} {_FREE['free']}: choose a base that it carries")
+    for index, joint in enumerate(frame.element.findall("joint")):
+        name = joint.get("name") or f"{frame.name}.{index}"
+        steps += _joint_steps(file, name, joints[name], followers)
+    return [back for s in reversed(steps) for back in reversed_step(s)] if is_up else steps
+
+
+def _joint_steps(file: File, name: str, stated: Mapping[str, str], followers: Mapping[str, Follower]) -> list[Step]:
+    element = Element("joint", dict(stated))
+    kind = _kind(file, name, stated)
+    x, y, z = (v * file.scale for v in numbers(file.path, element, "pos", f"joint {name!r}", (0.0, 0.0, 0.0)))
+    direction = numbers(file.path, element, "axis", f"joint {name!r}", (0.0, 0.0, 1.0))
+    size = math.sqrt(sum(v * v for v in direction))
+    if size < 1e-9:
+        raise UnreadableRobot(f"{file.path}: joint {name!r}: its axis has no direction")
+    drives, offset = driven(file.path, name, followers)
+    along: Triple = (direction[0] / size, direction[1] / size, direction[2] / size)
+    moving = Moving(kind, along, drives, offset - _start(file, name, stated))
+    return [Step(name, (Shifted((x, y, z)),), moving), Step(name, (Shifted((-x, -y, -z)),))]
+
+
+def _start(file: File, name: str, stated: Mapping[str, str]) -> float:
+    """The value of a joint as the file draws it."""
+    unit = file.scale if _kind(file, name, stated) is Kind.LINEAR else file.degree
+    return number(file.path, stated.get("ref", "0"), f"joint {name!r}, ref") * unit
+
+
+def _kind(file: File, name: str, stated: Mapping[str, str]) -> Kind:
+    word = stated.get("type", "hinge")
+    if word in _FREE:
+        raise UnreadableRobot(f"{file.path}: joint {name!r} {_FREE[word]}: choose a base that it carries")
+    if word not in ("hinge", "slide"):
+        raise UnreadableRobot(f"{file.path}: joint {name!r} has the unknown type {word!r}; there are hinge and slide")
+    return Kind.ROTARY if word == "hinge" else Kind.LINEAR
+
+
+def _joints(file: File, frames: Mapping[str, Frame]) -> dict[str, dict[str, str]]:
+    """Every joint of the file, by its name, with its defaults."""
+    found: dict[str, dict[str, str]] = {}
+    for frame in frames.values():
+        for index, joint in enumerate(frame.element.findall("joint")):
+            name = joint.get("name") or f"{frame.name}.{index}"
+            if name in found:
+                raise UnreadableRobot(f"{file.path}: two joints are called {name!r}")
+            found[name] = _defaults(file, joint, frame.body_class)
+    return found
+
+
+def _followers(file: File, joints: Mapping[str, Mapping[str, str]]) -> dict[str, Follower]:
+    """Joints that an equality makes follow another one: y - y0 = a0 + a1 (x - x0), in radians and lengths."""
+    found: dict[str, Follower] = {}
+    for equality in file.root.findall("equality/joint"):
+        own, leader = required(file.path, equality, "joint1"), equality.get("joint2")
+        if equality.get("active") == "false" or own not in joints:
+            continue
+        numbers_ = [number(file.path, w, f"equality of {own!r}") for w in equality.get("polycoef", "0 1").split()]
+        a0, a1, *rest = (*numbers_, 0.0, 0.0)
+        if any(rest) or leader is None or leader not in joints:
+            raise UnreadableRobot(
+                f"{file.path}: joint {own!r} follows no joint, or by a curve: only `joint1 = a0 + a1 * joint2` is known"
+            )
+        sizes = [file.scale if _kind(file, n, joints[n]) is Kind.LINEAR else 1.0 for n in (own, leader)]
+        multiplier = a1 * sizes[0] / sizes[1]
+        start = _start(file, own, joints[own]) - multiplier * _start(file, leader, joints[leader])
+        found[own] = Follower(leader, multiplier, a0 * sizes[0] + start)
+    return found
+
+
+def _axis(file: File, name: str, stated: Mapping[str, str]) -> Axis:
+    kind = _kind(file, name, stated)
+    words = stated.get("range", "").split()
+    is_limited = stated.get("limited", "auto")
+    if not words or is_limited == "false" or (is_limited == "auto" and not file.limits_by_range):
+        return Axis(name, kind)
+    unit = file.scale if kind is Kind.LINEAR else file.degree
+    element = Element("joint", {"range": stated["range"]})
+    low, high = (v * unit for v in numbers(file.path, element, "range", f"joint {name!r}", (0.0, 0.0)))
+    if low > high:
+        raise UnreadableRobot(f"{file.path}: joint {name!r}: its lower limit {low:g} is above its upper limit {high:g}")
+    return Axis(name, kind, (low, high) if low < high else None)
+
+
+def _notes(
+    file: File, joints: Mapping[str, object], used: Mapping[str, None], steps: Sequence[Step]
+) -> tuple[str, ...]:
+    passed = {*used, *(s.name for s in steps if s.moving)}
+    left = [name for name in joints if name not in passed]
+    notes = [f"Left out, because they are not between base and tip: {', '.join(left)}."] if left else []
+    if file.root.find(".//geom") is not None:
+        notes.append("Not read, because kinematics does not need them: masses, meshes, collision bodies.")
+    loops = [tag for tag in ("connect", "weld") if file.root.find(f"equality/{tag}") is not None]
+    if loops:
+        notes.append(
+            f"Not read: {' and '.join(loops)} of the equalities. Where they close a loop that the chain is part of, "
+            "describe the machine by equations."
+        )
+    if file.root.find("tendon") is not None:
+        notes.append("Not read: tendons. Axis values are the joint values of the file.")
+    return tuple(notes)

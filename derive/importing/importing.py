@@ -1,0 +1,175 @@
+"""From a robot file to a description: read, snap, bring into simple form, write, and tell what was done."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from derive.description.joints import Kind
+from derive.importing.arms.lines import Arm, arm_of
+from derive.importing.arms.pieces import simple
+from derive.importing.arms.snapping import Snapped, nearly, snapped_robot
+from derive.importing.arms.tasks import Followed, followed
+from derive.importing.branches import Named
+from derive.importing.formats.documents import parsed
+from derive.importing.formats.mjcf import read_mjcf
+from derive.importing.formats.tables import read_table
+from derive.importing.formats.urdf import read_urdf
+from derive.importing.naming import axis_names, place_names
+from derive.importing.report import Bounds, bounds, closed_form, neighbours, snaps
+from derive.importing.robot import Robot, UnreadableRobot, about
+from derive.importing.writing import Description, description_of, written
+
+SNAP = 1e-6
+UNITS = {"mm": 1000.0, "m": 1.0}
+_LARGEST_SNAP = 0.05
+_SLIDE = 2.0
+"""A slide without limits reaches this many sizes, for the bound on forward kinematics."""
+Reader = Callable[[Path, str | None, str | None, float], Robot]
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to import: the links between which the chain is, what may be snapped, the unit of length, what is held."""
+
+    base: str | None = None
+    tip: str | None = None
+    snap: float = SNAP
+    unit: str = "mm"
+    hold: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Imported:
+    """A description, and what has to be known about it."""
+
+    name: str
+    text: str
+    report: str
+    moved: tuple[Snapped, ...]
+    bounds: Bounds
+    """How far forward kinematics of the description can be from the file's."""
+    robot: Robot
+    axes: tuple[str, ...]
+    facing: int
+    """Which axis of the file's tip (0, 1, 2) is z of the description's: 2, unless the task is about another one."""
+
+
+def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa: B008
+    """Import a robot file. Raises `UnreadableRobot` with one sentence that says what is wrong with it."""
+    if options.unit not in UNITS:
+        raise UnreadableRobot(f"the unit {options.unit!r} is not known; there are {', '.join(UNITS)}")
+    if not 0.0 <= options.snap <= _LARGEST_SNAP:
+        raise UnreadableRobot(
+            f"--snap {options.snap:g} is not between 0 and {_LARGEST_SNAP:g}: more would be another machine"
+        )
+    robot = _reader(path)(path, options.base, options.tip, UNITS[options.unit])
+    if not robot.axes:
+        raise UnreadableRobot(f"{path}: no joint moves between {robot.base!r} and {robot.tip!r}")
+    try:
+        return _imported(robot, options)
+    except UnreadableRobot as problem:
+        raise UnreadableRobot(f"{path}: {problem}") from None
+
+
+def _reader(path: Path) -> Reader:
+    """The reader of a file, by its name; of XML by what it says."""
+    suffix = path.suffix.lower()
+    if suffix == ".xacro":
+        raise UnreadableRobot(f"{path}: expand it first: `xacro {path.name} > {path.stem}.urdf`, and import that")
+    if suffix in (".toml", ".csv"):
+        return read_table
+    return read_mjcf if parsed(path).tag == "mujoco" else read_urdf
+
+
+def _imported(robot: Robot, options: Options) -> Imported:
+    raw = arm_of(robot)
+    put_back, moved = snapped_robot(robot, options.snap)
+    arm = arm_of(put_back)
+    axes = axis_names(robot)
+    places = place_names(arm, axes)
+    task = followed(arm, len(axes), _held(robot, axes, options.hold))
+    arm, turned = _faced(arm, task)
+    chain = simple(arm, places, options.snap)
+    moved += chain.moved
+    description = description_of(robot, arm, chain, task)
+    notes = (*turned, *robot.notes)
+    found = bounds(moved, raw, _strokes(robot, raw))
+    report = "\n".join(
+        [
+            _head(robot, description, task, options.unit),
+            *neighbours(raw, places, options.snap, options.unit),
+            *([closed_form(raw, places, options.snap)] if task.turning == "FULL" else []),
+            *snaps(moved, nearly(robot, options.snap), found, options.snap, options.unit),
+            *notes,
+        ]
+    )
+    text = written(robot, description, task, options.unit, notes)
+    return Imported(description.name, text, report, moved, found, robot, axes, task.facing)
+
+
+def _faced(arm: Arm, task: Followed) -> tuple[Arm, tuple[str, ...]]:
+    """The arm with its tip turned so that z is the direction of the tool, and a note that says so."""
+    if task.facing == 2:
+        return arm, ()
+    frame = np.eye(4)
+    axis, angle = ((1, np.pi / 2), (0, -np.pi / 2))[task.facing]
+    frame[:3, :3] = about(np.eye(3)[axis], angle)
+    letter, turn = "xy"[task.facing], ("Ry(pi/2)", "Rx(-pi/2)")[task.facing]
+    note = (
+        f"The tip is turned by {turn}: the tool points along {letter} of the file's tip, which a description calls z."
+    )
+    return replace(arm, tip=arm.tip @ frame), (note,)
+
+
+def _held(robot: Robot, axes: Sequence[str], names: Sequence[str]) -> tuple[int, ...]:
+    """The numbers of axes, by their names or those of the file."""
+    found = []
+    for name in names:
+        numbers = [k for k, axis in enumerate(robot.axes) if name in (axis.name, axes[k])]
+        if not numbers:
+            raise UnreadableRobot(f"no axis is called {name!r} (--hold); there are {', '.join(axes)}")
+        found.append(numbers[0])
+    return tuple(sorted(set(found)))
+
+
+def _strokes(robot: Robot, arm: Arm) -> float:
+    """How far the slides reach in all."""
+    slides = [a for a in robot.axes if a.kind is Kind.LINEAR]
+    return sum(max(map(abs, a.limits)) if a.limits else _SLIDE * arm.size for a in slides)
+
+
+def _head(robot: Robot, description: Description, task: Followed, unit: str) -> str:
+    lines = [f"{description.name}: {robot.base} to {robot.tip} of {robot.source}, lengths in {unit}."]
+    pairs = [f"{own} is {axis.name}" for own, axis in zip(description.axes, robot.axes, strict=True)]
+    lines.append(f"Axes: {', '.join(pairs)}.")
+    lines.append(f"Task: {_task(task)}." + _held_text(description.axes, task))
+    lines.append(_branch_text(description.branches))
+    lines.append("Neighbouring axes, as the file has them:")
+    return "\n".join(lines)
+
+
+def _task(task: Followed) -> str:
+    turned = {
+        "NONE": "no rotation",
+        "ABOUT_Z": "the turn about z",
+        "DIRECTION": "the direction of the tool's z axis",
+        "PITCH": "the pitch of the tool",
+        "PITCH_ROLL": "the pitch and the roll of the tool",
+        "FULL": "the whole rotation",
+    }[task.turning]
+    return f"{', '.join(task.position) or 'no position'}; {turned}"
+
+
+def _held_text(axes: Sequence[str], task: Followed) -> str:
+    held = ", ".join(axes[k] for k in task.held)
+    return f" Held where the reference has it: {held} (choose another with --hold)." if held else ""
+
+
+def _branch_text(found: Sequence[Named]) -> str:
+    if not found:
+        return "Branches: none is named; the derivation names its own."
+    return f"Branches: {', '.join(b.name for b in found)}."

@@ -1,0 +1,139 @@
+"""What a robot file says between its base and its tip, as data that no file format shows through.
+
+Lengths are in the unit of the description that is written, angles in radians.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.description.errors import DescriptionError
+from derive.description.joints import Kind
+
+Array = NDArray[np.float64]
+Triple = tuple[float, float, float]
+
+
+class UnreadableRobot(DescriptionError):
+    """A robot file cannot be imported; one sentence names the place and the remedy."""
+
+
+@dataclass(frozen=True)
+class Turned:
+    """A fixed turn about x, y or z (0, 1, 2) by an angle."""
+
+    axis: int
+    angle: float
+
+    def matrix(self) -> Array:
+        """The homogeneous 4 x 4 matrix."""
+        matrix = np.eye(4)
+        matrix[:3, :3] = about(np.eye(3)[self.axis], self.angle)
+        return matrix
+
+
+@dataclass(frozen=True)
+class Shifted:
+    """A fixed shift."""
+
+    by: Triple
+
+    def matrix(self) -> Array:
+        """The homogeneous 4 x 4 matrix."""
+        matrix = np.eye(4)
+        matrix[:3, 3] = self.by
+        return matrix
+
+
+@dataclass(frozen=True)
+class Oriented:
+    """A fixed rotation that the file gives as a whole (a quaternion, two axes)."""
+
+    rows: tuple[Triple, Triple, Triple]
+
+    def matrix(self) -> Array:
+        """The homogeneous 4 x 4 matrix."""
+        matrix = np.eye(4)
+        matrix[:3, :3] = self.rows
+        return matrix
+
+
+Place = Turned | Shifted | Oriented
+
+
+@dataclass(frozen=True)
+class Moving:
+    """A movement about or along a direction: the sum of the multiples of the axes that drive it, plus an offset."""
+
+    kind: Kind
+    direction: Triple
+    drives: tuple[tuple[str, float], ...]
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Step:
+    """A joint of the file: where it stands on the link before it, and how it moves (None: it is fixed)."""
+
+    name: str
+    places: tuple[Place, ...]
+    moving: Moving | None = None
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A joint that is commanded, with its limits where the file gives any (radians or lengths)."""
+
+    name: str
+    kind: Kind
+    limits: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A chain from the base to the tip, and the axes that move it in the order of the chain."""
+
+    name: str
+    source: str
+    base: str
+    tip: str
+    steps: tuple[Step, ...]
+    axes: tuple[Axis, ...]
+    notes: tuple[str, ...] = ()
+    """What was left out, and what was assumed: sentences for the report."""
+
+
+def reversed_step(step: Step, is_reversed: bool = True) -> tuple[Step, ...]:
+    """The step, or what leads back over it: the opposite movement, then the way back."""
+    if not is_reversed:
+        return (step,)
+    back = Step(step.name, tuple(_opposite(p) for p in reversed(step.places)))
+    if step.moving is None:
+        return (back,)
+    x, y, z = step.moving.direction
+    return Step(step.name, (), replace(step.moving, direction=(-x, -y, -z))), back
+
+
+def _opposite(place: Place) -> Place:
+    if isinstance(place, Turned):
+        return Turned(place.axis, -place.angle)
+    if isinstance(place, Shifted):
+        x, y, z = place.by
+        return Shifted((-x, -y, -z))
+    first, second, third = zip(*place.rows, strict=True)
+    return Oriented((first, second, third))
+
+
+def about(direction: Array, angle: float) -> Array:
+    """The rotation matrix about a unit vector by an angle; exact at multiples of a right angle about x, y and z."""
+    quarters = angle / (np.pi / 2)
+    if abs(quarters - round(quarters)) < 1e-15 * max(1.0, abs(quarters)):
+        cosine, sine = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[round(quarters) % 4]
+    else:
+        cosine, sine = float(np.cos(angle)), float(np.sin(angle))
+    x, y, z = direction
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.asarray(cosine * np.eye(3) + sine * cross + (1.0 - cosine) * np.outer(direction, direction))

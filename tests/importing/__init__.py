@@ -1,0 +1,1 @@
+"""Robot files: imported, held against independent readers, derived."""

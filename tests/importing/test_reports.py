@@ -1,0 +1,102 @@
+"""What an import tells, and what it makes of names, limits and joints that follow others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from derive.mechanism import Turning
+from tests.importing.kinematics import by_yourdfpy, described, differences, imported
+from tests.importing.robots import COLLECTION, joint, rounded, ur5e, urdf
+
+CLOSED = {
+    "KR 16": "A closed form is likely: A4, A5, A6 meet in one point.",
+    "iiwa": "A closed form is likely: A5, A6, A7 meet in one point.",
+    "IRB 140": "or are parallel; with --snap 0.0047 A4, A5, A6 meet in one point.",
+}
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_the_report_says_what_a_closed_form_needs_and_that_snap_gives_it(name: str, tmp_path: Path) -> None:
+    file = COLLECTION[name]
+    assert CLOSED[name] in imported(file.path, file.base, file.tip).report
+    if "--snap" in CLOSED[name]:
+        snapped = imported(file.path, file.base, file.tip, snap=0.0047)
+        assert "Ry(A5) * Rx(A6)" in snapped.text.replace("\n    * ", " * ")
+        assert "A6: its position by 20 mm" in snapped.report
+
+
+def test_neighbouring_axes_are_told_with_the_snap_that_they_need() -> None:
+    file = COLLECTION["iiwa"]
+    report = imported(file.path, file.base, file.tip).report
+    assert "A1-A2: distance 0.43624 mm, angle 90°; square; they would meet with --snap 0.00034" in report
+    assert "A2-A3: distance 0 mm, angle 90°; square; they meet" in report
+    assert "Held where the reference has it: A1 (choose another with --hold)." in report
+    held = imported(file.path, file.base, file.tip, snap=3.4e-4, hold=("joint_a3",))
+    assert (
+        "held=(A3,)" in held.text and "A1-A2: distance 0.43624 mm, angle 90°; square; they meet, snapped" in held.report
+    )
+
+
+def test_a_rounded_right_angle_is_told_and_put_back_by_the_snap_that_the_report_names(tmp_path: Path) -> None:
+    path = tmp_path / "ur.urdf"
+    path.write_text(ur5e(5), encoding="utf-8")
+    report = imported(path).report
+    assert "A1-A2: distance 0 mm, angle 89.9998°; nearly square: square with --snap 3.7e-06; they meet" in report
+    assert "8 angles of the file are nearly multiples of 15°: --snap 7.4e-06 puts them back." in report
+    snapped = imported(path, snap=7.4e-6)
+    assert f"shoulder_lift_joint: {rounded(5)[0]} read as 90° by 3.7e-06 rad" in snapped.report
+    assert "radians(" not in snapped.text and snapped.text.count("length(") == 6
+
+
+def test_limits_that_are_none(tmp_path: Path) -> None:
+    path = tmp_path / "robot.urdf"
+    path.write_text(
+        urdf(
+            "r",
+            joint("a", "continuous", limits=(-1.0, 1.0)),
+            joint("b", "revolute", "0.1 0 0", limits=(float("-inf"), float("inf"))),
+            joint("c", "revolute", "0.1 0 0", limits=(0.0, 0.0)),
+            joint("d", "prismatic", limits=(-0.25, 0.0)),
+        ),
+        encoding="utf-8",
+    )
+    joints = described(imported(path), tmp_path).joints
+    assert [j.limits for j in joints] == [None, None, None, (-250.0, 0.0)]
+    path.write_text(path.read_text(encoding="utf-8"), encoding="utf-16")  # XML says itself how it is written
+    assert [j.limits for j in described(imported(path, unit="m"), tmp_path).joints][3] == (-0.25, 0.0)
+
+
+def test_a_joint_may_follow_one_that_is_not_on_the_way(tmp_path: Path) -> None:
+    """A bar beside the arm is driven; the arm follows it, turns back, and a gripper behind the tip is left out."""
+    path = tmp_path / "robot.urdf"
+    links = "".join(f'<link name="{name}"/>' for name in ("base", "bar", "arm", "hand", "palm", "finger"))
+    text = """<joint name="{}" type="{}"><parent link="{}"/><child link="{}"/><origin xyz="{}"/><axis xyz="{}"/>
+        <limit lower="-1" upper="1.5"/>{}</joint>"""
+    follow = '<mimic joint="bar_joint" multiplier="{}" offset="{}"/>'
+    path.write_text(
+        "<robot name='r'>"
+        + links
+        + text.format("arm_joint", "revolute", "base", "arm", "0 0 0.3", "0 0 1", follow.format(-1, 0.3))
+        + text.format("bar_joint", "revolute", "base", "bar", "0 0.1 0.3", "0 0 1", "")
+        + text.format("hand_joint", "revolute", "arm", "hand", "0.4 0 0", "0 0 1", "")
+        + text.format("palm_joint", "fixed", "hand", "palm", "0.2 0 0", "0 0 1", "")
+        + text.format("finger_joint", "prismatic", "hand", "finger", "0.1 0 0", "1 0 0", follow.format(0.01, 0.0))
+        + "</robot>",
+        encoding="utf-8",
+    )
+    found = imported(path, "base", "palm")
+    assert [axis.name for axis in found.robot.axes] == ["bar_joint", "hand_joint"]
+    assert "Left out, because they are not between base and tip: arm_joint, finger_joint." not in found.report
+    assert "Left out, because they are not between base and tip: finger_joint." in found.report
+    mechanism = described(found, tmp_path)
+    position, rotation = differences(found, mechanism, by_yourdfpy(path, "base", "palm"))
+    assert position <= 1e-9 and rotation <= 1e-12
+    assert mechanism.task.turning is Turning.NONE and mechanism.joints[0].limits == pytest.approx(
+        (-57.29578, 85.943669)
+    )
+    finger = imported(path, "base", "finger")
+    position, rotation = differences(finger, described(finger, tmp_path), by_yourdfpy(path, "base", "finger"))
+    assert position <= 1e-9 and rotation <= 1e-12 and np.isfinite(finger.bounds.position)
