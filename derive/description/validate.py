@@ -10,7 +10,7 @@ from itertools import combinations
 import sympy as sp
 
 from derive.algebra.angle_sums import name_of, terms_of
-from derive.description.amounts import wrong_amounts
+from derive.description.chains.amounts import wrong_amounts
 from derive.description.kinds import number
 from derive.description.mechanism import (
     ROTATION,

@@ -7,6 +7,7 @@ points down ends in Rx(pi). Rx(pi) Rz(a) = Rz(-a) Rx(pi): each is the same chain
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import sympy as sp
 
@@ -25,8 +26,13 @@ def with_half_turns_last(chain: Chain) -> Chain:
         elif factor.motion is Motion.FLIP:
             moved.append(factor)
         else:
-            moved.append(Factor(factor.motion, factor.axis, signs[factor.axis] * factor.amount))
-    if not any(map(_is_half_turn, chain.factors)) or any(f.motion is Motion.TURN and f.axis != 2 for f in moved):
+            moved.append(factor if signs[factor.axis] > 0 else replace(factor, amount=-factor.amount))
+    flipped = [f.motion is Motion.FLIP for f in moved]
+    if (
+        not any(map(_is_half_turn, chain.factors))
+        or any(f.motion is Motion.TURN and f.axis != 2 for f in moved)
+        or sorted(flipped) != flipped  # a flip must stand at the end
+    ):
         return chain
     joints, flips = ([f for f in moved if (f.motion is Motion.FLIP) is is_flip] for is_flip in (False, True))
     return Chain((*joints, *_FIXED[tuple(signs)], *flips))
@@ -42,5 +48,6 @@ _FIXED: Mapping[tuple[int, ...], tuple[Factor, ...]] = {
 
 
 def _is_half_turn(factor: Factor) -> bool:
-    turns = factor.amount / sp.pi
-    return factor.motion is Motion.TURN and factor.axis != 2 and bool(turns.is_integer) and bool(turns.is_odd)
+    if factor.motion is not Motion.TURN or factor.axis == 2 or not isinstance(factor.amount, sp.Expr):
+        return False  # what is no angle is refused later, in its own words
+    return bool((factor.amount / sp.pi).is_odd)

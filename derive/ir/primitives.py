@@ -12,6 +12,11 @@ class Root(sp.Function):
     nargs = 1
     is_nonnegative = True
 
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """The derivative; zero where the root is."""
+        is_long = sp.Gt(self.args[0], 0)
+        return Select(is_long, 1 / (2 * Select(is_long, self, sp.Integer(1))), sp.Integer(0))
+
 
 class Atan2(sp.Function):
     """atan2(y, x) in radians, in (-pi, pi]; atan2(0, 0) = 0."""

@@ -9,9 +9,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.description.gears import with_gears
+from derive.description.chains.gears import with_gears
+from derive.description.chains.numbers import almost_right_angles, with_named_numbers
 from derive.description.mechanism import DescriptionError, Mechanism, Parameter, Turning
-from derive.description.numbers import almost_right_angles, with_named_numbers
 from derive.equations.axes import finite
 from derive.equations.choices import with_choices
 from derive.equations.closure import flange_rotation, heading_of
@@ -62,10 +62,12 @@ from derive.solver.solve import Unsolved
 
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
+    told = almost_right_angles(mechanism)
     try:
-        return _built(prepared(mechanism))
+        mechanism = prepared(mechanism)
+        return _built(replace(mechanism, notes=(*mechanism.notes, f"{told}.")) if told else mechanism)
     except (Unsolved, DescriptionError) as problem:
-        if told := almost_right_angles(mechanism):
+        if told:
             raise type(problem)(f"{problem}; {told}") from None
         raise
 

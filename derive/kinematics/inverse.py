@@ -8,13 +8,13 @@ from functools import cache
 import sympy as sp
 
 from derive.algebra.normal_form import polynomial
+from derive.description.chains.numbers import fixed_numbers
 from derive.description.mechanism import (
     DescriptionError,
     Joint,
     Mechanism,
     Turning,
 )
-from derive.description.numbers import fixed_numbers
 from derive.equations.axes import axis_lets, finite, frozen_lets, plain_angle, reference_lets, reference_value
 from derive.equations.closure import (
     FLANGE,

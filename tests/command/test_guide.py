@@ -55,7 +55,7 @@ LINES = {
     "joint '…' occurs nowhere in the closure; use it": "E1 = linear(",
     "parameter '…': its nominal value … is outside its range …": "L1 = length(",
     "joint '…' is given 2 times; give each thing a name of its own": "A2 = rotary(",
-    "branch '…': its indicator agrees with 0 steps, not one; …softkin explain…": "    branches=",
+    "branch '…': its indicator agrees with 0 steps, not one: …softkin explain…": "    branches=",
     "'…' cannot name a family": '    name="ArmOnTrack", family=',
     "the closure does not determine …": "MECHANISM = Mechanism(name=",
     "branch '…' needs two names with the signs +1 and -1": "    branches=",

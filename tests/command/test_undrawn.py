@@ -12,22 +12,19 @@ from tests.command.guide import MACHINES
 from tests.command.wrong import changed
 from tests.mechanisms import named
 
-NO_POSE = changed(
+WRONG_BAR = changed(
     MACHINES["five_bar"],
-    ("nominal=120.0", "nominal=-90.0"),
-    ("nominal=60.0", "nominal=90.0"),
-    ("nominal=320.0", "nominal=120.0"),
-    ("nominal=280.0", "nominal=130.0"),
+    ("    task=Task", '    bars=(rod("1", KNEE_1, TOOL, ROD_1), rod("2", KNEE_2, TOOL, 2 * ROD_2)),\n    task=Task'),
 )
-"""The nominal values of the joints fit no pose of these lengths."""
+"""One bar is drawn with another length than the rod that it stands for."""
 
 
 def test_a_machine_that_cannot_be_drawn_is_written_without_a_picture(folder: Folder) -> None:
-    folder.write("five_bar.py", NO_POSE)
+    folder.write("five_bar.py", WRONG_BAR)
     said = folder.run("derive", "five_bar.py")
     assert (said.status, said.err) == (0, "")
     assert re.search(
-        r"^  warning: five_bar\.py:\d+: not drawn: no pose can be drawn: the nominal values", said.out, re.M
+        r"^  warning: five_bar\.py:\d+: not drawn: bar '2' is \d+ long, but its ends are \d+ apart", said.out, re.M
     )
     names = folder.names("build")
     assert "st/own/FiveBar.st" in names and not [n for n in names if n.startswith("st/pictures")]

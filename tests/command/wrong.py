@@ -87,7 +87,7 @@ WRONG: dict[str, str] = {
         FIVE_BAR, ("BASE < ARM_1", "BASE > ARM_1")
     ),
     "one joint too many: the task commands …": changed(ARM, ("    held=(E1,),\n", "")),
-    "the task commands …, and there are only … joints; command less": changed(
+    "the task commands …, and there are only … joints; command less of the pose, or add joints": changed(
         SCARA, ("Turning.ABOUT_Z),", "Turning.FULL),")
     ),
     "held names '…', which is no joint of this mechanism": changed(ARM, ("joints=(E1, A1", "joints=(A1")),
@@ -123,7 +123,7 @@ WRONG: dict[str, str] = {
     "with offset_interface=False it could be built, but for a point off the flange …": changed(
         MILL, ("    offset_interface=False,\n", "")
     ),
-    "branch '…': its indicator agrees with 0 steps, not one; …softkin explain…": changed(ARM, ("sin(A2)", "sin(A1)")),
+    "branch '…': its indicator agrees with 0 steps, not one: …softkin explain…": changed(ARM, ("sin(A2)", "sin(A1)")),
     "branches '…' and '…' name the same two solutions; leave one of them out": changed(
         ARM, (f"branches=({ELBOW},)", f'branches=({ELBOW}, branch("bend", -sin(A2), inward=+1, outward=-1))')
     ),
@@ -134,7 +134,7 @@ WRONG: dict[str, str] = {
     "assembly '…': its indicator does not tell the two solutions apart": changed(
         FIVE_BAR, ("cross(BAR_1, BAR_2), margin", "cross(REACH_1, REACH_2), margin")
     ),
-    "no sampled pose is possible: a quantity that must be positive never is, or the loop never closes; check": changed(
+    "… must be positive, and is at most …: check the nominal values of parameters": changed(
         ARM, ("held=(E1,),", "held=(E1,), positive=(sin(A2) - 2,),")
     ),
     "a loop that turns its platform needs offset_interface=False": changed(
@@ -152,7 +152,7 @@ WRONG: dict[str, str] = {
             "for k, (knee, end) in enumerate(zip(KNEES[1:], ENDS[1:]), 1)), closure=(KNEES[0][0] - ENDS[0][0],),",
         ),
     ),
-    "no pose near the home pose is possible: is it where the legs reach it?": changed(
+    "with nominal dimensions its home pose is not where the legs reach it: at best rod '…' is …": changed(
         PLATFORM, ("home=(0, 0, 0),", "home=(0, 2000, 0),")
     ),
 }

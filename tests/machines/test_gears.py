@@ -11,7 +11,7 @@ import softkin
 from softkin import KinematicsError, Status
 from sympy import Rational
 
-from derive.description.gears import in_other_joints, with_gears
+from derive.description.chains.gears import in_other_joints, with_gears
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.frames import Ry, Rz, Tx, Ty, Tz
 from derive.kinematics.build import build

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy import Rational, pi, sin
 
+from derive.description.chains.numbers import with_named_numbers
+from derive.description.chains.turns import almost_right, as_right_angles, in_radians
 from derive.description.mechanism import DescriptionError, Joint, Mechanism, Task, Turning, branch
-from derive.description.numbers import with_named_numbers
-from derive.description.turns import almost_right, as_right_angles, in_radians
 from derive.description.validate import validate
 from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz, denavit_hartenberg
 from derive.geometry.pose import pose_of
@@ -137,8 +137,15 @@ def three_parallel(twist: object) -> Mechanism:
     return described(chain, (A1, A2, A3, A4, A5, A6), Task("xyz", Turning.FULL), offset_interface=False)
 
 
+def test_a_right_angle_with_two_decimals_is_noted() -> None:
+    """It keeps its value, and the documentation of the machine says what may be meant."""
+    assert (
+        build(three_parallel(1.57)).mechanism.notes[0]
+        == "1.57 is 0.0008 rad short of a right angle; write pi/2 or 90*DEGREE."
+    )
+
+
 REFUSED = {
-    "a right angle with two decimals": (three_parallel(1.57), "is 0.0008 rad short of a right angle; write pi/2 or 90"),
     "a half turn with two decimals": (
         described(Rz(A1) * Tx(LINK) * Rx(3.14) * Rz(A2), (A1, A2), Task("xy"), parameters=(LINK,)),
         "3.14 is 0.002 rad short of 2 right angles; write pi or 180*DEGREE",

@@ -57,7 +57,14 @@ REFUSED = {
     "an indicator of nothing": (arm(branches=(branch("elbow", cos(A2), a=+1, b=-1),)), AGREES),
     "an indicator that is always positive": (arm(branches=(branch("elbow", 2 + sin(A2), a=+1, b=-1),)), AGREES),
     "two names for one branch": (arm(branches=SAME), "branches 'elbow' and 'arm' name the same two solutions"),
-    "a flip in the middle": (arm(chain=Rz(A1) * Tx(L1) * flip_x(1) * Rz(A2) * Tx(L2)), "a flip must stand at the end"),
+    "a flip in the middle": (
+        arm(
+            joints=(A1, A2, A3),
+            chain=Rz(A1) * Tx(L1) * flip_x(1) * Rz(A2) * Tx(L2) * Rz(A3),
+            task=Task("xy", FOLLOWED),
+        ),
+        "a flip must stand at the end",
+    ),
     "a commanded turn of a chain that turns about x": (
         arm(joints=(A1, A2, A3), chain=ARM * Rx(A3), task=Task("xy", FOLLOWED)),
         "not one turn about z",

@@ -11,9 +11,9 @@ from dataclasses import replace
 
 import sympy as sp
 
+from derive.description.chains.turns import NamedAngle, NamedAngles, almost_right, as_right_angles, in_radians
 from derive.description.dimensions import Parameter, Role
 from derive.description.mechanism import Mechanism
-from derive.description.turns import NamedAngle, NamedAngles, almost_right, as_right_angles, in_radians
 from derive.geometry.frames import Chain, Factor, Motion
 from derive.ir.constants import DEGREE
 from derive.ir.names import Names

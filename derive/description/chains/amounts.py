@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import sympy as sp
 
+from derive.description.chains.numbers import number_in
+from derive.description.chains.turns import in_radians
 from derive.description.mechanism import Mechanism, Role
-from derive.description.numbers import number_in
-from derive.description.turns import in_radians
 from derive.geometry.frames import LETTERS, Factor, Motion
 from derive.ir.constants import DEGREE
 

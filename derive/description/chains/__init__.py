@@ -1,0 +1,1 @@
+"""What stands in a chain: its amounts, checked; its numbers under names; its gears, moved to the joints."""
