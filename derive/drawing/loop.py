@@ -102,8 +102,9 @@ class _Builder:
         tool = point(vector_at(_TCP, self.values))
         heading = sp.sympify(self.mechanism.heading or 0)
         for equation in self.mechanism.closure:
+            slides = [j for j in self.mechanism.joints if not j.is_angle and j.symbol in equation.free_symbols]
             shift = np.array([_rate(equation, joint, c, self.values) for c in _TCP])
-            if not joint.is_angle and np.any(shift):
+            if slides == [joint] and np.any(shift):
                 self.slides.append(Slide(axis_name(joint), tool, point(shift / np.linalg.norm(shift))))
                 return
         if joint.symbol not in heading.free_symbols:

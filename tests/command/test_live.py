@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import inspect
 import pickle
 import re
@@ -36,10 +37,9 @@ def test_the_live_class_is_the_generated_one(file: str) -> None:
     name = live.__module__.rpartition(".")[2]
     own = generated.__module__.rpartition(".")[2]
     for package in ("softkin", "softkin._array_programs", "softkin._unrolled"):
-        module = sys.modules.get(f"{package}.{own}")
-        if module is not None:
-            text = inspect.getsource(sys.modules[f"{package}.{name}"])
-            assert text.replace(name, own) == inspect.getsource(module)
+        if importlib.util.find_spec(f"{package}.{own}") is not None:
+            text = inspect.getsource(importlib.import_module(f"{package}.{name}"))
+            assert text.replace(name, own) == inspect.getsource(importlib.import_module(f"{package}.{own}"))
     assert set(dir(live)) == set(dir(generated))
 
 
