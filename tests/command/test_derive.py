@@ -233,8 +233,8 @@ def test_generate_keeps_going_where_it_is_asked_to(folder: Folder) -> None:
 
 def test_the_makefile_says_the_same(tmp_path: Path) -> None:
     """`make generate MECHANISM=… OUT=…` is `softkin derive … --out …`."""
-    command = ["make", "-n", "generate", "MECHANISM=my_machine.py", "OUT=there"]
+    command = ["make", "--no-print-directory", "-n", "generate", "MECHANISM=my_machine.py", "OUT=there"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.stdout.splitlines()[-1].rstrip().endswith("-m derive derive my_machine.py --out there")
-    done = subprocess.run(command[:3], cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run(command[:4], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.stdout.splitlines()[-1].rstrip().endswith("-m derive generate")

@@ -50,7 +50,8 @@ def _indicators(
     opened = {n: v for n, v in lets.items() if n not in functions and n not in angles}
     found = []
     for step in steps:
-        scale = step.scale.xreplace({SCALE: sp.Integer(1)})
+        factors = sp.Mul.make_args(step.scale.xreplace({SCALE: sp.Integer(1)}))
+        scale = sp.Mul(*[f for f in factors if not f.free_symbols & opened.keys()])  # it only shortens
         written = _written_out(step.value, opened)
         fixed = _fixed_turns(written)
         plain = {g(t): f(a) for t, a in fixed.items() for f, g in _FUNCTIONS}

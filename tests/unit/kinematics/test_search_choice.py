@@ -72,6 +72,29 @@ def test_branches_that_are_stated_stay() -> None:
     assert any("looks for its roots along A6" in note for note in found.notes)
 
 
+def test_an_elbow_with_a_step_is_written_in_joints_and_dimensions() -> None:
+    """The forearm has two lengths: the indicator does not read the root of their squares, which no program has."""
+    found = with_search(
+        arm(
+            Rz(A1)
+            * Ry(A2)
+            * Tz(L[1])
+            * Ry(A3)
+            * Tz(L[2])
+            * Tx(L[3])
+            * Rx(A4)
+            * Ry(A5)
+            * Tx(L[4])
+            * Tz(L[5])
+            * Rx(A6)
+            * Tx(L[6])
+        )
+    )
+    own = {j.symbol for j in found.joints} | {p.symbol for p in found.parameters}
+    indicators = [b.indicator for b in found.branches if not b.is_crossing]
+    assert indicators and all(i.free_symbols <= own for i in indicators)
+
+
 def test_nothing_is_searched_that_nothing_determines() -> None:
     """Two joints about one axis: no search finds their parts of the sum."""
     with pytest.raises(Undetermined, match="the closure does not determine"):
