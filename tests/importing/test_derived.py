@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from importlib.util import find_spec
 from pathlib import Path
 from tempfile import mkdtemp
 
@@ -26,11 +25,11 @@ SOLUTIONS = {
     "UR5e": 8,
     "Fanuc": 8,
     "Staubli": 8,
+    "AL5D": 4,
+    "IRB 140": 8,
+    "xArm6": 8,
 }
-if "AL5D" in COLLECTION:
-    SOLUTIONS["AL5D"] = 4
-if find_spec("derive.kinematics.scan.choice") is not None:
-    SOLUTIONS["IRB 140"] = 8  # by its root finder
+"""The IRB 140 and the xArm6 by the root finder."""
 QUICK = ("KR 16",)
 """The others are slow."""
 EVERY = pytest.mark.parametrize(

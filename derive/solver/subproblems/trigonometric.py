@@ -124,7 +124,7 @@ def _amplitude(
     along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
     note = f"effective length of the arm that {angle.name} turns"
     effective = naming.length(f"effective_{angle.name}", along, across, note=note)
-    if problem.is_never_zero(along**2 + across**2):
+    if problem.is_never_zero(square):
         right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, effective))
         length = common * effective
         return _Amplitude(
