@@ -25,7 +25,7 @@ from derive.ir.primitives import (
     ToReal,
     Wrap,
 )
-from derive.ir.symbols import is_condition, is_count
+from derive.ir.symbols import is_condition, is_count, is_decided
 
 _OR, _AND, COMPARE, _SUM, PRODUCT, _UNARY, ATOM = range(7)
 
@@ -86,7 +86,7 @@ class ExpressionPrinter(ABC):
         return f"({text})" if level < context else text
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
-        if node in (sp.true, sp.false):
+        if is_decided(node):
             return self.logic("true" if node == sp.true else "false"), ATOM
         if node == DEGREE or isinstance(node, sp.Symbol):
             return self.name(node), ATOM

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import sympy as sp
 
 from derive.ir.primitives import Select, ToReal
-from derive.ir.symbols import is_count
+from derive.ir.symbols import is_count, is_decided
 
 SUM, PRODUCT = sp.Add, sp.Mul
 Head = Any
@@ -46,14 +46,10 @@ class Node:
         """Whether it is a name or a number."""
         return not self.parts and not self.divisors
 
-    @property
-    def is_number(self) -> bool:
-        """Whether it is a number."""
-        return isinstance(self.head, sp.Number)
-
-    def sources(self) -> tuple[Node, ...]:
-        """The nodes that it reads."""
-        return (*(part.node for part in self.parts), *self.divisors)
+    is_number: bool = False
+    """Whether it is a number."""
+    read: tuple[Node, ...] = ()
+    """The nodes that it reads, made once: every pass asks for them."""
 
 
 class Value(NamedTuple):
@@ -127,9 +123,9 @@ class Graph:
         return self._called(head, parts)
 
     def _called(self, head: type[sp.Basic], parts: tuple[Value, ...]) -> Value:
-        if all(p.node.is_number or p.node.head in (sp.true, sp.false) for p in parts):
+        if all(p.node.is_number or is_decided(p.node.head) for p in parts):
             decided = head(*(p.sign * p.node.head if p.node.is_number else p.node.head for p in parts))
-            if decided in (sp.true, sp.false) or isinstance(decided, sp.Rational | sp.Float):
+            if is_decided(decided) or isinstance(decided, sp.Rational | sp.Float):
                 return self.leaf(decided)
         if issubclass(head, sp.And | sp.Or):
             return self._logic(head, parts)
@@ -145,7 +141,7 @@ class Graph:
         return Value(self._node((head, frozenset(kept)), head, kept), 1)
 
     def _choice(self, condition: Value, first: Value, second: Value) -> Value:
-        if condition.node.head in (sp.true, sp.false):
+        if is_decided(condition.node.head):
             return first if condition.node.head == sp.true else second
         if first == second:
             return first
@@ -161,7 +157,10 @@ class Graph:
     def _node(self, key: object, head: Head, parts: tuple[Value, ...] = (), divisors: tuple[Node, ...] = ()) -> Node:
         known = self._known.get(key)
         if known is None:
-            known = self._known[key] = Node(len(self.nodes), head, parts, divisors)
+            read = (*(part.node for part in parts), *divisors)
+            known = self._known[key] = Node(
+                len(self.nodes), head, parts, divisors, is_number=isinstance(head, sp.Number), read=read
+            )
             self.nodes.append(known)
         return known
 
@@ -175,7 +174,7 @@ def reached(starts: Iterable[Node], is_end: Callable[[Node], bool] = lambda _: F
         if node not in seen:
             seen.add(node)
             yield node
-            pending += () if is_end(node) else node.sources()
+            pending += () if is_end(node) else node.read
 
 
 def is_whole(node: Node) -> bool:

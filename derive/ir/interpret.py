@@ -43,6 +43,7 @@ from derive.ir.symbols import (
     Flag,
     is_condition,
     is_count,
+    is_decided,
 )
 from derive.kept import kept_by_identity
 
@@ -104,7 +105,7 @@ def _evaluator(expression: sp.Basic) -> _Evaluator:
     """The expression as a function of the values of its symbols; cached, because expressions are evaluated often."""
     if isinstance(expression, sp.Symbol) and expression != DEGREE:
         return itemgetter(expression.name)
-    if expression in (sp.true, sp.false):
+    if is_decided(expression):
         return _constant(expression == sp.true)
     if expression == DEGREE or isinstance(expression, sp.Number | sp.NumberSymbol):
         return _constant(np.pi / 180.0 if expression == DEGREE else float(expression))

@@ -41,6 +41,7 @@ from derive.ir.symbols import (
     POSITION,
     ROTATION_ENTRIES,
     called,
+    is_decided,
     symbols_of,
 )
 from derive.ir.verify import BrokenProgram, verify
@@ -119,7 +120,7 @@ def _without_aliases(
                 raise BrokenProgram(f"{s.name} is bound twice, to {bound[s.name]} and to {s.value}")
             if s.name in aliases or s.name in names:
                 continue  # the same Let again
-            if value.is_Symbol or value.is_Number or value in (sp.true, sp.false):
+            if value.is_Symbol or value.is_Number or is_decided(value):
                 aliases[s.name] = value
                 continue
         if isinstance(s, Iterate):
@@ -147,6 +148,7 @@ def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Stat
     kept.
     """
     sources = {name: s for s in body for name in binds(s)}
+    order = {name: place for place, name in enumerate(sources)}
     done: list[Statement] = []
     begun: set[int] = set()
 
@@ -158,9 +160,8 @@ def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Stat
         done.append(statement)
 
     def need(symbols: set[sp.Symbol]) -> None:
-        for name, source in sources.items():  # in the order of the derivation
-            if name in symbols:
-                provide(source)
+        for name in sorted(symbols & order.keys(), key=order.__getitem__):  # in the order of the derivation
+            provide(sources[name])
 
     for s in body:
         if isinstance(s, Require | Iterate | Call | FindRoot):

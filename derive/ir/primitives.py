@@ -5,6 +5,8 @@ from __future__ import annotations
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
+from derive.ir.symbols import is_decided
+
 
 class Root(sp.Function):
     """root(x) = sqrt(max(0, x)): total."""
@@ -33,7 +35,7 @@ class Select(sp.Function):
     @classmethod
     def eval(cls, condition: Boolean, first: sp.Expr, second: sp.Expr) -> sp.Expr | None:
         """Simplify a choice between equal values, and one whose condition is decided."""
-        if condition in (sp.true, sp.false):
+        if is_decided(condition):
             return first if condition == sp.true else second
         return first if first == second else None
 

@@ -22,6 +22,7 @@ from sympy.logic.boolalg import Boolean
 from derive.ir.reason import Reason
 from derive.ir.symbols import (
     PLACE,
+    names_in,
     symbols_of,
 )
 
@@ -256,7 +257,7 @@ def told(statement: Statement) -> Iterator[sp.Expr]:
 
 def reads(statement: Statement) -> set[sp.Symbol]:
     """The symbols that a statement reads and does not bind itself, without those of its reason."""
-    found = {s for e in expressions(statement) for s in symbols_of(e)}
+    found = set[sp.Symbol]().union(*map(names_in, expressions(statement)))
     if isinstance(statement, Call):
         return found | set(statement.constants)
     if isinstance(statement, FindRoot):
@@ -277,7 +278,8 @@ def shared(programs: Iterable[Program]) -> tuple[Program, ...]:
 def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> Statement:
     """The statement with every expression changed, in its reason as well; the names that it binds stay."""
     if isinstance(statement, Let):
-        return replace(statement, value=change(statement.value))
+        value = change(statement.value)
+        return statement if value is statement.value else replace(statement, value=value)
     if isinstance(statement, Require):
         reason = None if statement.reason is None else statement.reason.rewritten(change)
         return replace(statement, condition=change(statement.condition), reason=reason)

@@ -8,7 +8,7 @@ from functools import cache
 from itertools import product
 
 import sympy as sp
-from sympy.logic.boolalg import Boolean
+from sympy.logic.boolalg import Boolean, BooleanAtom
 
 from derive.ir.constants import DEGREE
 
@@ -41,6 +41,11 @@ def is_count(symbol: sp.Basic) -> bool:
 def is_condition(value: sp.Basic) -> bool:
     """Whether a value is true or false: a comparison, what is made of such, or a flag."""
     return isinstance(value, Flag) or (isinstance(value, Boolean) and not value.is_Symbol)
+
+
+def is_decided(value: object) -> bool:
+    """Whether a condition is true or false whatever its names are. Asked by its type: SymPy compares slowly."""
+    return isinstance(value, BooleanAtom)
 
 
 def called(name: str, like: sp.Symbol) -> sp.Symbol:

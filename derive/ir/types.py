@@ -31,7 +31,7 @@ from derive.ir.primitives import (
     Wrap,
 )
 from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Statement
-from derive.ir.symbols import Flag, is_count, names_in
+from derive.ir.symbols import Flag, is_count, is_decided, names_in
 
 
 class Type(Enum):
@@ -75,7 +75,7 @@ def _type_of(value: sp.Basic, angles: frozenset[tuple[sp.Symbol, Type]]) -> Type
         return Type.BOOL if isinstance(value, Flag) else Type.INT if is_count(value) else known.get(value, Type.REAL)
     if isinstance(value, sp.Number | sp.NumberSymbol):
         return Type.WRITTEN if value.is_Integer else Type.REAL
-    if value in (sp.true, sp.false):
+    if is_decided(value):
         return Type.BOOL
     rule = next((rule for kind, rule in _RULES.items() if isinstance(value, kind)), None)
     if rule is None:

@@ -23,7 +23,7 @@ from derive.ir.program import (
     expressions,
     told,
 )
-from derive.ir.symbols import names_in, symbols_of
+from derive.ir.symbols import is_decided, names_in, symbols_of
 from derive.ir.typed import check_types
 from derive.ir.types import IllTypedError
 
@@ -135,7 +135,7 @@ def _strange_part(value: sp.Basic) -> str:
     for node in sp.preorder_traversal(value):
         if isinstance(node, sp.Pow) and not _is_power_printable(node):
             return f"power {node} is not an integer power"
-        if not isinstance(node, _ARITHMETIC + _LOGIC + PRIMITIVES) and node not in (sp.true, sp.false):
+        if not isinstance(node, _ARITHMETIC + _LOGIC + PRIMITIVES) and not is_decided(node):
             return f"{type(node).__name__} is not a primitive, in {value}"
     return ""
 

@@ -190,7 +190,7 @@ class Rewriting:
         pending = [value.node]
         while pending:
             node = pending[-1]
-            missing = [n for n in node.sources() if n not in self._done]
+            missing = [n for n in node.read if n not in self._done]
             if node in self._done or not missing:
                 pending.pop()
                 if node not in self._done:
@@ -211,9 +211,11 @@ class Rewriting:
         if node.is_leaf:
             return Value(node, 1)
         if node.head is sp.Add:
-            return self.graph.sum(parts)
+            return Value(node, 1) if parts == node.parts else self.graph.sum(parts)
         if node.head is PRODUCT:
-            return self.graph.product(parts, self.divisors(node))
+            divisors = self.divisors(node)
+            is_same = parts == node.parts and all(d == (n, 1) for d, n in zip(divisors, node.divisors, strict=True))
+            return Value(node, 1) if is_same else self.graph.product(parts, divisors)
         assert isinstance(node.head, type)
         return self.graph.apply(node.head, parts)
 

@@ -41,7 +41,7 @@ class Constant:
                 is_name = isinstance(node.head, sp.Symbol) and node.head != DEGREE
                 known = (not is_name or str(node.head) in self._names, is_name)
             else:
-                inner = [self._look(n) for n in node.sources()]
+                inner = [self._look(n) for n in node.read]
                 known = (all(i[0] for i in inner), any(i[1] for i in inner))
             self._known[node] = known
         return known
@@ -128,7 +128,7 @@ def _readers(drafts: Sequence[Draft]) -> dict[Node, str]:
     found: dict[Node, str] = {}
     for draft in drafts:
         for reader, named in draft.names.items():
-            for node in reached(reader.sources(), draft.names.__contains__):
+            for node in reached(reader.read, draft.names.__contains__):
                 if node not in draft.names:
                     found.setdefault(node, named.name.name)
     return found

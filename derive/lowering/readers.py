@@ -28,6 +28,6 @@ def readers_of(draft: Draft) -> Readers:
         read(value.node, None)
     while pending:
         reader = pending.pop()
-        for node in reader.sources():
+        for node in reader.read:
             read(node, reader)
     return {node: tuple(readers) for node, readers in found.items()}

@@ -122,7 +122,7 @@ class Assumed(Rewriting):
             return super().rewritten(node, parts), sp.Integer(0)
         if node.head is SUM:
             return super().rewritten(node, parts), sp.Add(*shifts)
-        if node.head is PRODUCT and all(n.is_number or n.head == DEGREE or n in self._shifts for n in node.sources()):
+        if node.head is PRODUCT and all(n.is_number or n.head == DEGREE or n in self._shifts for n in node.read):
             factors = [s if s != 0 else p.sign * p.node.head for s, p in zip(shifts, node.parts, strict=True)]
             if sum(s != 0 for s in shifts) == 1:
                 away = sp.Mul(*factors) / sp.Mul(*(d.head for d in node.divisors))
@@ -171,7 +171,7 @@ def _always_needed(starts: Iterable[Node]) -> set[Node]:
         node = pending.pop()
         if node not in found:
             found.add(node)
-            pending += (node.parts[0].node,) if node.head is Select else node.sources()
+            pending += (node.parts[0].node,) if node.head is Select else node.read
     return found
 
 

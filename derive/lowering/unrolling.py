@@ -132,7 +132,7 @@ class _Unrolling:
         if node not in self._supports:
             for inner in sorted(reached([node], self._supports.__contains__), key=lambda n: n.place):
                 own = self._of_names.get(inner.head, frozenset()) if inner.is_leaf else frozenset()
-                self._supports[inner] = own.union(*(self._supports[source] for source in inner.sources()))
+                self._supports[inner] = own.union(*(self._supports[source] for source in inner.read))
         return self._supports[node]
 
     def _slots_of(self, support: Sequence[int]) -> Iterator[tuple[int, Choice, Choice]]:

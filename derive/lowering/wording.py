@@ -72,7 +72,7 @@ def _sign(node: Node, called: Called) -> int:
     own = called(node)
     if own is not None:
         return 1 if own.is_Symbol else -1
-    return math.prod(_sign(n, called) for n in node.sources()) if node.head is PRODUCT else 1
+    return math.prod(_sign(n, called) for n in node.read) if node.head is PRODUCT else 1
 
 
 def _factor(node: Node, called: Called) -> str | None:

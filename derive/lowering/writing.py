@@ -79,7 +79,7 @@ class _Writer:
                     continue
                 seen.add(node)
                 above = node if node in self.names else user
-                pending += [(source, above) for source in reversed(node.sources())]
+                pending += [(source, above) for source in reversed(node.read)]
 
         for item in self.draft.items:
             look(read_values(item), None)
@@ -163,7 +163,7 @@ class _Writer:
         begun: set[Node] = set()
 
         def provide(node: Node) -> None:
-            for inner in sorted(self._named_below(node.sources()), key=self._order):
+            for inner in sorted(self._named_below(node.read), key=self._order):
                 visit(inner)
 
         def visit(node: Node) -> None:
@@ -277,7 +277,7 @@ def _is_slight(node: Node, names: Container[Node]) -> bool:
     """Whether a value is written as easily as a name: the size of a name, a multiple of a name that
     the program reads.
     """
-    sources = node.sources()
+    sources = node.read
     if node.head is sp.Abs and sources[0] in names:
         return True
     if node.divisors or not all(n.is_leaf for n in sources):
