@@ -115,7 +115,7 @@ def test_every_choice_it_names_exists() -> None:
     contract = load()
     assert set(re.findall(r"PROFILE=(\w+)", GUIDE)) <= set(contract.spelling["profiles"])
     statuses = set(re.findall(r"^\| `(SMC_\w+)` \|", GUIDE, re.MULTILINE))
-    assert statuses == {e.split(".")[-1] for e in contract.spelling["errors"].values()} - {"SMC_NO_ERROR"}
+    assert statuses == {c.value.split(".")[-1] for c in contract.names[0].constants} - {"SMC_NO_ERROR"}
 
 
 @pytest.mark.parametrize("page", ["docs/CODESYS.md", "generated/st/README.md", "README.md"])
@@ -160,5 +160,5 @@ def _tools(block: str, path: str, declaration: str) -> str:
         code = members["METHOD", f"{block}.GetFlangeOrientationImageWithOri"].implementation
     else:
         code = members["METHOD", f"{block}.GetOrientationImage"].implementation
-    image = re.findall(r"^oriInfo\.dof := TRAFO\.OrientationDOF\.(\w+);", code, re.MULTILINE)
-    return {"zero": "any", "one": "along the axis it turns about", "three": "none"}[image[-1]]
+    image = re.findall(r"^oriInfo\.dof := Softkin_Names\.(\w+)Orientation;", code, re.MULTILINE)
+    return {"Fixed": "any", "Turning": "along the axis it turns about", "Free": "none"}[image[-1]]

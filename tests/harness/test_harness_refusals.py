@@ -128,6 +128,54 @@ def test_a_body_that_breaks_a_rule_is_refused(name: str) -> None:
     assert message in refused(CALLEE + silent + FUNCTION.format(variables=VARIABLES, body=body))
 
 
+READER = """
+FUNCTION Reader : LREAL
+VAR_IN_OUT CONSTANT v : LREAL; w : ARRAY[0..8] OF LREAL; END_VAR
+Reader := v + w[0];
+END_FUNCTION
+VAR_GLOBAL CONSTANT
+  LARGEST : LREAL := 1.0;
+END_VAR
+"""
+READ = {
+    "a literal": ("1.0", "t"),
+    "an expression": ("x + 1.0", "t"),
+    "a negative": ("-x", "t"),
+    "a result of a function": ("SQRT(x)", "t"),
+    "the result of the function itself": ("Probe", "t"),
+    "a constant": ("ONE", "t"),
+    "an element of a constant": ("TABLE[0]", "t"),
+    "a constant array": ("x", "TABLE"),
+    "a global constant": ("LARGEST", "t"),
+    "what a pointer points to": ("x", "p^"),
+    "an element behind a pointer": ("p^[0]", "t"),
+}
+"""What a VAR_IN_OUT CONSTANT does not take."""
+
+
+def reading(v: str, w: str) -> str:
+    """A function that hands two values on."""
+    variables = "  x : LREAL; t : ARRAY[0..8] OF LREAL; f : SMC_Frame; p : POINTER TO ARRAY[0..8] OF LREAL;"
+    constants = "  ONE : LREAL := 1.0; TABLE : ARRAY[0..8] OF LREAL := [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];"
+    head = f"FUNCTION Probe : LREAL\nVAR CONSTANT\n{constants}\nEND_VAR\nVAR\n{variables}\nEND_VAR\n"
+    return f"{READER}{head}p := ADR(t);\nProbe := 1.0;\nx := Reader(v := {v}, w := {w});\nEND_FUNCTION\n"
+
+
+@pytest.mark.parametrize("name", READ)
+def test_a_constant_reference_needs_a_variable(name: str) -> None:
+    """A VAR_IN_OUT CONSTANT takes a variable, its member or its element, and nothing else."""
+    assert "needs a variable" in refused(reading(*READ[name]))
+
+
+@pytest.mark.parametrize("v", ["x", "t[3]", "f.vT.dX"])
+def test_a_constant_reference_takes_a_variable(v: str) -> None:
+    """A variable, an element and a member are taken, and so is a reference that is handed on."""
+    relay = reading(v, "t").replace("FUNCTION Probe", "FUNCTION Relay", 1)
+    handed = "FUNCTION Handed : LREAL\nVAR_IN_OUT CONSTANT v : LREAL; w : ARRAY[0..8] OF LREAL; END_VAR\n"
+    handed += "Handed := Reader(v := v, w := w);\nEND_FUNCTION\n"
+    compile_st({"probe.st": relay.replace("Probe :=", "Relay :=") + handed})
+
+
 VARIABLES_REFUSED = {
     "unknown type": ("x : FOO;", "unknown type FOO"),
     "unknown type of a namespace": ("x : TRAFO.FOO;", "unknown type TRAFO.FOO"),
