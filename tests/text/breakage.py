@@ -107,7 +107,7 @@ WRONG = {
     ),
     "CartesianToAxes: an unused axis": Break(_BRANCH, "a.a5 := 0.0;", "a.a5 := 1.0;"),
     "AxesToCartesian: two bytes exchanged": Break(_FORWARD, "Softkin_PeriodNumber(a.a3)", "Softkin_PeriodNumber(a.a1)"),
-    "AxesToCartesian: a byte without a meaning": Break(_FORWARD, "cd := ", "configuration.abyData[30] := 7;\ncd := "),
+    "AxesToCartesian: a byte without a meaning": Break(_FORWARD, "cd := ", "configBytes.abyData[30] := 7;\ncd := "),
     "CartesianToAxes: a tie": Break(_INVERSE, "least - 1.0E-6", "least + 1.0E6"),
     "CartesianToAxes: a tolerance": Break(_BRANCH, "ABS(cosA2) <= 1.0000000000005", "ABS(cosA2) <= 0.9"),
     "CartesianToAxes: an error": Break(_BRANCH, "Softkin_Names.Unreachable", "Softkin_Names.InvalidCoupling"),

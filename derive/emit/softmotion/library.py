@@ -165,9 +165,11 @@ def _templates() -> Environment:
 
 
 def _unit(kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> str:
+    methods = methods_of(kinematics, block, contract, templates)
     return templates.get_template("block.st.j2").render(
         contract.spelling,
         block=block,
+        reads_degree=any("DEGREE" in method.text for method in methods),
         description=description(kinematics, block, contract.spelling["pictures"]["reference"], templates),
-        methods=methods_of(kinematics, block, contract, templates),
+        methods=methods,
     )
