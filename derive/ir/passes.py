@@ -133,17 +133,17 @@ def _without_aliases(
 
 def _order(body: Sequence[Statement], outputs: Sequence[Output]) -> tuple[Statement, ...]:
     ordered = [_with_ordered_step(s) if isinstance(s, Iterate) else s for s in body]
-    needed = _needed(ordered, [o.value for o in outputs])
+    needed = needed_for(ordered, [o.value for o in outputs])
     read = {s for o in outputs for s in symbols_of(o.value)}.union(*map(reads, needed))
     return tuple(replace(s, names=tuple(n for n in s.names if n in read)) if isinstance(s, Call) else s for s in needed)
 
 
 def _with_ordered_step(loop: Iterate) -> Iterate:
-    step = _needed(loop.step, [loop.done, *loop.following])
+    step = needed_for(loop.step, [loop.done, *loop.following])
     return replace(loop, step=tuple(s for s in step if isinstance(s, Let | Solve)))
 
 
-def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Statement, ...]:
+def needed_for(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Statement, ...]:
     """The statements that the wanted expressions need, each just before its first use; a statement that may refuse is
     kept.
     """

@@ -86,6 +86,8 @@ def create(kind, name, declaration, parent):
     if kind == "TYPE":
         is_structure = re.search(r"^\s*STRUCT\b", declaration, re.MULTILINE)
         return parent.create_dut(name, DutType.Structure if is_structure else DutType.Enumeration)
+    if kind == "VAR_GLOBAL":
+        return parent.create_gvl(name)
     if kind == "FUNCTION":
         return parent.create_pou(name=name, type=PouType.Function, return_type=returned(declaration))
     if kind == "FUNCTION_BLOCK":

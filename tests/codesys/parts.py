@@ -35,7 +35,7 @@ class Whole:
     def text(self) -> str:
         """The object as a text with the closing words that no editor holds."""
         inner = [_member(one, self.members) for one in self.members if one.kind != "GET"]
-        closing = "" if self.own.kind == "TYPE" else f"END_{self.own.kind}"
+        closing = "" if self.own.kind in ("TYPE", "VAR_GLOBAL") else f"END_{self.own.kind}"
         return "\n".join([self.own.declaration, *inner, self.own.implementation, closing])
 
 

@@ -27,11 +27,19 @@ def wholes(root: Element) -> dict[str, Whole]:
     for data_type in root.iterfind("p:types/p:dataTypes/p:dataType", _IN):
         name = data_type.attrib["name"]
         found[name] = Whole(Part("TYPE", name, declaration=_plain(data_type, _OBJECT_TEXT)))
+    for constants in _lists(root):
+        name = str(constants.attrib["name"])
+        found[name] = Whole(Part("VAR_GLOBAL", name, declaration=_plain(constants, _OBJECT_TEXT)))
     for pou in root.iterfind("p:types/p:pous/p:pou", _IN):
         name = pou.attrib["name"]
         own = _part(pou, _KINDS[pou.attrib["pouType"]], name, _OBJECT_TEXT)
         found[name] = Whole(own, [*_methods(pou, name), *_properties(pou, name)])
     return found
+
+
+def _lists(root: Element) -> list[Element]:
+    """The lists of global variables, which are entries of the project."""
+    return list(root.iterfind(f"p:addData/{_extension('globalvars')}/p:globalVars", _IN))
 
 
 def folders(root: Element) -> dict[str, list[str]]:
@@ -44,7 +52,8 @@ def folders(root: Element) -> dict[str, list[str]]:
 def identifiers(root: Element) -> dict[str, str]:
     """The identifier of every object and member where it is declared, by its path."""
     found = {}
-    for one in root.iterfind("p:types//p:ObjectId", _IN):
+    holders = (*root.iterfind("p:types", _IN), *_lists(root))
+    for one in (inner for holder in holders for inner in holder.iterfind(".//p:ObjectId", _IN)):
         owner = one.getparent().getparent().getparent()  # type: ignore[union-attr]
         found[owner.attrib["name"]] = one.text or ""  # type: ignore[union-attr]
     for member in root.iterfind("p:types//*[@ObjectId]", _IN):

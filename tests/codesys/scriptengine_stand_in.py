@@ -69,6 +69,11 @@ class Container(Tree):
     def create_dut(self, name: str, type: DutType = DutType.Structure) -> Node:
         return self._add(Dut(name, type.name))
 
+    def create_gvl(self, name: str) -> Node:
+        made = GlobalVariables(name, "VAR_GLOBAL")
+        made.textual_declaration.text = "VAR_GLOBAL\nEND_VAR"
+        return self._add(made)
+
 
 class Node(Tree):
     """An object of the project."""
@@ -98,6 +103,10 @@ class Dut(Node):
     def __init__(self, name: str, kind: str) -> None:
         super().__init__(name, kind)
         self.textual_declaration = Document()
+
+
+class GlobalVariables(Dut):
+    """A list of global variables: the name of the object is the name of the list."""
 
 
 class Code(Dut):
@@ -191,7 +200,7 @@ class Project(Container):
         self.is_saved = True
 
     def _compiled(self) -> Iterator[Message]:
-        nodes = [one for one in self.get_children(True) if isinstance(one, Pou) or type(one) is Dut]
+        nodes = [one for one in self.get_children(True) if isinstance(one, Pou) or type(one) in (Dut, GlobalVariables)]
         try:
             compile_st({one.get_name(): composed(one) for one in nodes})
         except StError as problem:

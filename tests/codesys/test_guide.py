@@ -61,7 +61,7 @@ def test_the_limits_of_a_drive_are_handed_over() -> None:
     handed = "\n".join(("IF xHanded THEN", *lines, "END_IF"))
     text = program.replace("  status :", f"  {declared};\n  xHanded : BOOL;\n  status :", 1)
     text = text.replace("axes.a0 := 30.0;", f"{handed}\naxes.a0 := -160.0;", 1)
-    text = text.replace("IF status =", "configuration.abyData[1] := 0;\naxes.a0 := 160.0;\nIF status =", 1)
+    text = text.replace("IF status =", "data.abyData[1] := 0;\naxes.a0 := 160.0;\nIF status =", 1)
     needed = {name: t for name, t in FILES.items() if name.startswith("softkin/") or "/Softkin_Scara2_Z." in name}
     made = compile_st({**needed, "PRG_Check": text}).new("PRG_Check")
     made()
@@ -89,7 +89,7 @@ def test_the_demo_moves_a_group() -> None:
     for _ in range(60):
         demo()
         place = group.position.c
-        elbow = group.configuration.abyData[0]
+        elbow = group.kinConfig.abyData[0]
         if (now := (group.moved, place.X, place.Y, elbow)) not in done[-1:]:
             done.append(now)
     assert done == [
@@ -115,7 +115,7 @@ def test_every_choice_it_names_exists() -> None:
     contract = load()
     assert set(re.findall(r"PROFILE=(\w+)", GUIDE)) <= set(contract.spelling["profiles"])
     statuses = set(re.findall(r"^\| `(SMC_\w+)` \|", GUIDE, re.MULTILINE))
-    assert statuses == {e.split(".")[-1] for e in contract.spelling["errors"].values()} - {"SMC_NO_ERROR"}
+    assert statuses == {c.value.split(".")[-1] for c in contract.names[0].constants} - {"SMC_NO_ERROR"}
 
 
 @pytest.mark.parametrize("page", ["docs/CODESYS.md", "generated/st/README.md", "README.md"])
@@ -160,5 +160,5 @@ def _tools(block: str, path: str, declaration: str) -> str:
         code = members["METHOD", f"{block}.GetFlangeOrientationImageWithOri"].implementation
     else:
         code = members["METHOD", f"{block}.GetOrientationImage"].implementation
-    image = re.findall(r"^oriInfo\.dof := TRAFO\.OrientationDOF\.(\w+);", code, re.MULTILINE)
-    return {"zero": "any", "one": "along the axis it turns about", "three": "none"}[image[-1]]
+    image = re.findall(r"^oriInfo\.dof := Softkin_Names\.(\w+)Orientation;", code, re.MULTILINE)
+    return {"Fixed": "any", "Turning": "along the axis it turns about", "Free": "none"}[image[-1]]

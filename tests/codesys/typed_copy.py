@@ -23,6 +23,8 @@ def typed_variables(root: Element) -> dict[str, Variables]:
         found[name] = list(_interface(pou))
         for member in (*pou.iter(f"{_P}Method"), *pou.iter(f"{_P}Property")):
             found[f"{name}.{member.attrib['name']}"] = list(_interface(member))
+    for constants in root.iter(f"{_P}globalVars"):
+        found[str(constants.attrib["name"])] = list(_variables(constants, "VAR_GLOBAL"))
     return found
 
 
@@ -36,6 +38,8 @@ def declared_variables(declared: ast.Declaration) -> Iterator[tuple[str, Variabl
             yield f"{declared.name}.{prop.name}", list(_returned(prop.type))
     elif isinstance(declared, ast.Routine):
         yield declared.name, [*_returned(declared.returns), *_sections(declared.sections)]
+    elif isinstance(declared, ast.Globals):
+        yield declared.name, list(_sections((ast.Section("VAR_GLOBAL", declared.constant, declared.variables),)))
 
 
 def _interface(element: Element) -> Iterator[tuple[str, bool, str, str, str]]:
@@ -45,13 +49,18 @@ def _interface(element: Element) -> Iterator[tuple[str, bool, str, str, str]]:
         kind = section.tag.removeprefix(_P)
         if kind == "returnType":
             yield "", False, "", _type(section), ""
-        for variable in section.iterfind(f"{_P}variable"):
-            written = variable.find(f"{_P}type")
-            assert written is not None
-            value = variable.find(f"{_P}initialValue/{_P}simpleValue")
-            initial = "" if value is None else str(value.attrib["value"])
-            is_constant = section.get("constant") == "true"
-            yield _SECTIONS[kind], is_constant, str(variable.attrib["name"]), _type(written), _number(initial)
+        else:
+            yield from _variables(section, _SECTIONS.get(kind, ""))
+
+
+def _variables(section: Element, scope: str) -> Iterator[tuple[str, bool, str, str, str]]:
+    for variable in section.iterfind(f"{_P}variable"):
+        written = variable.find(f"{_P}type")
+        assert written is not None and scope
+        value = variable.find(f"{_P}initialValue/{_P}simpleValue")
+        initial = "" if value is None else str(value.attrib["value"])
+        is_constant = section.get("constant") == "true"
+        yield scope, is_constant, str(variable.attrib["name"]), _type(written), _number(initial)
 
 
 def _type(holder: Element) -> str:
@@ -78,8 +87,16 @@ def _returned(returns: ast.TypeText | None) -> Iterator[tuple[str, bool, str, st
 def _sections(sections: Sequence[ast.Section]) -> Iterator[tuple[str, bool, str, str, str]]:
     for section in sections:
         for v in section.variables:
-            value = v.initial.value if isinstance(v.initial, ast.Literal) else ""
-            yield section.scope, section.constant, v.name, v.type.text, _number(str(value))
+            yield section.scope, section.constant, v.name, v.type.text, _number(_written(v.initial))
+
+
+def _written(initial: ast.Expression | None) -> str:
+    """A literal or a dotted path of names as text; an empty text for any other value."""
+    if isinstance(initial, ast.Member):
+        return f"{_written(initial.object)}.{initial.name}"
+    if isinstance(initial, ast.Name):
+        return initial.text
+    return str(initial.value) if isinstance(initial, ast.Literal) else ""
 
 
 def _number(text: str) -> str:

@@ -71,11 +71,23 @@ def _check(expressions: Expressions, argument: ast.Argument, parameter: types.Va
         raise StError(argument.at, f"{parameter.name} needs a variable")
     if not _same(given, parameter.type):
         raise StError(argument.at, f"{parameter.name} is a {parameter.type.name}, not a {given.name}")
-    if not parameter.constant:
-        check_write(value, expressions.scope, facts)
     variable = root(value, facts)
+    if parameter.constant:
+        _refuse_no_variable(argument, variable, parameter)
+    else:
+        check_write(value, expressions.scope, facts)
     if variable is not None and types.is_scalar(variable.type):
         facts.boxed.add(variable)
+
+
+def _refuse_no_variable(argument: ast.Argument, variable: types.Variable | None, parameter: types.Variable) -> None:
+    """Refuse for a VAR_IN_OUT CONSTANT what compilers disagree on: it takes a variable, its member or its element, and
+    no constant, no result and nothing behind a pointer.
+    """
+    if variable is None or variable.scope == "RESULT":
+        raise StError(argument.at, f"{parameter.name} needs a variable, its member or its element")
+    if variable.constant and not variable.is_reference:
+        raise StError(argument.at, f"{parameter.name} needs a variable: {variable.name} is a constant")
 
 
 def _same(given: types.Type, wanted: types.Type) -> bool:

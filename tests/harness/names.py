@@ -1,35 +1,23 @@
-"""Names that no text may declare: words of the language, and macros of the C code of a controller."""
+"""Names that no text may declare: words of the language, and macros of the C code of a controller.
+
+They are those of the compiler: one list, which a test compares with the standard and with what dialects add.
+"""
+
+import tomllib
+
+from derive.emit.language import TEMPLATES
 
 from .faults import Place, StError
 
-KEYWORDS = set(
-    """
-    ABSTRACT ACTION AND ARRAY AT BOOL BY BYTE CASE CONSTANT CONTINUE DATE DINT DO DT DWORD ELSE ELSIF
-    END_ACTION END_CASE END_FOR END_FUNCTION END_FUNCTION_BLOCK END_IF END_METHOD END_PROGRAM
-    END_PROPERTY END_REPEAT END_STRUCT END_TYPE END_VAR END_WHILE EXIT EXTENDS F_EDGE FALSE FINAL FOR
-    FUNCTION FUNCTION_BLOCK GET IF IMPLEMENTS INT INTERFACE INTERNAL JMP LINT LREAL LTIME LWORD METHOD
-    MOD NOT OF OR OVERRIDE PERSISTENT POINTER PRIVATE PROGRAM PROPERTY PROTECTED PUBLIC R_EDGE READ_ONLY
-    READ_WRITE REAL REFERENCE REPEAT RETAIN RETURN SET SINT STRING STRUCT SUPER THEN THIS TIME
-    TIME_OF_DAY TO TOD TRUE TYPE UDINT UINT ULINT UNION UNTIL USINT VAR VAR_ACCESS VAR_CONFIG
-    VAR_EXTERNAL VAR_GLOBAL VAR_IN_OUT VAR_INPUT VAR_INST VAR_OUTPUT VAR_STAT VAR_TEMP WHILE WORD
-    WSTRING XOR
-    STEP INITIAL_STEP END_STEP TRANSITION END_TRANSITION ON
-    ABS ACOS ADR ASIN ATAN BITADR COS EXP EXPT LIMIT LN LOG MAX MIN MUX
-    MOVE NEW ROL ROR SEL SHL SHR SIN SIZEOF SQRT TAN TRUNC TRUNC_INT XSIZEOF
-    """.split()
-)
-C_MACROS = set(
-    """
-    BUFSIZ CHAR_BIT EDOM EFAULT EILSEQ EINVAL ENOMEM EOF ERANGE ERROR FLT_MAX DBL_EPSILON DBL_MAX
-    DBL_MIN HUGE_VAL INFINITY INT_MAX INT_MIN LONG_MAX LONG_MIN M_E M_PI NAN NDEBUG NULL RAND_MAX
-    SEEK_SET STDIN STDOUT STDERR UINT_MAX
-    """.split()
-)
+_LISTS = tomllib.loads((TEMPLATES / "st" / "reserved.toml").read_text(encoding="utf-8"))
+KEYWORDS = set(_LISTS["keywords"]["names"].upper().split())
+_BEGINNINGS = tuple(_LISTS["keywords"]["prefixes"])
+C_MACROS = set(_LISTS["macros"]["names"].upper().split())
 
 
 def check_name(name: str, at: Place) -> None:
     upper = name.upper()
-    if upper in KEYWORDS:
+    if upper in KEYWORDS or upper.startswith(_BEGINNINGS):
         raise StError(at, f"{name} is a word of the language and cannot be declared")
     if upper in C_MACROS:
         raise StError(at, f"{name} is a macro of the C library and cannot be declared")

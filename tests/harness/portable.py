@@ -66,7 +66,7 @@ def _words(code: Sequence[Token]) -> Iterator[Violation]:
         word = token.word
         if before is not None and before.word in ("FUNCTION", "FUNCTION_BLOCK"):
             owner = token.text
-        if word in FORBIDDEN or token.kind == "power":
+        if (word in FORBIDDEN and (word, owner) != ("VAR_GLOBAL", "")) or token.kind == "power":
             yield Violation(token.line, f"{token.text} is not portable")
         is_base = token.text == "^" and before is not None and before.word in ("SUPER", "THIS")
         if (word in _MEMORY or token.text == "^") and owner not in _HELPERS and not is_base:
@@ -89,8 +89,11 @@ def _numbers(code: Sequence[Token]) -> Iterator[Violation]:
 
 
 def _enumerators(code: Sequence[Token], enumerators: dict[str, str]) -> Iterator[Violation]:
-    """An enumerator stands behind its type, but where the type itself lists it."""
+    """An enumerator stands behind its type, but where the type itself lists it; one of a library in the list of names
+    alone.
+    """
     inside = ""
+    is_list = any(token.word == "VAR_GLOBAL" for token in code)
     for at, token in enumerate(code):
         inside = "TYPE" if token.word == "TYPE" else "" if token.word == "END_TYPE" else inside
         kind = enumerators.get(token.text)
@@ -98,6 +101,8 @@ def _enumerators(code: Sequence[Token], enumerators: dict[str, str]) -> Iterator
             continue
         if at < 2 or code[at - 1].text != "." or code[at - 2].text != kind:
             yield Violation(token.line, f"{token.text} without its type {kind}")
+        elif not is_list and not kind.startswith("Softkin_"):
+            yield Violation(token.line, f"{token.text} of {kind} outside the list of names")
 
 
 def _declarations(text: str, library_names: set[str]) -> Iterator[Violation]:

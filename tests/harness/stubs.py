@@ -1,7 +1,6 @@
 """Stand-ins for the SoftMotion libraries: as Structured Text where that is possible.
 
 Sizes and the storage order of the matrix are not documented, so a test can choose them.
-The members of MCS_OR_FLANGE are not documented either; the two here only make the type usable.
 """
 
 from __future__ import annotations
@@ -53,7 +52,7 @@ TYPE Axis_Settings : STRUCT limits : AXISLIMITS; END_STRUCT END_TYPE
 {attribute 'qualified_only'}
 TYPE OrientationDOF : (zero, one, three); END_TYPE
 {attribute 'qualified_only'}
-TYPE MCS_OR_FLANGE : (MCS, FLANGE); END_TYPE
+TYPE MCS_OR_FLANGE : (Flange, MCS); END_TYPE
 TYPE OrientationSpace : STRUCT
     dof : OrientationDOF; vRot : SMC_Vector3D; mOriZero : SMC_Matrix3; vU : SMC_Vector3D;
 END_STRUCT END_TYPE

@@ -8,7 +8,7 @@ from tests.harness.library import Library, StFault, compile_st
 
 INF, NAN = float("inf"), float("nan")
 VARIABLES = """n : DINT; i : INT; u : UDINT; y : BYTE; b : BOOL; arr : ARRAY[1..3] OF LREAL;
-p : POINTER TO ARRAY[0..8] OF LREAL; m : SMC_Matrix3; short : ARRAY[0..2] OF LREAL; r : LREAL;"""
+p : POINTER TO ARRAY[0..8] OF LREAL; m : SMC_Matrix3; short : ARRAY[0..2] OF LREAL; z : LREAL;"""
 
 
 def library(body: str, **options: Any) -> Library:
@@ -87,7 +87,7 @@ def test_a_fault_stops_the_text_and_names_its_line(name: str) -> None:
 @pytest.mark.parametrize("garbage", [NAN, INF, -INF])
 def test_a_garbage_input_can_be_copied_and_compared(garbage: float) -> None:
     """Copying and comparing NaN or an infinite number is no fault."""
-    assert run("r := x; b := r > 1.0; b := r = x; IF NOT (x <= 1.0E9) THEN Probe := 1.0; END_IF", garbage) in (0.0, 1.0)
+    assert run("z := x; b := z > 1.0; b := z = x; IF NOT (x <= 1.0E9) THEN Probe := 1.0; END_IF", garbage) in (0.0, 1.0)
 
 
 @pytest.mark.parametrize("side", ["b OR (1.0 / x > 0.0)", "(1.0 / x > 0.0) OR b", "(b XOR b) AND (1.0 / x > 0.0)"])

@@ -12,7 +12,7 @@ VAR nOwn : DINT; END_VAR
 {members}
 END_FUNCTION_BLOCK
 """
-VARIABLES = """ x : LREAL; b : BOOL; n : DINT; u : UINT; i : INT; y : BYTE; s : STRING(10);
+VARIABLES = """ x : LREAL; b : BOOL; n : DINT; u : UINT; i : INT; y : BYTE; line : STRING(10);
  arr : ARRAY[0..2] OF LREAL; m : SMC_Matrix3; fr : SMC_Frame; a : AXISPOS_REF; e : SMC_ERROR;
  p : POINTER TO ARRAY[0..8] OF LREAL; os : OrientationSpace;"""
 CALLEE = """
@@ -63,7 +63,7 @@ BODIES = {
     "arithmetic on BYTE": ("y := y + y;", "not allowed"),
     "literal too large": ("y := 256;", "does not fit BYTE"),
     "negative literal to unsigned": ("u := -1;", "does not fit UINT"),
-    "string to number": ("x := s;", "does not fit LREAL"),
+    "string to number": ("x := line;", "does not fit LREAL"),
     "struct of another type": ("a := fr;", "does not fit"),
     "comparison of structs": ("b := a = a;", "not allowed"),
     "order of BOOL": ("b := b < b;", "not allowed"),
@@ -126,6 +126,54 @@ def test_a_body_that_breaks_a_rule_is_refused(name: str) -> None:
     body, message = BODIES[name]
     silent = "FUNCTION Silent\nVAR\n q : BOOL;\nEND_VAR\nq := TRUE;\nEND_FUNCTION\n"
     assert message in refused(CALLEE + silent + FUNCTION.format(variables=VARIABLES, body=body))
+
+
+READER = """
+FUNCTION Reader : LREAL
+VAR_IN_OUT CONSTANT v : LREAL; w : ARRAY[0..8] OF LREAL; END_VAR
+Reader := v + w[0];
+END_FUNCTION
+VAR_GLOBAL CONSTANT
+  LARGEST : LREAL := 1.0;
+END_VAR
+"""
+READ = {
+    "a literal": ("1.0", "many"),
+    "an expression": ("x + 1.0", "many"),
+    "a negative": ("-x", "many"),
+    "a result of a function": ("SQRT(x)", "many"),
+    "the result of the function itself": ("Probe", "many"),
+    "a constant": ("ONE", "many"),
+    "an element of a constant": ("TABLE[0]", "many"),
+    "a constant array": ("x", "TABLE"),
+    "a global constant": ("LARGEST", "many"),
+    "what a pointer points to": ("x", "p^"),
+    "an element behind a pointer": ("p^[0]", "many"),
+}
+"""What a VAR_IN_OUT CONSTANT does not take."""
+
+
+def reading(v: str, w: str) -> str:
+    """A function that hands two values on."""
+    variables = "  x : LREAL; many : ARRAY[0..8] OF LREAL; f : SMC_Frame; p : POINTER TO ARRAY[0..8] OF LREAL;"
+    constants = "  ONE : LREAL := 1.0; TABLE : ARRAY[0..8] OF LREAL := [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];"
+    head = f"FUNCTION Probe : LREAL\nVAR CONSTANT\n{constants}\nEND_VAR\nVAR\n{variables}\nEND_VAR\n"
+    return f"{READER}{head}p := ADR(many);\nProbe := 1.0;\nx := Reader(v := {v}, w := {w});\nEND_FUNCTION\n"
+
+
+@pytest.mark.parametrize("name", READ)
+def test_a_constant_reference_needs_a_variable(name: str) -> None:
+    """A VAR_IN_OUT CONSTANT takes a variable, its member or its element, and nothing else."""
+    assert "needs a variable" in refused(reading(*READ[name]))
+
+
+@pytest.mark.parametrize("v", ["x", "many[3]", "f.vT.dX"])
+def test_a_constant_reference_takes_a_variable(v: str) -> None:
+    """A variable, an element and a member are taken, and so is a reference that is handed on."""
+    relay = reading(v, "many").replace("FUNCTION Probe", "FUNCTION Relay", 1)
+    handed = "FUNCTION Handed : LREAL\nVAR_IN_OUT CONSTANT v : LREAL; w : ARRAY[0..8] OF LREAL; END_VAR\n"
+    handed += "Handed := Reader(v := v, w := w);\nEND_FUNCTION\n"
+    compile_st({"probe.st": relay.replace("Probe :=", "Relay :=") + handed})
 
 
 VARIABLES_REFUSED = {

@@ -103,7 +103,7 @@ def test_a_matrix_of_another_size_stops_initialisation(size: int) -> None:
 def test_the_configuration_block() -> None:
     """The configuration block of the sample writes the byte that belongs to each choice."""
     config = compiled().new("Kin_Sample_Planar_Config")
-    for elbow, expected in (("Right", 1), ("Left", 2), ("Singular", 0)):
+    for elbow, expected in (("Rightward", 1), ("Leftward", 2), ("Singular", 0)):
         config(eElbow=elbow)
         assert config.Config.abyData[0] == expected
 

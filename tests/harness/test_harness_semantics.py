@@ -96,22 +96,22 @@ def test_numbers_keep_their_type() -> None:
 
 def test_loops_and_exit() -> None:
     """FOR, WHILE, REPEAT, CASE and EXIT run as the standard defines."""
-    variables = "i : INT; j : INT; s : DINT;"
+    variables = "i : INT; j : INT; sum : DINT;"
     text = """FOR i := 1 TO 10 DO
     FOR j := 10 TO 1 BY -3 DO
         IF j < 5 THEN EXIT; END_IF;
-        s := s + j;
+        sum := sum + j;
     END_FOR
     CASE i OF
         0: ;
-        1, 2: s := s + 100;
-        3..4: s := s + 1000; EXIT;
+        1, 2: sum := sum + 100;
+        3..4: sum := sum + 1000; EXIT;
     ELSE
-        s := 0;
+        sum := 0;
     END_CASE
 END_FOR
-WHILE s < 2000 DO s := s + 500; END_WHILE
-Probe := s;"""
+WHILE sum < 2000 DO sum := sum + 500; END_WHILE
+Probe := sum;"""
     assert function(text, "DINT", variables=variables)() == 2251
 
 
@@ -158,12 +158,12 @@ h := p; p := q; q := h; dSum := p + q; Swap := TRUE;
 END_FUNCTION
 FUNCTION Probe : LREAL
 VAR_INPUT x : LREAL; v : SMC_Vector3D; END_VAR
-VAR y : LREAL := 7.0; a : ARRAY[0..1] OF LREAL; b : BOOL; s : LREAL; i : INT; END_VAR
-b := Swap(p := x, q := y, dSum => s);
+VAR y : LREAL := 7.0; a : ARRAY[0..1] OF LREAL; b : BOOL; total : LREAL; i : INT; END_VAR
+b := Swap(p := x, q := y, dSum => total);
 i := 1;
 Swap(v.dX, a[i]);
 Swap(p := x, q := v.dY, dSum => a[0]);
-Probe := 1000 * x + 100 * y + 10 * s + a[1] + a[0];
+Probe := 1000 * x + 100 * y + 10 * total + a[1] + a[0];
 END_FUNCTION"""
 
 
@@ -275,7 +275,7 @@ def test_wrong_arguments_from_python_are_refused() -> None:
 
 def test_texts_see_each_other_in_any_order() -> None:
     """Objects of several files can use each other, in whatever order the files are given."""
-    user = "FUNCTION A : LREAL\nVAR t : T1; END_VAR\nA := B() + Lists.gc + t.x;\nEND_FUNCTION"
+    user = "FUNCTION A : LREAL\nVAR one : T1; END_VAR\nA := B() + Lists.gc + one.x;\nEND_FUNCTION"
     used = "TYPE T1 : STRUCT x : LREAL := 1.5; END_STRUCT END_TYPE\nFUNCTION B : LREAL\nB := 1.0;\nEND_FUNCTION"
     constants = "{attribute 'qualified_only'}\nVAR_GLOBAL CONSTANT\n gc : LREAL := 2.0;\nEND_VAR"
     lib = compile_st({"a.st": user, "b.st": used, "Lists.st": constants})

@@ -83,7 +83,7 @@ REFUSED = {
     ),
     "the same name twice": Break(_FORWARD, "  x : LREAL;", "  x : LREAL;\n  X : LREAL;", "duplicate name"),
     "a name of a method": Break(_BRANCH, "  reach : LREAL;", "  jacobian : LREAL;", "hides a member"),
-    "an error that does not exist": Break(_FORWARD, "SMC_TRAFO_NOT_INITIALIZED", "SMC_FINE", "no member"),
+    "an error that does not exist": Break(_FORWARD, "Softkin_Names.NotInitialized", "Softkin_Names.Fine", "no member"),
     "an axis that does not exist": Break(_BRANCH, "a.a5 := 0.0;", "a.a6 := 0.0;", "no field a6"),
     "a byte that does not exist": Break(_FORWARD, "abyData[3]", "abyData[32]", "outside"),
     "a division of integers": Break(_BRANCH, "headingAlong := ", "headingAlong := 1/2 + ", "not allowed"),
@@ -107,12 +107,10 @@ WRONG = {
     ),
     "CartesianToAxes: an unused axis": Break(_BRANCH, "a.a5 := 0.0;", "a.a5 := 1.0;"),
     "AxesToCartesian: two bytes exchanged": Break(_FORWARD, "Softkin_PeriodNumber(a.a3)", "Softkin_PeriodNumber(a.a1)"),
-    "AxesToCartesian: a byte without a meaning": Break(_FORWARD, "cd := ", "configuration.abyData[30] := 7;\ncd := "),
+    "AxesToCartesian: a byte without a meaning": Break(_FORWARD, "cd := ", "configBytes.abyData[30] := 7;\ncd := "),
     "CartesianToAxes: a tie": Break(_INVERSE, "least - 1.0E-6", "least + 1.0E6"),
     "CartesianToAxes: a tolerance": Break(_BRANCH, "ABS(cosA2) <= 1.0000000000005", "ABS(cosA2) <= 0.9"),
-    "CartesianToAxes: an error": Break(
-        _BRANCH, "SMC_AXIS_INVERSE_TRAFO_EXCEEDING_POSLIMITS", "SMC_TRAFO_INVALID_COUPLING"
-    ),
+    "CartesianToAxes: an error": Break(_BRANCH, "Softkin_Names.Unreachable", "Softkin_Names.InvalidCoupling"),
     "CartesianToAxes: a limit": Break(_LIMITS, "(a.a3 <= highestA4)", "(a.a3 <= 2.0*highestA4)"),
     "CartesianToAxes: an output before a refusal": Break(
         _INVERSE, "status := TestLimits(", "a := solution;\nstatus := TestLimits("
@@ -125,9 +123,9 @@ WRONG = {
         "METHOD PUBLIC AxesToOrientation", "rot[2, 1] := sinA124", "rot[2, 1] := cosA124"
     ),
     "IsSingularity: a threshold": Break(_SINGULAR, "< 0.001", "< 0.9"),
-    "GetAxisProperties: a type": Break("METHOD PUBLIC GetAxisProperties", "Axis_Type.Rotary", "Axis_Type.Linear"),
+    "GetAxisProperties: a type": Break("METHOD PUBLIC GetAxisProperties", "RotaryAxis", "LinearAxis"),
     "GetOrientationImage: a freedom": Break(
-        "METHOD PUBLIC GetOrientationImage", "OrientationDOF.one", "OrientationDOF.zero"
+        "METHOD PUBLIC GetOrientationImage", "Softkin_Names.TurningOrientation", "Softkin_Names.FixedOrientation"
     ),
     "GetFlangeOrientationImageWithOri: an axis": Break(
         "METHOD PUBLIC GetFlangeOrientationImageWithOri", "vRot.dZ := projected[3, 3]", "vRot.dZ := projected[1, 1]"

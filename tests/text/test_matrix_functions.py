@@ -67,11 +67,11 @@ def test_nothing_is_touched_where_the_matrix_is_not_known(size: int, order: str)
 
 BROKEN = {
     "a library that multiplies the other way round": (
-        "frLhs := rotation, frRhs := translation",
-        "frLhs := translation, frRhs := rotation",
+        "(product, rotation, translation)",
+        "(product, translation, rotation)",
     ),
     "a second function that disagrees": ("ABS(angle - 30.0)", "ABS(angle + 30.0)"),
-    "a second function that fails": ("SMC_ERROR.SMC_NO_ERROR THEN", "SMC_ERROR.SMC_TRAFO_INVALID_COUPLING THEN"),
+    "a second function that fails": ("Softkin_Names.NoError THEN", "Softkin_Names.InvalidCoupling THEN"),
 }
 
 

@@ -11,10 +11,11 @@ from derive.__main__ import main
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
 from derive.emit.plcopen.objects import Object, objects_of
-from derive.emit.st.names import spellings
+from derive.emit.st.names import parameter_name, spellings
 from derive.emit.st.reserved import clash, refuse_clashes, reserved
 from tests.harness.contract import INTERFACES
-from tests.harness.names import C_MACROS, KEYWORDS
+from tests.harness.faults import Place, StError
+from tests.harness.names import C_MACROS, KEYWORDS, check_name
 
 SCARA = MECHANISMS / "kin_scara2_z.py"
 REMEDY = "choose another name for the mechanism, parameter, joint or branch that it is made of"
@@ -27,11 +28,37 @@ def block(name: str, variable: str = "x") -> tuple[Object, ...]:
     )
 
 
-def test_every_name_that_the_harness_refuses_is_known() -> None:
-    """Another list of the same kind, made for the harness."""
-    names = sorted(KEYWORDS | C_MACROS | set(INTERFACES))
-    assert len(names) > 150
-    assert [name for name in names if clash(name) is None or clash(name.lower()) is None] == []
+IEC = """
+CONFIGURATION RESOURCE NAMESPACE CLASS USING OVERLAP INTERVAL PRIORITY SINGLE NON_RETAIN REF_TO CHAR WCHAR EN ENO
+LDATE_AND_TIME LTIME_OF_DAY FUNCTION_BLOCK END_PROGRAM VAR_TEMP TASK WITH
+"""
+DIALECTS = """
+R S ADD SUB MUL DIV MOD GT GE EQ NE LE LT LD LDN ST STN CAL CALC CALCN RET RETC RETCN JMP JMPC JMPCN ANDN ORN XORN
+AND_THEN OR_ELSE INDEXOF PARAMS ATAN2 CHAR_TO TO_CHAR WCHAR_TO TO_WCHAR CHAR_TO_INT TO_BOOL ANY_NUM ANY_REAL
+"""
+
+
+@pytest.mark.parametrize("name", [*IEC.split(), *DIALECTS.split(), *sorted(C_MACROS), *sorted(INTERFACES)])
+def test_a_name_with_another_meaning_is_known(name: str) -> None:
+    """The words of the standard, of dialects, of C and of the libraries are known, in whatever case."""
+    assert clash(name) is not None and clash(name.lower()) is not None
+
+
+@pytest.mark.parametrize("name", [*IEC.split(), *DIALECTS.split()])
+def test_the_harness_refuses_it(name: str) -> None:
+    """The harness refuses a declaration of every word of the list; grammars of their own refuse some before."""
+    with pytest.raises(StError):
+        check_name(name, Place("probe", 1))
+
+
+def test_one_list_is_for_both() -> None:
+    """The harness refuses what the compiler avoids."""
+    assert {word.lower() for word in KEYWORDS | C_MACROS} == reserved()
+
+
+def test_a_parameter_of_a_private_method_is_spelled_around_them() -> None:
+    """A parameter of a private method with a reserved name gets another spelling."""
+    assert [parameter_name(n) for n in ("single", "r", "lowest_a1")] == ["singleValue", "rValue", "lowestA1"]
 
 
 def test_temporaries_are_spelled_around_them() -> None:

@@ -81,8 +81,20 @@ def test_an_object_without_an_end_is_refused() -> None:
 
 def test_text_in_no_object_is_refused() -> None:
     """Text outside of all objects is refused."""
-    with pytest.raises(ValueError, match="'VAR_GLOBAL' stands in no object"):
-        objects_of(f"{TEXT}\nVAR_GLOBAL\n  x : INT;\nEND_VAR\n")
+    with pytest.raises(ValueError, match="'x : INT;' stands in no object"):
+        objects_of(f"{TEXT}\nx : INT;\n")
+
+
+def test_a_list_of_global_constants_has_the_name_that_it_is_given() -> None:
+    """A list is a declaration alone, with its comment and its pragma; its text does not name it."""
+    text = "// Names\n{attribute 'qualified_only'}\nVAR_GLOBAL CONSTANT\n  ONE : INT := 1;\nEND_VAR"
+    (found,) = objects_of(f"{text}\n", "Names")
+    assert found == Object("VAR_GLOBAL", "Names", text, "")
+    assert ruled([found]).count("// ====") == 2 and "END_VAR_GLOBAL" not in ruled([found])
+    declared = declaration_of(found.declaration)
+    assert declared.attributes == (("qualified_only", ""),) and list(declared.names()) == ["ONE"]
+    with pytest.raises(ValueError, match="'VAR_GLOBAL CONSTANT' stands in no object that has a name"):
+        objects_of(text)
 
 
 def test_rulers_are_all_that_is_added() -> None:

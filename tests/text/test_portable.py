@@ -81,6 +81,8 @@ PLANTED = {
     "a bare error": ("x := y;", "x := SMC_NO_ERROR;", "without its type SMC_ERROR"),
     "a bare enumerator": ("x := y;", "IF order = Unknown THEN", "without its type Softkin_MatrixOrder"),
     "an enumerator of another type": ("x := y;", "x := Softkin_MatrixOrder.zero;", "without its type OrientationDOF"),
+    "an enumerator of a library": ("x := y;", "IF e = SMC_ERROR.SMC_NO_ERROR THEN", "outside the list of names"),
+    "a global variable": ("END_FUNCTION\n", "END_FUNCTION\nVAR_GLOBAL\nEND_VAR\n", "VAR_GLOBAL is not portable"),
     "a bound that is a name": ("x : LREAL;", "x : ARRAY[0..LAST] OF LREAL;", "no literals"),
     "a structured initial value": (
         "x : LREAL;",

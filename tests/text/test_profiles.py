@@ -137,14 +137,22 @@ def test_an_interface_comes_with_its_library(tmp_path: Path) -> None:
 
 
 def test_what_is_not_documented_says_so() -> None:
-    """A spelling that no document settles stands under its heading, each with a comment above it."""
+    """A spelling that no document settles is a constant that says so, or stands under its heading; each has a comment
+    above it.
+    """
     head, _, rest = _FILE.read_text(encoding="utf-8").partition("# ---- Not documented ")
-    section = rest.partition("# ---- ")[0]
-    for key in ("linear", "NOT_INITIALIZED", "UNREACHABLE", "access", "description"):
+    names = head.partition("# ---- Softkin_Names ")[2]
+    doubtful = re.findall(r"^(\w+) = .*documented = false", names, re.MULTILINE)
+    assert sorted(doubtful) == ["BAD_INPUT", "NOT_INITIALIZED", "linear", "nothing_turns"]
+    for section, keys in (
+        (names, (*doubtful, "UNREACHABLE")),
+        (rest.partition("# ---- ")[0], ("access", "description")),
+    ):
         lines = section.split("\n")
-        (at,) = (n for n, line in enumerate(lines) if line.startswith(f"{key} ="))
-        above = next(line for line in reversed(lines[:at]) if line.startswith(("#", "[")))
-        assert above.startswith("#"), key
+        for key in keys:
+            (at,) = (n for n, line in enumerate(lines) if line.startswith(f"{key} ="))
+            above = next(line for line in reversed(lines[:at]) if line.startswith(("#", "[")))
+            assert above.startswith("#"), key
     assert "Not documented" in head, "the profile of an older library"
 
 

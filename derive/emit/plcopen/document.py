@@ -11,7 +11,14 @@ import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 
 from derive.emit.plcopen.declaration import declaration_of
-from derive.emit.plcopen.interface import add_attributes, add_base_type, add_data, add_interface, add_text
+from derive.emit.plcopen.interface import (
+    add_attributes,
+    add_base_type,
+    add_data,
+    add_interface,
+    add_text,
+    add_variables,
+)
 from derive.emit.plcopen.objects import Object
 
 Folders = Mapping[str, Sequence[Object]]
@@ -36,9 +43,12 @@ def document(title: str, remark: str, folders: Folders) -> str:
     for one in objects:
         if one.kind == "TYPE":
             _data_type(data_types, one)
-        else:
+        elif one.kind != "VAR_GLOBAL":
             _pou(pous, one)
     ET.SubElement(ET.SubElement(root, "instances"), "configurations")
+    for one in objects:
+        if one.kind == "VAR_GLOBAL":
+            _global_constants(add_data(root, "globalvars"), one)
     structure = ET.SubElement(add_data(root, "projectstructure", "discard"), "ProjectStructure")
     _structure(ET.SubElement(structure, "Folder", Name=title), folders)
     _indent(root)
@@ -70,6 +80,15 @@ def _data_type(parent: ET.Element, one: Object) -> None:
     element = ET.SubElement(parent, "dataType", name=one.name)
     declared = declaration_of(one.declaration)
     add_base_type(ET.SubElement(element, "baseType"), declared)
+    add_attributes(element, declared.attributes)
+    _text_and_identifier(element, one)
+
+
+def _global_constants(parent: ET.Element, one: Object) -> None:
+    """A list of global constants. The standard has them in a resource alone; CODESYS writes them into the project."""
+    declared = declaration_of(one.declaration)
+    element = ET.SubElement(parent, "globalVars", name=one.name, constant="true")
+    add_variables(element, declared)
     add_attributes(element, declared.attributes)
     _text_and_identifier(element, one)
 

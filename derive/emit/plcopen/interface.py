@@ -42,13 +42,17 @@ def add_attributes(parent: ET.Element, attributes: Attributes) -> None:
 def add_base_type(parent: ET.Element, declared: Declaration) -> None:
     """Add the structure or the enumeration that a data type is."""
     if declared.sections:
-        structure = ET.SubElement(parent, "struct")
-        for variable in declared.sections[0].variables:
-            _add_variable(structure, variable)
+        add_variables(ET.SubElement(parent, "struct"), declared)
         return
     values = ET.SubElement(ET.SubElement(parent, "enum"), "values")
     for name, number in declared.enumerators:
         ET.SubElement(values, "value", name=name, value=str(number))
+
+
+def add_variables(parent: ET.Element, declared: Declaration) -> None:
+    """Add the variables of a declaration that has one section."""
+    for variable in declared.sections[0].variables:
+        _add_variable(parent, variable)
 
 
 def add_interface(parent: ET.Element, declared: Declaration) -> ET.Element:

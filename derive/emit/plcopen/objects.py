@@ -10,8 +10,12 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-_OPENING = re.compile(r"(FUNCTION_BLOCK|FUNCTION|PROGRAM|TYPE|METHOD|PROPERTY|GET)\b(?: PUBLIC| PRIVATE)? *(\w*)")
+_OPENING = re.compile(
+    r"(FUNCTION_BLOCK|FUNCTION|PROGRAM|TYPE|VAR_GLOBAL|METHOD|PROPERTY|GET)\b(?: PUBLIC| PRIVATE| CONSTANT)? *(\w*)"
+)
 _HOLDERS = ("FUNCTION_BLOCK", "PROGRAM", "PROPERTY")
+_WHOLE = {"TYPE": "END_TYPE", "VAR_GLOBAL": "END_VAR"}
+"""The objects that are a declaration alone, with the line that ends it."""
 _RULER_WIDTH = 110
 
 
@@ -32,12 +36,12 @@ class Object:
             yield from member.parts()
 
 
-def objects_of(text: str) -> tuple[Object, ...]:
-    """The objects of a text in their order.
+def objects_of(text: str, list_name: str = "") -> tuple[Object, ...]:
+    """The objects of a text in their order. A list of global constants has no name in its text: it gets the one given.
 
     Raises `ValueError` for an object without an end, and for text outside of all objects.
     """
-    return tuple(_Reader(text).objects())
+    return tuple(_Reader(text, list_name).objects())
 
 
 def ruled(objects: Sequence[Object]) -> str:
@@ -46,8 +50,9 @@ def ruled(objects: Sequence[Object]) -> str:
 
 
 class _Reader:
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, list_name: str) -> None:
         self._lines = iter(text.split("\n"))
+        self._list_name = list_name
 
     def objects(self) -> Iterator[Object]:
         own: list[str] = []
@@ -65,22 +70,25 @@ class _Reader:
         """The object that the last of these lines opens; the lines above it are its comment and its pragmas."""
         opening = own[-1]
         kind, name = _opened(opening)
+        end = _WHOLE.get(kind, f"END_{kind}")
+        if kind == "VAR_GLOBAL" and not self._list_name:
+            raise ValueError(f"{opening!r} stands in no object that has a name")
         members: list[Object] = []
         for line in self._lines:
-            if line == f"END_{kind}":
-                return _made(kind, name, own if kind != "TYPE" else [*own, line], members)
+            if line == end:
+                return _made(kind, name or self._list_name, [*own, line] if kind in _WHOLE else own, members)
             own.append(line)
             if kind in _HOLDERS and _OPENING.match(line):
                 lead = _lead(own)
                 del own[len(own) - len(lead) :]
                 members.append(self._object(lead))
-        raise ValueError(f"{opening!r} has no END_{kind}")
+        raise ValueError(f"{opening!r} has no {end}")
 
 
 def _opened(line: str) -> tuple[str, str]:
     found = _OPENING.match(line)
     assert found is not None
-    return found.group(1), found.group(2) or "Get"
+    return found.group(1), found.group(2) or ("Get" if found.group(1) == "GET" else "")
 
 
 def _lead(lines: Sequence[str]) -> list[str]:
@@ -117,7 +125,7 @@ def _lines(one: Object, path: str) -> Iterator[str]:
         yield one.implementation
     if one.implementation or not one.members:
         yield _ruler()
-    if one.kind != "TYPE":
+    if one.kind not in _WHOLE:
         yield f"END_{one.kind}"
 
 

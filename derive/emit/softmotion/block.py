@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from derive.description.mechanism import Joint, Kind
 from derive.emit.softmotion.inputs import Input, parameter_input
@@ -15,13 +15,14 @@ from derive.emit.st.program import Printed
 from derive.ir.constants import (
     SINGULAR,
 )
+from derive.ir.passes import needed_for
 from derive.ir.program import (
     Program,
 )
 from derive.ir.types import type_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
+from derive.kinematics.parameters import CHECK_LIMITS, TIE_OF_LENGTHS, chooses_by_lengths
 
 
 @dataclass(frozen=True)
@@ -200,11 +201,14 @@ def constants(kinematics: Kinematics) -> tuple[str, ...]:
 
 
 def setup_of(kinematics: Kinematics, *, has_settings: bool) -> Program:
-    """The program of Initialize. Where drives pass their limits, AxisSettings computes what depends on these."""
-    if not has_settings:
-        return kinematics.setup
-    assert kinematics.setup_less_windows is not None
-    return kinematics.setup_less_windows
+    """The program of Initialize, with nothing that no method reads. Where drives pass their limits, AxisSettings
+    computes what depends on these.
+    """
+    setup = kinematics.setup_less_windows if has_settings else kinematics.setup
+    assert setup is not None
+    stored = set(constants(kinematics)) | {CHECK_LIMITS}
+    outputs = tuple(o for o in setup.outputs if o.name in stored)
+    return replace(setup, body=needed_for(setup.body, [o.value for o in outputs]), outputs=outputs)
 
 
 def direct(kinematics: Kinematics, setup: Program) -> dict[str, str]:

@@ -9,7 +9,7 @@ from derive.emit.softmotion.block import Block
 from derive.emit.st.contract import Parameter, Signature
 from derive.emit.st.expression import literal
 from derive.emit.st.layout import indented, wrapped
-from derive.emit.st.names import joined, stored_name
+from derive.emit.st.names import parameter_name, stored_name
 from derive.ir.constants import (
     TIE,
 )
@@ -53,10 +53,12 @@ def branch_call(public: Signature, program: Program, kinematics: Kinematics, blo
         constant.append(Parameter("VAR_IN_OUT CONSTANT", "rot", "ARRAY[1..3, 1..3] OF LREAL"))
     if not any(j.reference.name in read for j in kinematics.mechanism.joints):
         constant = [p for p in constant if p.name != "aRef"]
+    if not read & {"x", "y", "z"}:
+        constant = [p for p in constant if p.name not in ("f", "v_MCS")]
     inputs = [a for a in _open_inputs(kinematics, block) if a[0] in read]
-    numbers = [Parameter("VAR_INPUT", joined(name), "INT") for name, _ in inputs]
+    numbers = [Parameter("VAR_INPUT", parameter_name(name), "INT") for name, _ in inputs]
     arguments = [Argument(p.name, p.name) for p in constant]
-    arguments += [Argument(joined(name), value) for name, value in inputs]
+    arguments += [Argument(parameter_name(name), value) for name, value in inputs]
     method = "SolveOffsetBranch" if public.name.endswith("_Offset") else "SolveBranch"
     signature = Signature(method, public.returns, (axes, *constant, *numbers), "PRIVATE")
     distance, tie = _distance(kinematics, block, read), _tie(kinematics)

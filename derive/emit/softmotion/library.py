@@ -35,6 +35,7 @@ from derive.ir.constants import (
     PIVOT,
     SOLVABLE,
 )
+from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import NO_MEANING, NOT_INITIALIZED
 
@@ -101,8 +102,11 @@ def _objects(
     """The objects of every file, by the path without its ending."""
     rotation = rotation_function(contract)
     for path in sorted((TEMPLATES / _FOLDER / _SHARED).glob("*.st.j2")):
-        text = templates.get_template(f"{_SHARED}/{path.name}").render(contract.spelling, rotation=rotation)
-        yield f"{_SHARED}/{path.name.removesuffix('.st.j2')}", objects_of(text)
+        text = templates.get_template(f"{_SHARED}/{path.name}").render(
+            contract.spelling, rotation=rotation, names=contract.names
+        )
+        name = path.name.removesuffix(".st.j2")
+        yield f"{_SHARED}/{name}", objects_of(text, name)
     for part in parts:
         yield part["row"]["path"], objects_of(part["text"])
     yield from _self_tests([part["test"] for part in parts if part["test"] is not None], contract, templates)
@@ -153,6 +157,7 @@ def _templates() -> Environment:
         solvable=literal(float(SOLVABLE)),
         smallest=literal(1.0 / float(SOLVABLE)),
         search=SEARCH,
+        statuses=[status.name for status in Status],
         not_initialized=NOT_INITIALIZED,
         no_meaning=NO_MEANING,
     )
@@ -160,9 +165,11 @@ def _templates() -> Environment:
 
 
 def _unit(kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> str:
+    methods = methods_of(kinematics, block, contract, templates)
     return templates.get_template("block.st.j2").render(
         contract.spelling,
         block=block,
+        reads_degree=any("DEGREE" in method.text for method in methods),
         description=description(kinematics, block, contract.spelling["pictures"]["reference"], templates),
-        methods=methods_of(kinematics, block, contract, templates),
+        methods=methods,
     )

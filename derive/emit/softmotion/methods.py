@@ -11,7 +11,7 @@ from jinja2 import Environment
 from derive.emit.softmotion.block import Block, constants, direct, setup_of
 from derive.emit.softmotion.calls import BranchCall, branch_call
 from derive.emit.st.contract import Contract, Parameter, Signature
-from derive.emit.st.names import input_name, joined, stored_name
+from derive.emit.st.names import input_name, parameter_name, stored_name
 from derive.emit.st.program import Printed, printed
 from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal
 from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
@@ -84,13 +84,13 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
     for index, joint in enumerate(kinematics.mechanism.joints):
         spelled[joint.axis.name] = f"a.a{index}"
         spelled[joint.reference.name] = f"aRef.a{index}"
-        spelled[joint.turn.name] = joined(joint.turn.name)
+        spelled[joint.turn.name] = parameter_name(joint.turn.name)
     for axis in "xyz":
         spelled[f"flange_axis_{axis}"], spelled[f"base_axis_{axis}"] = (
             f"flangeAxis.d{axis.upper()}",
             f"baseAxis.d{axis.upper()}",
         )
-    spelled |= {f"sigma_{b.name}": joined(f"sigma_{b.name}") for b in kinematics.branches}
+    spelled |= {f"sigma_{b.name}": parameter_name(f"sigma_{b.name}") for b in kinematics.branches}
     return spelled | {f"r{r}{c}": f"rot[{r}, {c}]" for r in (1, 2, 3) for c in (1, 2, 3)}
 
 
@@ -113,14 +113,17 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
             if name == "Initialize" and block.has_settings:
                 yield _Source(signature_of(LIMITS_OF_AXIS, {}, contract), LIMITS_OF_AXIS, is_shared=True)
             if name == "GetPositionFromOrientation3":
-                yield _Source(_end_point(known[name], contract))
+                yield _Source(_end_point(known[name], block, contract))
             continue
         call = branch_call(known[name], program, kinematics, block)
         yield _Source(known[name], call=call)
-        yield _Source(_explained(call.signature) if name == "CartesianToAxes" else call.signature, program)
+        is_plain = name == "CartesianToAxes"
+        yield _Source(_explained(call.signature, block) if is_plain else call.signature, program)
         yield from _shared(program, kinematics, contract, ready)
-        if name == "CartesianToAxes":
-            yield _Source(_explained(_check_limits(contract), turns=bool(block.periods)), kinematics.limits)
+        if is_plain:
+            yield _Source(
+                _explained(_check_limits(block, contract), block, turns=bool(block.periods)), kinematics.limits
+            )
 
 
 def _programs(kinematics: Kinematics, block: Block, names: Sequence[str]) -> dict[str, Program | None]:
@@ -150,8 +153,10 @@ def _quotable(text: str) -> str:
     return text.replace("$", "$$").replace("'", "$'")
 
 
-def _explained(signature: Signature, *, turns: bool = False) -> Signature:
-    """The signature with the further outputs that Diagnose reads."""
+def _explained(signature: Signature, block: Block, *, turns: bool = False) -> Signature:
+    """The signature with the further outputs that Diagnose reads. A block without axes never refuses."""
+    if not block.axes:
+        return signature
     outputs = [Parameter("VAR_OUTPUT", REASON, "INT"), Parameter("VAR_OUTPUT", MISSING, "LREAL")]
     outputs += [Parameter("VAR_OUTPUT", TURN, "INT")] if turns else []
     return replace(signature, parameters=(*signature.parameters, *outputs))
@@ -174,15 +179,18 @@ def _names(block: Block, contract: Contract) -> list[str]:
     return sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))
 
 
-def _check_limits(contract: Contract) -> Signature:
-    axes = contract.signatures["Jacobian"].parameters[1]
-    return Signature("TestLimits", contract.spelling["types"]["error"], (axes,), "PRIVATE")
+def _check_limits(block: Block, contract: Contract) -> Signature:
+    axes = contract.signatures["Jacobian"].parameters[1:2] if block.axes else ()
+    return Signature("TestLimits", contract.spelling["types"]["error"], axes, "PRIVATE")
 
 
-def _end_point(public: Signature, contract: Contract) -> Signature:
-    """The signature of the private method that finds the end point on a flange of known orientation."""
+def _end_point(public: Signature, block: Block, contract: Contract) -> Signature:
+    """The signature of the private method that finds the end point on a flange of known orientation. Of a block without
+    axes it is the same point for every orientation.
+    """
+    unread = () if block.axes else ("mR", "aRef", "cd")
     flange = Parameter("VAR_IN_OUT CONSTANT", "mFlange", contract.spelling["types"]["matrix"])
-    kept = (p for p in public.parameters if p.name != "oriInfo")
+    kept = (p for p in public.parameters if p.name not in {"oriInfo", *unread})
     ordered = sorted((*kept, flange), key=lambda p: p.name != "v")
     return Signature("EndPointOnFlange", public.returns, tuple(ordered), "PRIVATE")
 
@@ -201,6 +209,11 @@ def _method(
         context["program"] = program = _printed(source, source.program, kinematics, block, contract)
         own = own_names(source.program, spelled_inputs(kinematics))
         context["results"] = [(own[o], text) for o, text in program.outputs.items() if o in own and own[o] != text]
+        context["unexplained"] = [
+            (p.name, "0.0" if p.type == "LREAL" else "0")
+            for p in source.signature.parameters
+            if p.name in (REASON, MISSING, TURN) and f"{p.name} :=" not in program.body
+        ]
     template = "Shared" if source.is_shared and source.search is None else name
     text = templates.get_template(f"methods/{template}.st.j2").render(contract.spelling, **context)
     return Method(source.signature.head(), _tidy(text))

@@ -54,14 +54,36 @@ class Interface:
 
 
 @dataclass(frozen=True)
+class Constant:
+    """A global constant that stands for an enumerator of a library."""
+
+    name: str
+    type: str
+    value: str
+    meaning: str
+    """What it is, and where no document names the enumerator, that none does."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """Constants of one type, under a title."""
+
+    title: str
+    constants: tuple[Constant, ...]
+
+
+@dataclass(frozen=True)
 class Contract:
     """Everything that is known of SoftMotion."""
 
     interfaces: Mapping[str, Interface]
     own: Mapping[str, Signature]
     omits: frozenset[str]
+    names: tuple[Group, ...]
+    """The list of global constants."""
     spelling: Mapping[str, Mapping[str, Any]]
-    """The other tables of the file: errors, types, enumerators and others."""
+    """The other tables of the file: types, functions and others. In those of errors and enumerators each is spelled as
+    the constant of the list that stands for it."""
 
     @property
     def signatures(self) -> dict[str, Signature]:
@@ -97,9 +119,28 @@ def load(profile: str | None = None, file: Path = _FILE) -> Contract:
     interfaces = {key: _interface(key, table) for key, table in data.pop("interfaces").items()}
     newest = _version(profiles[name]["library"])
     newer = {interface.name for interface in interfaces.values() if interface.since > newest}
-    return Contract(
-        interfaces, _signatures(data.pop("own")), frozenset(newer) | frozenset(profiles[name]["omits"]), data
-    )
+    omits = frozenset(newer) | frozenset(profiles[name]["omits"])
+    tables = data.pop("names")
+    listed = tables.pop("list")
+    groups = {key: _constants(table) for key, table in tables.items()}
+    data |= {key: {k: f"{listed}.{c.name}" for k, c in inside.items()} for key, inside in groups.items()}
+    names = tuple(Group(tables[key]["title"], tuple(inside.values())) for key, inside in groups.items())
+    return Contract(interfaces, _signatures(data.pop("own")), omits, names, data)
+
+
+def _constants(table: Mapping[str, Any]) -> dict[str, Constant]:
+    """The constants of a group by the name under which templates know them."""
+    kind = table["type"]
+    entries = {key: entry for key, entry in table.items() if key not in ("title", "type")}
+    return {
+        key: Constant(
+            entry["name"],
+            kind,
+            entry["value"] if kind == "BOOL" else f"{kind}.{entry['value']}",
+            entry["meaning"] + ("" if entry.get("documented", True) else "; not documented"),
+        )
+        for key, entry in entries.items()
+    }
 
 
 def _interface(name: str, table: Mapping[str, Any]) -> Interface:

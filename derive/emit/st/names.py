@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 
 from derive.description.mechanism import Parameter, Role
@@ -17,9 +17,9 @@ _PREFIX = {Role.FLAG: "x", Role.SIGN: "i"}
 
 TEMPLATE_LOCALS = frozenset(
     """
-    apart baseaxis branch candidate column configuration distance drivelimited drivelower driveupper failure flange
-    flangeaxis found frame highest identity least lowest middle nothing order ownlower ownunlimited ownupper projected
-    relative rot rotation row single slot solution space status total tried
+    apart baseaxis branch candidate column configbytes distance drivelimited drivelower driveupper failure flange
+    flangeaxis found frame highest identity issingle least lowest middle nothing order ownlower ownunlimited
+    ownupper projected relative rot rotation row slot solution space status total tried
     """.split()
 )
 """The variables that the templates of methods declare."""
@@ -29,6 +29,18 @@ def joined(name: str) -> str:
     """`link_length_1` → `linkLength1`."""
     first, *rest = name.split("_")
     return first + "".join(capitalized(word) for word in rest)
+
+
+def parameter_name(name: str) -> str:
+    """The parameter of a private method: `link_length_1` → `linkLength1`, and another spelling for a reserved name."""
+    return _free(joined(name), reserved())
+
+
+def _free(spelled: str, used: Collection[str]) -> str:
+    """The spelling, with a word behind it while it is used, in whatever case."""
+    while spelled.lower() in used:
+        spelled += "Value"
+    return spelled
 
 
 def capitalized(name: str) -> str:
@@ -62,9 +74,7 @@ def spellings(names: Iterable[str], taken: Iterable[str]) -> dict[str, str]:
     used = {t.lower() for t in taken} | reserved() | TEMPLATE_LOCALS
     found: dict[str, str] = {}
     for name in names:
-        spelled = joined(name)
-        while spelled.lower() in used:
-            spelled += "Value"
+        spelled = _free(joined(name), used)
         used.add(spelled.lower())
         found[name] = spelled
     return found

@@ -14,7 +14,7 @@ import sympy as sp
 from derive.emit.st.contract import Parameter, Signature
 from derive.emit.st.expression import literal
 from derive.emit.st.layout import packed
-from derive.emit.st.names import joined
+from derive.emit.st.names import parameter_name
 from derive.emit.st.shared import method_name
 from derive.ir import cells, roots
 from derive.ir.constants import FINISHED, TRIALS
@@ -99,9 +99,9 @@ def search_text(search: FindRoot) -> SearchText:
         "freed": "freedAt[nearest]",
         "freed_angle": "angles[nearest]",
     }
-    outputs = [joined(o.name) for o in search.trial.outputs]
-    found = [joined(o.name) for o in search.finish.outputs]
-    targets = [joined(n.name) for n in search.names]
+    outputs = [parameter_name(o.name) for o in search.trial.outputs]
+    found = [parameter_name(o.name) for o in search.finish.outputs]
+    targets = [parameter_name(n.name) for n in search.names]
     return SearchText(
         given=tuple(given),
         chosen=tuple(chosen),
@@ -119,14 +119,16 @@ def search_text(search: FindRoot) -> SearchText:
 def _given(search: FindRoot) -> tuple[list[str], list[str]]:
     """The real arguments and the signs of a trial."""
     given = [s for s in search.given(search.trial) if s not in PLACE]
-    return [joined(s.name) for s in given if not is_count(s)], [joined(s.name) for s in given if is_count(s)]
+    return [parameter_name(s.name) for s in given if not is_count(s)], [
+        parameter_name(s.name) for s in given if is_count(s)
+    ]
 
 
 def _arguments(search: FindRoot, program: Program, places: Mapping[str, str]) -> list[str]:
     """The arguments of a program: a coordinate of the trial, or an argument of the scan by its name."""
     found = []
     for s in search.given(program):
-        name = joined(s.name)
+        name = parameter_name(s.name)
         found.append(f"{name} := {places.get(s.name, places.get(name, name))}")
     return found
 

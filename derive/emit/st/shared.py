@@ -14,7 +14,7 @@ import sympy as sp
 from derive.emit.st.contract import Contract, Parameter, Signature
 from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import indented, packed
-from derive.emit.st.names import capitalized, joined, type_name
+from derive.emit.st.names import capitalized, parameter_name, type_name
 from derive.emit.st.refusal import Refusal
 from derive.ir.program import Call, Program, Status
 from derive.ir.types import type_of
@@ -38,9 +38,11 @@ def signature_of(program: Program, spelled: Mapping[str, str], contract: Contrac
             f"{program.name}: a shared program reads axis values and its own arguments, not {sorted(whole)}"
         )
     arguments = [
-        Parameter("VAR_INPUT", joined(s.name), type_name(type_of(s))) for s in program.inputs if s.name not in spelled
+        Parameter("VAR_INPUT", parameter_name(s.name), type_name(type_of(s)))
+        for s in program.inputs
+        if s.name not in spelled
     ]
-    results = [Parameter("VAR_OUTPUT", joined(o.name), type_name(type_of(o.value))) for o in program.outputs]
+    results = [Parameter("VAR_OUTPUT", parameter_name(o.name), type_name(type_of(o.value))) for o in program.outputs]
     given = (axes, *arguments) if whole else tuple(arguments)
     return Signature(method_name(program), contract.spelling["types"]["error"], (*given, *results), "PRIVATE")
 
@@ -48,13 +50,13 @@ def signature_of(program: Program, spelled: Mapping[str, str], contract: Contrac
 def own_names(program: Program, spelled: Mapping[str, str]) -> dict[str, str]:
     """The spelling of the arguments and the results of a shared program, which are parameters of its method."""
     own = [s.name for s in program.inputs if s.name not in spelled] + [o.name for o in program.outputs]
-    return {name: joined(name) for name in own}
+    return {name: parameter_name(name) for name in own}
 
 
 def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterator[str]:
     """The lines that call the method, and pass on its refusal."""
     arguments = list(dict.fromkeys(_argument(name, value, printer) for name, value in call.given))
-    results = [f"{joined(name.name)} => {printer.name(name)}" for name in call.names]
+    results = [f"{parameter_name(name.name)} => {printer.name(name)}" for name in call.names]
     yield from _packed(f"{OUTCOME} := {method_name(call.program)}(", arguments, results)
     yield f"IF {OUTCOME} <> {refusal.errors[Status.OK.name]} THEN"
     yield from indented(refusal.answering(OUTCOME))
@@ -66,7 +68,7 @@ def _argument(name: sp.Symbol, value: sp.Expr, printer: StructuredText) -> str:
     if value == name and "." in text:
         whole = text.split(".")[0]
         return f"{whole} := {whole}"
-    return f"{joined(name.name)} := {text}"
+    return f"{parameter_name(name.name)} := {text}"
 
 
 def _packed(head: str, arguments: Sequence[str], results: Sequence[str]) -> list[str]:

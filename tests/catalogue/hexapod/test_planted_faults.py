@@ -46,7 +46,7 @@ WRONG = {
     "two outputs exchanged": Fault("PUBLIC AxesToCartesian", "x => x, y => y", "x => y, y => x"),
     "another start": Fault("PUBLIC AxesToCartesian", "startX := homeX", "startX := homeX + 1.0E6"),
     "a refusal that is not handed on": Fault("PUBLIC AxesToCartesian", ":= outcome;",
-        ":= SM3_Error.SMC_ERROR.SMC_NO_ERROR;"),
+        ":= Softkin_Names.NoError;"),
     "a column of the Jacobian": Fault(_JACOBIAN, "coefficients[2, 4] := moment2X", "coefficients[2, 4] := moment3X"),
     "a Jacobian per platform radius": Fault(_JACOBIAN, "*oneByPlatformRadius", ""),
     "a margin": Fault("PUBLIC IsSingularity", "ABS(determinant) < 0.001", "ABS(determinant) < 10.0"),

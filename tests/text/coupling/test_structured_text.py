@@ -141,8 +141,8 @@ def with_orientation(pair: OrientationPair, sample: Sample) -> None:
     direction = tuple(row[2] for row in sample.rotation)
     z = (0.0, 0.0, 1.0)
     expected, how = {
-        Turning.NONE: (("zero", IDENTITY, z, z), ("FLANGE", False)),
-        Turning.ABOUT_Z: (("one", IDENTITY, z, z), ("FLANGE", True)),
+        Turning.NONE: (("zero", IDENTITY, z, z), ("Flange", False)),
+        Turning.ABOUT_Z: (("one", IDENTITY, z, z), ("Flange", True)),
         Turning.DIRECTION: (("one", sample.rotation, direction, z), ("MCS", False)),
         Turning.FULL: (("zero", sample.rotation, direction, z), ("MCS", True)),
     }[turning]

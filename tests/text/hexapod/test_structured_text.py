@@ -117,7 +117,7 @@ def test_the_other_assembly_mode_is_refused() -> None:
 
 def ending_where_nothing_holds() -> Library:
     """The unit with a search that ends at a determinant of 0. Where two poses meet, a real one ends at about 1e-6."""
-    written = "\nFindPlatform := SM3_Error.SMC_ERROR.SMC_NO_ERROR;"
+    written = "\nFindPlatform := Softkin_Names.NoError;"
     text = text_of(MECHANISM)
     assert text.count(written) == 1
     return compiled_text(file_of(MECHANISM), text.replace(written, "\ndeterminant := 0.0;" + written[1:]))

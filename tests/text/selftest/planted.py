@@ -56,7 +56,7 @@ def _in_method(text: str, method: str, pattern: str, faults: list[str]) -> str:
         if place.startswith("IF"):
             return f"IF NOT checkLimits OR ({chosen}) THEN\n"
         if place == "a := solution":
-            refusal = "CartesianToAxes := SM3_Error.SMC_ERROR.SMC_TRAFO_INVALID_COUPLING;"
+            refusal = "CartesianToAxes := Softkin_Names.InvalidCoupling;"
             return f"IF {chosen} THEN\n  {refusal}\n  RETURN;\nEND_IF\n{found.group()}"
         return f"{found.group()}{place} := {place} + SEL({chosen}, 0.0, 0.0001);\n"
 
