@@ -13,7 +13,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from derive.description.joints import Kind
-from derive.importing.formats.documents import number, numbers, parsed, required
+from derive.importing.formats.documents import number, numbers, parsed, required, rounding
 from derive.importing.formats.mimics import Follower, driven
 from derive.importing.formats.orientations import File, places_of
 from derive.importing.robot import (
@@ -182,9 +182,10 @@ def _joint_steps(file: File, name: str, stated: Mapping[str, str], followers: Ma
     size = math.sqrt(sum(v * v for v in direction))
     if size < 1e-9:
         raise UnreadableRobot(f"{file.path}: joint {name!r}: its axis has no direction")
-    drives, offset = driven(file.path, name, followers)
+    by = driven(file.path, name, followers)
     along: Triple = (direction[0] / size, direction[1] / size, direction[2] / size)
-    moving = Moving(kind, along, drives, offset - _start(file, name, stated))
+    off = by.rounding + _start_rounding(file, name, stated)
+    moving = Moving(kind, along, by.drives, by.offset - _start(file, name, stated), off)
     return [Step(name, (Shifted((x, y, z)),), moving), Step(name, (Shifted((-x, -y, -z)),))]
 
 
@@ -192,6 +193,12 @@ def _start(file: File, name: str, stated: Mapping[str, str]) -> float:
     """The value of a joint as the file draws it."""
     unit = file.scale if _kind(file, name, stated) is Kind.LINEAR else file.degree
     return number(file.path, stated.get("ref", "0"), f"joint {name!r}, ref") * unit
+
+
+def _start_rounding(file: File, name: str, stated: Mapping[str, str]) -> float:
+    """How far that value may be from one that is rounded: in degrees 15 is written exactly."""
+    is_radian = _kind(file, name, stated) is Kind.ROTARY and file.degree == 1.0
+    return rounding(stated.get("ref", "0")) if is_radian else 0.0
 
 
 def _kind(file: File, name: str, stated: Mapping[str, str]) -> Kind:
@@ -222,7 +229,8 @@ def _followers(file: File, joints: Mapping[str, Mapping[str, str]]) -> dict[str,
         own, leader = required(file.path, equality, "joint1"), equality.get("joint2")
         if equality.get("active") == "false" or own not in joints:
             continue
-        numbers_ = [number(file.path, w, f"equality of {own!r}") for w in equality.get("polycoef", "0 1").split()]
+        words = equality.get("polycoef", "0 1").split()
+        numbers_ = [number(file.path, w, f"equality of {own!r}") for w in words]
         a0, a1, *rest = (*numbers_, 0.0, 0.0)
         if any(rest) or leader is None or leader not in joints:
             raise UnreadableRobot(
@@ -231,7 +239,9 @@ def _followers(file: File, joints: Mapping[str, Mapping[str, str]]) -> dict[str,
         sizes = [file.scale if _kind(file, n, joints[n]) is Kind.LINEAR else 1.0 for n in (own, leader)]
         multiplier = a1 * sizes[0] / sizes[1]
         start = _start(file, own, joints[own]) - multiplier * _start(file, leader, joints[leader])
-        found[own] = Follower(leader, multiplier, a0 * sizes[0] + start)
+        roundings = [_start_rounding(file, n, joints[n]) for n in (own, leader)]
+        off = rounding(words[0]) + roundings[0] + abs(multiplier) * roundings[1]
+        found[own] = Follower(leader, multiplier, a0 * sizes[0] + start, off)
     return found
 
 

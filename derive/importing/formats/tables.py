@@ -11,10 +11,11 @@ import math
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 
 from derive.description.joints import Kind
-from derive.importing.formats.documents import number, text_of
+from derive.importing.formats.documents import number, rounding, text_of
 from derive.importing.robot import Axis, Moving, Place, Robot, Shifted, Step, Turned, UnreadableRobot
 
 _SETTINGS: Mapping[str, tuple[str, ...]] = {
@@ -65,7 +66,7 @@ def read_table(path: Path, base: str | None, tip: str | None, scale: float) -> R
 
 def _toml(path: Path) -> tuple[dict[str, str], tuple[Mapping[str, object], ...]]:
     try:
-        data = tomllib.loads(text_of(path))
+        data = tomllib.loads(text_of(path), parse_float=Decimal)
     except tomllib.TOMLDecodeError as problem:
         raise UnreadableRobot(f"{path}: broken TOML: {problem}") from None
     rows = data.get("joints", [])
@@ -118,13 +119,18 @@ def _number(table: Table, index: int, entry: str, default: float = 0.0) -> float
 def _steps(table: Table, index: int, kinds: Mapping[str, Kind | None]) -> tuple[Step, ...]:
     theta, alpha = (_number(table, index, k) * table.degree for k in ("theta", "alpha"))
     d, a = (_number(table, index, k) * table.scale for k in ("d", "a"))
-    turned: tuple[Place, ...] = (Turned(2, theta), Shifted((0.0, 0.0, d)))
-    across: tuple[Place, ...] = (Shifted((a, 0.0, 0.0)), Turned(0, alpha))
+    turned: tuple[Place, ...] = (Turned(2, theta, _rounding(table, index, "theta")), Shifted((0.0, 0.0, d)))
+    across: tuple[Place, ...] = (Shifted((a, 0.0, 0.0)), Turned(0, alpha, _rounding(table, index, "alpha")))
     name, kind = _name(table, index), _kind(table, index)
     moving = None if kind is None else Moving(kind, (0.0, 0.0, 1.0), _drives(table, index, kinds))
     if table.settings["convention"] == "modified":
         return (Step(name, (*across[::-1], *turned), moving),)
     return Step(name, turned, moving), Step(name, across)
+
+
+def _rounding(table: Table, index: int, entry: str) -> float:
+    """How far an angle may be from one that is rounded: in degrees 15 is written exactly."""
+    return rounding(str(table.rows[index].get(entry, 0))) if table.settings["angles"] == "radians" else 0.0
 
 
 def _drives(table: Table, index: int, kinds: Mapping[str, Kind | None]) -> tuple[tuple[str, float], ...]:
