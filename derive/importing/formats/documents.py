@@ -23,6 +23,14 @@ def parsed(path: Path) -> Element:
         raise UnreadableRobot(f"{path}:{problem.position[0]}: broken XML: {problem.msg}") from None
 
 
+def without_namespace(root: Element) -> Element:
+    """The root with its elements named without the namespace that the root has: `xmlns=` says nothing of a robot."""
+    space, closing, _ = root.tag.rpartition("}")
+    for element in root.iter() if closing else ():
+        element.tag = element.tag.removeprefix(space + closing)
+    return root
+
+
 def text_of(path: Path) -> str:
     """The text of a file. Raises `UnreadableRobot` where there is no such file, or it is no text."""
     try:

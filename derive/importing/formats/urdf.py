@@ -12,7 +12,16 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from derive.description.joints import Kind
-from derive.importing.formats.documents import limit, number, numbers, parsed, required, rounding, roundings
+from derive.importing.formats.documents import (
+    limit,
+    number,
+    numbers,
+    parsed,
+    required,
+    rounding,
+    roundings,
+    without_namespace,
+)
 from derive.importing.formats.mimics import Follower, driven
 from derive.importing.formats.transmissions import transmission_notes
 from derive.importing.formats.trees import Edge, ends_of, path_between
@@ -36,7 +45,7 @@ _NOT_SERIAL = {"floating": "moves freely in space", "planar": "moves freely in a
 
 def read_urdf(path: Path, base: str | None, tip: str | None, scale: float) -> Robot:
     """The chain between two links; without a name the root, and the one end there is. scale: our unit in metres."""
-    root = parsed(path)
+    root = without_namespace(parsed(path))
     if root.tag != "robot":
         raise UnreadableRobot(f"{path}: its root is <{root.tag}>, not <robot>: this is no URDF")
     _refuse_macros(path, root)
