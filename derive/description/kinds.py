@@ -11,17 +11,6 @@ import sympy as sp
 from derive.description.errors import DescriptionError
 
 
-def each(what: str, given: object, kind: type, example: str) -> tuple[object, ...]:
-    """Several parts of one kind, as a tuple."""
-    if isinstance(given, kind) or not isinstance(given, list | tuple):
-        comma = ": one alone needs a comma behind it" if isinstance(given, kind) else ""
-        raise DescriptionError(f"{what} must be several, as in {what}={example}{comma}; it is {told(given)}")
-    for part in given:
-        if not isinstance(part, kind):
-            raise DescriptionError(f"{what} holds {told(part)}, and no {kind.__name__}: write {what}={example}")
-    return tuple(given)
-
-
 def expressions(what: str, given: object) -> tuple[sp.Expr, ...]:
     """Several expressions, as a tuple."""
     if not isinstance(given, Iterable) or isinstance(given, str):
@@ -38,12 +27,6 @@ def expression(what: str, given: object) -> sp.Expr:
     if not isinstance(found, sp.Expr):
         raise DescriptionError(f"{what} holds {given}, which is true or false: state the quantity whose sign tells")
     return found
-
-
-def one(what: str, given: object, kind: type, example: str) -> None:
-    """One part of a kind."""
-    if not isinstance(given, kind):
-        raise DescriptionError(f"{what} is {told(given)}, and no {kind.__name__}: write {example}")
 
 
 def number(what: str, given: object) -> str | None:
