@@ -11,10 +11,8 @@ import sympy as sp
 from derive.description.errors import DescriptionError
 
 
-def expressions(what: str, given: object) -> tuple[sp.Expr, ...]:
+def expressions(what: str, given: Iterable[object]) -> tuple[sp.Expr, ...]:
     """Several expressions, as a tuple."""
-    if not isinstance(given, Iterable) or isinstance(given, str):
-        raise DescriptionError(f"{what} must be several, as in {what}=(expression,); it is {told(given)}")
     return tuple(expression(what, part) for part in given)
 
 
@@ -34,6 +32,12 @@ def number(what: str, given: object) -> str | None:
     if not isinstance(given, Real) or isinstance(given, bool):
         return f"{what} is {told(given)}, and no number"
     return None if not math.isnan(float(given)) else f"{what} is not a number (NaN)"
+
+
+def pair(what: str, given: object) -> str | None:
+    """What to say of what should be the two ends of a range; None where it is that."""
+    is_pair = isinstance(given, tuple | list) and len(given) == 2 and not any(number("", end) for end in given)
+    return None if is_pair else f"its {what} is {told(given)}, and not two numbers: as in {what}=(-90.0, 90.0)"
 
 
 def told(given: object) -> str:

@@ -40,7 +40,8 @@ def neighbours(raw: Arm, arm: Arm, names: Sequence[str], limit: float, unit: str
         stands, back = (relation(*a.lines[k : k + 2]) for a in (raw, arm))
         degrees = float(np.degrees(stands.angle))
         is_slide = Kind.LINEAR in (arm.lines[k].kind, arm.lines[k + 1].kind)
-        distance = "a slide" if is_slide else f"distance {stands.distance:.6g} {unit}"
+        apart = stands.distance if stands.distance > raw.rounding else 0.0
+        distance = "a slide" if is_slide else f"distance {apart:.6g} {unit}"
         hints = list(_angle_hints(stands.angle, back.angle, limit))
         if not is_slide and back.angle > limit:
             hints += _distance_hints(stands.distance / raw.size, back.distance / arm.size, limit)
