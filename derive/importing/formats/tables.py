@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -26,6 +27,8 @@ _SETTINGS: Mapping[str, tuple[str, ...]] = {
 _KINDS = {"revolute": Kind.ROTARY, "prismatic": Kind.LINEAR, "fixed": None}
 _NUMBERS = ("theta", "d", "a", "alpha", "lower", "upper")
 _ENTRIES = ("name", "type", *_NUMBERS, "coupling")
+_IN_PI = re.compile(r"([+-]?)(?:([1-9]\d*)\*)?pi(?:/([1-9]\d*))?")
+"""An angle in radians as people write it: pi/2, -3*pi/4."""
 _METRES = {"mm": 1e-3, "m": 1.0}
 
 
@@ -72,27 +75,39 @@ def _toml(path: Path) -> tuple[dict[str, str], tuple[Mapping[str, object], ...]]
     rows = data.get("joints", [])
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise UnreadableRobot(f"{path}: its rows must be tables [[joints]]")
-    return {k: str(v) for k, v in data.items() if k != "joints"}, tuple(rows)
+    return {k.lower(): _setting(k, str(v)) for k, v in data.items() if k != "joints"}, tuple(
+        {k.lower(): value for k, value in row.items()} for row in rows
+    )
+
+
+def _setting(key: str, value: str) -> str:
+    """The value of a setting, whatever its capital letters; a name keeps them."""
+    return value if key.lower() == "name" else value.lower()
 
 
 def _csv(path: Path) -> tuple[dict[str, str], tuple[Mapping[str, object], ...]]:
-    lines = [line.strip() for line in text_of(path).splitlines() if line.strip(" ,;\t")]
+    lines = [_unquoted(line.strip(" ")) for line in text_of(path).splitlines() if line.strip(" ,;\t")]
     settings = {}
     for line in lines:
         key, colon, value = line.strip("# ").partition(":")
         if line.startswith("#") and colon:
-            settings[key.strip()] = value.strip(" ,;")
+            settings[key.strip().lower()] = _setting(key.strip(), value.strip(" ,;\t"))
     table = [line for line in lines if not line.startswith("#")]
-    delimiter = ";" if table and table[0].count(";") > table[0].count(",") else ","
+    delimiter = max(",;\t", key=table[0].count) if table else ","
     found = list(csv.reader(table, delimiter=delimiter))
     if not found:
         return settings, ()
-    header = [word.strip() for word in found[0]]
+    header = [word.strip().lower() for word in found[0]]
     for row in found[1:]:
         if len(row) != len(header):
             raise UnreadableRobot(f"{path}: the row {row[0]!r} has {len(row)} cells, and the header has {len(header)}")
     rows = [{k: c.strip() for k, c in zip(header, row, strict=True) if c.strip()} for row in found[1:]]
     return settings, tuple(rows)
+
+
+def _unquoted(line: str) -> str:
+    """A comment without the marks that a spreadsheet puts around its cell."""
+    return line.replace('"', "") if line.startswith('"#') else line
 
 
 def _name(table: Table, index: int) -> str:
@@ -105,15 +120,19 @@ def _kind(table: Table, index: int) -> Kind | None:
     strange = [key for key in row if key not in _ENTRIES]
     if strange:
         raise UnreadableRobot(f"{place} has an unknown entry {strange[0]!r}; there are {', '.join(_ENTRIES)}")
-    stated = row.get("type", "revolute")
+    stated = str(row.get("type", "revolute")).lower()
     if stated not in _KINDS:
         raise UnreadableRobot(f"{place} has the unknown type {stated!r}; there are {', '.join(_KINDS)}")
-    return _KINDS[str(stated)]
+    return _KINDS[stated]
 
 
 def _number(table: Table, index: int, entry: str, default: float = 0.0) -> float:
-    stated = table.rows[index].get(entry, default)
-    return number(table.path, str(stated), f"row {_name(table, index)!r}, {entry}")
+    stated = str(table.rows[index].get(entry, default))
+    in_pi = _IN_PI.fullmatch(stated.replace(" ", "")) if table.degree == 1.0 else None
+    if in_pi is not None:
+        sign, multiple, divisor = in_pi.groups()
+        return float(f"{sign}1") * int(multiple or 1) * math.pi / int(divisor or 1)
+    return number(table.path, stated, f"row {_name(table, index)!r}, {entry}")
 
 
 def _steps(table: Table, index: int, kinds: Mapping[str, Kind | None]) -> tuple[Step, ...]:
