@@ -60,7 +60,10 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"Initialize refuses the nominal parameters", "choose nominal values that fit each other, and a home in reach"),
     (r"a machine has no regular pose", "one joint repeats what another does: change the chain, or the task"),
     (r"do not multiply to the determinant", "state the joints and lengths separately, not their sums"),
-    (r"the search (misses|refuses) ", "leave search= out: the joint that is searched best is then found"),
+    (
+        r"the search (misses|refuses) ",
+        "leave search= out, or name another joint in it; where it is not stated, hold a joint: held=(…)",
+    ),
     (
         r"the home pose has \d+ assembly modes",
         "choose a home= at which every rod has a side, and no two legs are in line",

@@ -67,7 +67,10 @@ def test_margins_that_do_not_multiply(monkeypatch: pytest.MonkeyPatch) -> None:
         lambda m, a: replace(f := factor(m, a), **{"value": f.value + sp.Rational(1, 2)}),
     )
     said = refused(lambda: building.build(arm()))
-    assert "the margins elbow, free_a1 do not multiply to the determinant of the Jacobian; state the joints" in said
+    assert (
+        "the margins elbow, free_a1 do not multiply to the determinant of the Jacobian; state the joints and lengths"
+        in said
+    )
 
 
 def test_a_name_that_nothing_gives(kinematics: Kinematics) -> None:
