@@ -11,21 +11,8 @@ import sympy as sp
 from derive.description.errors import DescriptionError
 
 
-def each(what: str, given: object, kind: type, example: str) -> tuple[object, ...]:
-    """Several parts of one kind, as a tuple."""
-    if isinstance(given, kind) or not isinstance(given, list | tuple):
-        comma = ": one alone needs a comma behind it" if isinstance(given, kind) else ""
-        raise DescriptionError(f"{what} must be several, as in {what}={example}{comma}; it is {told(given)}")
-    for part in given:
-        if not isinstance(part, kind):
-            raise DescriptionError(f"{what} holds {told(part)}, and no {kind.__name__}: write {what}={example}")
-    return tuple(given)
-
-
-def expressions(what: str, given: object) -> tuple[sp.Expr, ...]:
+def expressions(what: str, given: Iterable[object]) -> tuple[sp.Expr, ...]:
     """Several expressions, as a tuple."""
-    if not isinstance(given, Iterable) or isinstance(given, str):
-        raise DescriptionError(f"{what} must be several, as in {what}=(expression,); it is {told(given)}")
     return tuple(expression(what, part) for part in given)
 
 
@@ -40,17 +27,17 @@ def expression(what: str, given: object) -> sp.Expr:
     return found
 
 
-def one(what: str, given: object, kind: type, example: str) -> None:
-    """One part of a kind."""
-    if not isinstance(given, kind):
-        raise DescriptionError(f"{what} is {told(given)}, and no {kind.__name__}: write {example}")
-
-
 def number(what: str, given: object) -> str | None:
     """What to say of what should be a number; None where it is one."""
     if not isinstance(given, Real) or isinstance(given, bool):
         return f"{what} is {told(given)}, and no number"
     return None if not math.isnan(float(given)) else f"{what} is not a number (NaN)"
+
+
+def pair(what: str, given: object) -> str | None:
+    """What to say of what should be the two ends of a range; None where it is that."""
+    is_pair = isinstance(given, tuple | list) and len(given) == 2 and not any(number("", end) for end in given)
+    return None if is_pair else f"its {what} is {told(given)}, and not two numbers: as in {what}=(-90.0, 90.0)"
 
 
 def told(given: object) -> str:

@@ -60,6 +60,20 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"Initialize refuses the nominal parameters", "choose nominal values that fit each other, and a home in reach"),
     (r"a machine has no regular pose", "one joint repeats what another does: change the chain, or the task"),
     (r"do not multiply to the determinant", "state the joints and lengths separately, not their sums"),
+    (
+        r"the search (misses|refuses) ",
+        "leave search= out, or name another joint in it; where it is not stated, hold a joint: held=(…)",
+    ),
+    (
+        r"the home pose has \d+ assembly modes",
+        "choose a home= at which every rod has a side, and no two legs are in line",
+    ),
+    (
+        r"which nothing gives|nothing has chosen a turn|the slope of the residual is not",
+        "this is a mistake of the compiler: report it with the description",
+    ),
+    (r"closure equations for \d+ commanded", "state one equation for each commanded coordinate"),
+    (r"conditions are left, not one|may be out of reach in its", "search another joint, or leave search= out"),
     (r"is taken by|declares ", ""),
 )
 """Pattern of a refusal → what to do."""

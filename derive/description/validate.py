@@ -11,7 +11,7 @@ import sympy as sp
 
 from derive.algebra.angle_sums import name_of, terms_of
 from derive.description.chains.amounts import wrong_amounts
-from derive.description.kinds import number
+from derive.description.kinds import number, pair
 from derive.description.mechanism import (
     ROTATION,
     DescriptionError,
@@ -171,6 +171,13 @@ def _joint(mechanism: Mechanism, joint: Joint) -> Iterator[str]:
         "limits": joint.limits,
         "domain": joint.domain,
     }
+    wrong = [
+        number("its nominal value", joint.nominal),
+        *(pair(word, i) for word, i in ranges.items() if i is not None),
+    ]
+    if any(wrong):
+        yield from (f"joint {joint.name!r}: {said}" for said in wrong if said is not None)
+        return
     for word, interval in ranges.items():
         if interval is not None and not interval[0] < interval[1]:
             yield f"joint {joint.name!r}: its {word} {interval} is empty"

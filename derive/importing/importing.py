@@ -11,7 +11,8 @@ import numpy as np
 from derive.description.joints import Kind
 from derive.importing.arms.lines import Arm, arm_of
 from derive.importing.arms.pieces import simple
-from derive.importing.arms.snapping import Snapped, nearly, snapped_robot
+from derive.importing.arms.rounded import nearly, snapped_robot
+from derive.importing.arms.snapping import Snapped
 from derive.importing.arms.tasks import Followed, followed
 from derive.importing.branches import Named
 from derive.importing.formats.documents import parsed
@@ -101,9 +102,9 @@ def _imported(robot: Robot, options: Options) -> Imported:
     report = "\n".join(
         [
             _head(robot, description, task, options.unit),
-            *neighbours(raw, places, options.snap, options.unit),
-            *([closed_form(raw, places, options.snap)] if task.turning == "FULL" else []),
-            *snaps(moved, nearly(robot, options.snap), found, options.snap, options.unit),
+            *neighbours(raw, arm, places, options.snap, options.unit),
+            *([closed_form(arm, places, options.snap)] if task.turning == "FULL" else []),
+            *snaps(moved, nearly(put_back), found, options.snap, options.unit),
             *notes,
         ]
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -30,16 +31,20 @@ def bounds(moved: Sequence[Snapped], arm: Arm, strokes: float) -> Bounds:
     return Bounds(2.0 * angles * (arm.size + strokes) + 2.0 * lengths, 2.0 * angles)
 
 
-def neighbours(arm: Arm, names: Sequence[str], limit: float, unit: str) -> Iterator[str]:
-    """A line for each pair of neighbouring axes: distance, angle, and what is missing to a simple relation."""
-    for (first, one), (second, other) in zip(
-        zip(arm.lines, names, strict=True), list(zip(arm.lines, names, strict=True))[1:], strict=False
-    ):
-        stands = relation(first, second)
+def neighbours(raw: Arm, arm: Arm, names: Sequence[str], limit: float, unit: str) -> Iterator[str]:
+    """A line for each pair of neighbouring axes: distance, angle, and what is missing to a simple relation.
+
+    raw: as the file has them; arm: with its angles put back.
+    """
+    for k, (one, other) in enumerate(pairwise(names)):
+        stands, back = (relation(*a.lines[k : k + 2]) for a in (raw, arm))
         degrees = float(np.degrees(stands.angle))
-        is_slide = Kind.LINEAR in (first.kind, second.kind)
-        distance = "a slide" if is_slide else f"distance {stands.distance:.6g} {unit}"
-        hints = list(_hints(stands.distance / arm.size, stands.angle, limit, is_slide))
+        is_slide = Kind.LINEAR in (arm.lines[k].kind, arm.lines[k + 1].kind)
+        apart = stands.distance if stands.distance > raw.rounding else 0.0
+        distance = "a slide" if is_slide else f"distance {apart:.6g} {unit}"
+        hints = list(_angle_hints(stands.angle, back.angle, limit))
+        if not is_slide and back.angle > limit:
+            hints += _distance_hints(stands.distance / raw.size, back.distance / arm.size, limit)
         yield f"  {one}-{other}: {distance}, angle {degrees:.6g}°{'; ' if hints else ''}{'; '.join(hints)}"
 
 
@@ -73,24 +78,22 @@ def _spread(lines: Sequence[Line]) -> float:
     return float(max(np.linalg.norm(gap) for gap in gaps))
 
 
-def _hints(distance: float, angle: float, limit: float, is_slide: bool) -> Iterator[str]:
-    """distance: a share of the size."""
-    yield from _angle_hints(angle, limit)
-    if not is_slide and angle > limit:
-        if distance <= ROUNDING * 100:
-            yield "they meet"
-        elif distance <= limit:
-            yield "they meet, snapped"
-        elif distance <= _NEARLY:
-            yield f"they would meet with --snap {_above(distance)}"
+def _distance_hints(distance: float, put_back: float, limit: float) -> Iterator[str]:
+    """Both as shares of the size: in the file, and with its angles put back."""
+    if distance <= ROUNDING * 100:
+        yield "they meet"
+    elif put_back <= max(limit, ROUNDING * 100):
+        yield "they meet, snapped"
+    elif put_back <= _NEARLY:
+        yield f"they would meet with --snap {_above(put_back)}"
 
 
-def _angle_hints(angle: float, limit: float) -> Iterator[str]:
+def _angle_hints(angle: float, put_back: float, limit: float) -> Iterator[str]:
     for value, word in ((0.0, "parallel"), (np.pi / 2, "square")):
-        off = abs(angle - value)
-        if off <= ROUNDING * 100:
+        off = abs(put_back - value)
+        if abs(angle - value) <= ROUNDING * 100:
             yield word
-        elif off <= limit:
+        elif off <= max(limit, ROUNDING * 100):
             yield f"{word}, snapped"
         elif off <= _NEARLY:
             yield f"nearly {word}: {word} with --snap {_above(off)}"
@@ -112,7 +115,7 @@ def snaps(moved: Sequence[Snapped], missed: Sequence[float], found: Bounds, snap
     if not moved:
         yield f"Nothing was snapped (--snap {snap:g})."
         return
-    yield f"Snapped (--snap {snap:g} of the size, or of one radian):"
+    yield f"Snapped (what the file has rounded, and what is within --snap {snap:g} of the size, or of one radian):"
     for one in moved:
         yield f"  {one.what} by {one.amount:.2g} {'rad' if one.is_angle else unit}"
     yield (

@@ -27,6 +27,8 @@ class Turned:
 
     axis: int
     angle: float
+    rounding: float = 0.0
+    """How far the angle may be from the one that the file has rounded (radians), by the decimals that it writes."""
 
     def matrix(self) -> Array:
         """The homogeneous 4 x 4 matrix."""
@@ -53,6 +55,8 @@ class Oriented:
     """A fixed rotation that the file gives as a whole (a quaternion, two axes)."""
 
     rows: tuple[Triple, Triple, Triple]
+    rounding: float = 0.0
+    """As that of `Turned`."""
 
     def matrix(self) -> Array:
         """The homogeneous 4 x 4 matrix."""
@@ -72,6 +76,13 @@ class Moving:
     direction: Triple
     drives: tuple[tuple[str, float], ...]
     offset: float = 0.0
+    rounding: float = 0.0
+    """As that of `Turned`, of the offset."""
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is about a direction: its offset is an angle."""
+        return self.kind is Kind.ROTARY
 
 
 @dataclass(frozen=True)
@@ -119,12 +130,12 @@ def reversed_step(step: Step, is_reversed: bool = True) -> tuple[Step, ...]:
 
 def _opposite(place: Place) -> Place:
     if isinstance(place, Turned):
-        return Turned(place.axis, -place.angle)
+        return Turned(place.axis, -place.angle, place.rounding)
     if isinstance(place, Shifted):
         x, y, z = place.by
         return Shifted((-x, -y, -z))
     first, second, third = zip(*place.rows, strict=True)
-    return Oriented((first, second, third))
+    return Oriented((first, second, third), place.rounding)
 
 
 def about(direction: Array, angle: float) -> Array:

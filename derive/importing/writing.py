@@ -109,7 +109,7 @@ def _plain(text: str) -> str:
 def _imports(description: Description, task: Followed, robot: Robot) -> list[str]:
     indicators = " ".join(str(b.indicator) for b in description.branches)
     chain = " ".join(description.factors)
-    functions = [f for f in ("cos", "sin") if f"{f}(" in indicators]
+    functions = [f for f in ("cos", "sin", "sqrt") if f"{f}(" in indicators]
     functions += ["pi"] if re.search(r"\bpi\b", f"{indicators} {chain}") else []
     frames = [f for f in _FRAMES if f"{f}(" in chain]
     names = {"Mechanism", "Task", "Turning", "Vendor"} - ({"Turning"} if task.turning == "NONE" else set())

@@ -25,6 +25,11 @@ from tests.command.wrong import WRONG
 SOLUTIONS = {"arm_on_track": 2, "palletizer": 4, "five_bar": 3, "trunnion": 2, "planar_3rrr": 6}
 SAID_ELSEWHERE = {
     "… must not vanish: slides would be parallel": "a machine says it, when it is set up: tests/machines",
+    "the margins … do not multiply to the determinant of the Jacobian; state the joints and lengths": (
+        "tests/unit/kinematics/test_refusals"
+    ),
+    "the search misses … of … solutions; leave search= out": "tests/unit/witness/test_refusals",
+    "the home pose has … assembly modes": "tests/unit/witness/test_refusals",
     "… holds '…', which was not generated: it is not replaced": "test_derive",
     "… holds the machine '…': derive into another folder with --out, or remove it": "test_derive",
     "'…' is a package that exists: give another name with --package": "test_derive",

@@ -70,6 +70,9 @@ WRONG: dict[str, str] = {
     "joint '…': its limit_range … is empty; state the lower end first": changed(
         ARM, ('"Link 1 about Z, from +X"', '"Link 1", limit_range=(90.0, -90.0)')
     ),
+    "joint '…': its … is …, and not two numbers: as in": changed(
+        ARM, ('"Link 1 about Z, from +X"', '"Link 1", limits=90.0')
+    ),
     "joint '…' carries a pitch: it needs a limit_range": changed(
         ARM, ('"Link 2 about Z, from link 1"', '"2", pitch=L1')
     ),

@@ -129,4 +129,11 @@ def xarm6(digits: int) -> str:
     )
 
 
+def written(name: str, digits: int, folder: Path) -> File:
+    """One of those that are written here, as a file."""
+    path = folder / f"{name.lower()}.urdf"
+    path.write_text(text := WRITTEN[name](digits), encoding="utf-8")
+    return File(path, "link0", f"link{text.count('<joint')}")
+
+
 WRITTEN = {"UR5e": ur5e, "Fanuc": fanuc, "Staubli": staubli, "xArm6": xarm6}

@@ -181,7 +181,18 @@ REFUSALS: Mapping[str, Refusal] = {
     ),
     "a file that is not there": ("", "", O(), r"there is no such file$"),
     "MJCF: no body": ("r.xml", MODEL.format("", "", ""), O("a", "z"), r"no body or site is called 'z' \(--tip\)"),
-    "MJCF: an include": ("r.xml", "<mujoco><include file='a'/></mujoco>", O(), r"includes other files"),
+    "MJCF: an include": (
+        "r.xml",
+        "<mujoco><include file='a.xml'/></mujoco>",
+        O(),
+        r"includes .*a\.xml, and there is no such file",
+    ),
+    "MJCF: an include of itself": (
+        "r.xml",
+        "<mujoco><include file='r.xml'/></mujoco>",
+        O(),
+        r"includes .*r\.xml twice: write it once$",
+    ),
     "MJCF: a free joint": (
         "r.xml",
         MODEL.format("<freejoint/>", HINGE.format("j"), ""),

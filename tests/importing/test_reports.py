@@ -40,14 +40,25 @@ def test_neighbouring_axes_are_told_with_the_snap_that_they_need() -> None:
     )
 
 
-def test_a_rounded_right_angle_is_told_and_put_back_by_the_snap_that_the_report_names(tmp_path: Path) -> None:
+def test_a_rounded_right_angle_is_put_back_and_told(tmp_path: Path) -> None:
+    """1.5708 is 3.7e-6 off a right angle: more than `--snap`, but no more than four decimals are."""
     path = tmp_path / "ur.urdf"
     path.write_text(ur5e(5), encoding="utf-8")
+    found = imported(path)
+    assert "A1-A2: distance 0 mm, angle 89.9998°; square, snapped; they meet" in found.report
+    assert f"shoulder_lift_joint: {rounded(5)[0]} is 90° rounded, off by 3.7e-06 rad" in found.report
+    assert "A closed form is likely: A2, A3, A4 are parallel." in found.report
+    assert "radians(" not in found.text and found.text.count("length(") == 6
+
+
+def test_what_is_no_rounding_is_told_and_put_back_by_the_snap_that_the_report_names(tmp_path: Path) -> None:
+    path = tmp_path / "ur.urdf"
+    path.write_text(ur5e(5).replace("1.5708", "1.5711"), encoding="utf-8")
     report = imported(path).report
-    assert "A1-A2: distance 0 mm, angle 89.9998°; nearly square: square with --snap 3.7e-06; they meet" in report
-    assert "8 angles of the file are nearly multiples of 15°: --snap 7.4e-06 puts them back." in report
-    snapped = imported(path, snap=7.4e-6)
-    assert f"shoulder_lift_joint: {rounded(5)[0]} read as 90° by 3.7e-06 rad" in snapped.report
+    assert "A1-A2: distance 0 mm, angle 89.9826°; nearly square: square with --snap 0.00031; they meet" in report
+    assert "5 angles of the file are nearly multiples of 15°: --snap 0.00031 puts them back." in report
+    snapped = imported(path, snap=3.1e-4)
+    assert "shoulder_lift_joint: 1.5711 read as 90° by 0.0003 rad" in snapped.report
     assert "radians(" not in snapped.text and snapped.text.count("length(") == 6
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.importing.kinematics import Array, Pose, described, differences, imported
+from derive.importing.robot import UnreadableRobot
+from tests.importing.kinematics import Array, Pose, chain_pose, described, differences, imported
 
 Row = tuple[str, float, float, float, float]
 """Type, theta and d, a and alpha: degrees and millimetres."""
@@ -122,3 +123,56 @@ def test_it_is_the_product_of_the_textbook(
     assert position <= found.bounds.position + 1e-9
     assert rotation <= found.bounds.rotation + 1e-12
     assert found.moved == ()
+
+
+STRANGE = {
+    "semicolons and capital letters": (
+        "r.CSV",
+        "\ufeff# Convention: Standard\n# Angles: Degrees\n# Lengths: mm\n\n Name ; A ; Alpha ; D ; Type\n"
+        "J1;0;9e1;4e2;Revolute\n# the arm\nJ2;300;0;;REVOLUTE\nJ3;+250.0;;;\n",
+    ),
+    "cells of a spreadsheet": (
+        "r.csv",
+        '"# convention: standard"\n"# angles: degrees"\n"# lengths: mm"\n"name","a","alpha","d"\n'
+        '"J1","0","90","400"\n"J2","300","",""\n"J3","250","",""\n',
+    ),
+    "tabs, and cells that are empty": (
+        "r.csv",
+        "# convention: standard\n# angles: radians\n# lengths: m\nname\ta\td\talpha\n"
+        "J1\t0\t.4\tpi/2\nJ2\t.3\t\t\nJ3\t25e-2\t\t\n",
+    ),
+    "a table with pi and numbers in groups": (
+        "r.toml",
+        'Convention = "STANDARD" # as in the book\nangles = "radians"\nlengths = "m"\n'
+        '[[joints]]\nname = "J1"\nd = 0.4_00\nalpha = " 1*pi / 2"\n[[joints]]\nname = "J2"\na = 3.0e-1\n'
+        '[[joints]]\nname = "J3"\na = 0.25\n',
+    ),
+    "pi with four decimals": (
+        "r.toml",
+        'convention = "standard"\nangles = "radians"\nlengths = "mm"\n[[joints]]\nname = "J1"\nd = 400\n'
+        'Alpha = 1.5708\n[[joints]]\nName = "J2"\na = 300\n[[joints]]\nname = "J3"\na = 250\n',
+    ),
+}
+
+
+@pytest.mark.parametrize("name", STRANGE)
+def test_a_table_of_an_odd_look_is_the_same_arm(name: str, tmp_path: Path) -> None:
+    """All of them write an elbow arm: 400 up, links of 300 and 250."""
+    file, text = STRANGE[name]
+    (tmp_path / file).write_text(text, encoding="utf-8")
+    found = imported(tmp_path / file)
+    assert found.axes == ("J1", "J2", "J3") and "radians(" not in found.text
+    mechanism = described(found, tmp_path)
+    for q1, q2, q3 in np.random.default_rng(2).uniform(-3.0, 3.0, (8, 3)):
+        pose = chain_pose(mechanism, {"J1": q1, "J2": q2, "J3": q3})
+        out = 300.0 * np.cos(q2) + 250.0 * np.cos(q2 + q3)
+        up = 400.0 + 300.0 * np.sin(q2) + 250.0 * np.sin(q2 + q3)
+        assert np.allclose(pose[:3, 3], [np.cos(q1) * out, np.sin(q1) * out, up], rtol=0.0, atol=1e-9)
+        assert np.allclose(pose[:3, 2], [np.sin(q1), -np.cos(q1), 0.0], rtol=0.0, atol=1e-12)
+
+
+def test_pi_is_no_angle_in_degrees(tmp_path: Path) -> None:
+    path = tmp_path / "r.toml"
+    path.write_text('convention = "standard"\nangles = "degrees"\nlengths = "mm"\n[[joints]]\nalpha = "pi/2"\n')
+    with pytest.raises(UnreadableRobot, match="row 'A1', alpha: 'pi/2' is no number"):
+        imported(path)

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
 from tests.importing.kinematics import by_yourdfpy, described, differences, imported
-from tests.importing.robots import COLLECTION, WRITTEN, File
+from tests.importing.robots import COLLECTION, WRITTEN, File, written
 
 EXACT = 1e-12
 """Of the size of the machine, and of one radian."""
+
+
+ROUNDED = 5e-4
+"""What rounding to three decimals makes of an angle."""
+DIGITS = range(4, 10)
 
 
 @pytest.fixture
@@ -18,14 +24,11 @@ def file(request: pytest.FixtureRequest, tmp_path: Path) -> File:
     """A file of the collection by its name, or one that is written here: (name, digits of pi)."""
     if isinstance(request.param, str):
         return COLLECTION[request.param]
-    name, digits = request.param
-    path = tmp_path / f"{name.lower()}.urdf"
-    path.write_text(text := WRITTEN[name](digits), encoding="utf-8")
-    return File(path, "link0", f"link{text.count('<joint')}")
+    return written(*request.param, tmp_path)
 
 
 EVERY = pytest.mark.parametrize(
-    "file", [*COLLECTION, *((name, digits) for name in WRITTEN for digits in (4, 5, 7, 9))], indirect=True, ids=str
+    "file", [*COLLECTION, *((name, digits) for name in WRITTEN for digits in DIGITS)], indirect=True, ids=str
 )
 
 
@@ -51,4 +54,27 @@ def test_snapped_it_differs_by_what_is_reported(file: File, snap: float, tmp_pat
     position, rotation = differences(found, mechanism, by_yourdfpy(file.path, file.base, file.tip))
     assert position <= found.bounds.position + EXACT * 1000.0
     assert rotation <= found.bounds.rotation + EXACT
-    assert all(moved.amount <= snap * (1.0 if moved.is_angle else 1e4) for moved in found.moved)
+    assert all(moved.amount <= (max(snap, ROUNDED) if moved.is_angle else snap * 1e4) for moved in found.moved)
+
+
+@pytest.mark.parametrize("name", WRITTEN)
+def test_pi_rounded_to_any_digits_is_pi(name: str, tmp_path: Path) -> None:
+    """The description is that of the unrounded file, to the letter: what derives with pi derives with 3.142."""
+    exact = imported(written(name, 17, tmp_path).path)
+    assert all(moved.amount < 1e-14 for moved in exact.moved) and "radians(" not in exact.text
+    for digits in DIGITS:
+        found = imported(written(name, digits, tmp_path).path)
+        assert found.text == exact.text
+        angles = [moved.amount for moved in found.moved]
+        assert angles and max(angles) <= 10.0 ** (1 - digits) and all(moved.is_angle for moved in found.moved)
+        assert found.bounds.rotation <= 2.0 * sum(angles) * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("name", WRITTEN)
+def test_with_three_digits_it_is_an_angle_of_its_own(name: str, tmp_path: Path) -> None:
+    """3.14 may be meant: the report says which `--snap` would make it pi, and with that it is."""
+    file = written(name, 3, tmp_path)
+    report = imported(file.path).report
+    snap = re.search(r"nearly multiples? of 15°: --snap (\S+) puts", report)
+    assert snap is not None
+    assert imported(file.path, snap=float(snap[1])).text == imported(written(name, 17, tmp_path).path).text

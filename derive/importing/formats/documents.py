@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from decimal import Decimal, InvalidOperation
 from pathlib import Path
 from xml.etree import ElementTree
 
 from derive.importing.robot import UnreadableRobot
 
 Element = ElementTree.Element
+_FEWEST_DECIMALS = 3
+"""1.57 may be an angle of its own; 1.571 is a right angle, rounded."""
 
 
 def parsed(path: Path) -> Element:
@@ -18,6 +21,14 @@ def parsed(path: Path) -> Element:
         return ElementTree.fromstring(data)
     except ElementTree.ParseError as problem:
         raise UnreadableRobot(f"{path}:{problem.position[0]}: broken XML: {problem.msg}") from None
+
+
+def without_namespace(root: Element) -> Element:
+    """The root with its elements named without the namespace that the root has: `xmlns=` says nothing of a robot."""
+    space, closing, _ = root.tag.rpartition("}")
+    for element in root.iter() if closing else ():
+        element.tag = element.tag.removeprefix(space + closing)
+    return root
 
 
 def text_of(path: Path) -> str:
@@ -71,3 +82,26 @@ def numbers(path: Path, element: Element, attribute: str, place: str, default: t
     if len(found) != len(default):
         raise UnreadableRobot(f"{path}: {place}, {attribute}: {stated!r} has {len(found)} numbers, not {len(default)}")
     return found
+
+
+def rounding(text: str) -> float:
+    """How far a number may be from the one that the file has rounded, by the decimals that are written.
+
+    With three decimals it is half a unit of the last one; with more a whole unit, for 3.1415 is cut off; with fewer
+    nothing is known, and 0 is returned. Zeros behind the fourth decimal fill up a number that was rounded before.
+    """
+    try:
+        exponent = Decimal(text).as_tuple().exponent
+    except InvalidOperation:
+        return 0.0
+    decimals = -exponent if isinstance(exponent, int) else 0
+    if decimals > _FEWEST_DECIMALS:
+        digits = f"{Decimal(text).copy_abs():f}".partition(".")[2].rstrip("0")
+        return float(10.0 ** -max(len(digits), _FEWEST_DECIMALS + 1))
+    return 0.5 * 10.0**-decimals if decimals == _FEWEST_DECIMALS else 0.0
+
+
+def roundings(element: Element, attribute: str, count: int) -> tuple[float, ...]:
+    """The `rounding` of each number of an attribute, which has so many; of none where it is not stated."""
+    words = (element.get(attribute) or "").split()
+    return tuple(rounding(word) for word in words) if words else (0.0,) * count

@@ -16,17 +16,29 @@ class Follower:
     leader: str
     multiplier: float
     offset: float
+    rounding: float = 0.0
+    """How far the offset may be from one that the file has rounded (radians)."""
 
 
-def driven(path: Path, name: str, followers: Mapping[str, Follower]) -> tuple[tuple[tuple[str, float], ...], float]:
-    """The axis that moves a joint with its multiplier, and the offset: a follower may follow a follower."""
-    multiplier, offset, seen = 1.0, 0.0, [name]
+@dataclass(frozen=True)
+class Driven:
+    """The axis that moves a joint with its multiplier (none where that is 0), and the joint's offset."""
+
+    drives: tuple[tuple[str, float], ...]
+    offset: float
+    rounding: float
+
+
+def driven(path: Path, name: str, followers: Mapping[str, Follower]) -> Driven:
+    """What moves a joint: a follower may follow a follower."""
+    multiplier, offset, rounding, seen = 1.0, 0.0, 0.0, [name]
     while name in followers:
         follower = followers[name]
         offset += multiplier * follower.offset
+        rounding += abs(multiplier) * follower.rounding
         multiplier *= follower.multiplier
         name = follower.leader
         if name in seen:
             raise UnreadableRobot(f"{path}: joints mimic each other in a circle: {', '.join([*seen, name])}")
         seen.append(name)
-    return ((name, multiplier),) if multiplier != 0.0 else (), offset
+    return Driven(((name, multiplier),) if multiplier != 0.0 else (), offset, rounding)

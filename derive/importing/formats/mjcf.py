@@ -8,17 +8,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 from derive.description.joints import Kind
-from derive.importing.formats.documents import number, numbers, parsed, required
+from derive.importing.formats.documents import number, numbers, parsed, required, rounding
 from derive.importing.formats.mimics import Follower, driven
 from derive.importing.formats.orientations import File, places_of
+from derive.importing.formats.whole import whole
 from derive.importing.robot import (
     Axis,
     Moving,
+    Place,
     Robot,
     Shifted,
     Step,
@@ -34,12 +36,13 @@ _FREE = {"free": "moves freely in space", "ball": "turns freely about a point"}
 
 @dataclass(frozen=True)
 class Frame:
-    """A body or a site, below another body."""
+    """A body or a site, below another body; on the way to it there may be a `<frame>`, which only shifts and turns."""
 
     name: str
     element: Element
     parent: str | None
     body_class: str | None
+    before: tuple[Place, ...] = ()
 
 
 def read_mjcf(path: Path, base: str | None, tip: str | None, scale: float) -> Robot:
@@ -71,8 +74,7 @@ def read_mjcf(path: Path, base: str | None, tip: str | None, scale: float) -> Ro
 def _file(path: Path, root: Element, scale: float) -> File:
     if root.tag != "mujoco":
         raise UnreadableRobot(f"{path}: its root is <{root.tag}>, not <mujoco>: this is no MJCF")
-    if root.find(".//include") is not None:
-        raise UnreadableRobot(f"{path}: includes other files: save the whole model as one file, and import that")
+    root = whole(path, root)
     if root.find(".//replicate") is not None or root.find(".//attach") is not None:
         raise UnreadableRobot(f"{path}: replicates or attaches parts: save the expanded model, and import that")
     settings: dict[str, str] = {}
@@ -121,26 +123,30 @@ def _frames(file: File) -> Iterator[Frame]:
     if world is None:
         raise UnreadableRobot(f"{file.path}: has no worldbody")
     names: set[str] = set()
-    for frame in (Frame(WORLD, world, None, None), *_below(file, world, WORLD, None)):
+    for frame in (Frame(WORLD, world, None, None), *_below(file, world, Frame(WORLD, world, None, None), WORLD)):
         if frame.name in names:
             raise UnreadableRobot(f"{file.path}: two bodies or sites are called {frame.name!r}")
         names.add(frame.name)
         yield frame
 
 
-def _below(file: File, parent: Element, name: str, body_class: str | None) -> Iterator[Frame]:
+def _below(file: File, parent: Element, body: Frame, label: str) -> Iterator[Frame]:
+    """The bodies and sites in a body, or in a frame of it. label: what those without a name are called after."""
     for number_, element in enumerate(parent):
+        inner = element.get("childclass") or body.body_class
+        own = element.get("name") or f"{label}.{number_}"
         if element.tag == "frame":
-            raise UnreadableRobot(
-                f"{file.path}: body {name!r} holds a <frame>: save the expanded model, and import that"
-            )
+            if element.find("joint") is not None or element.find("freejoint") is not None:
+                raise UnreadableRobot(
+                    f"{file.path}: a frame in body {body.name!r} holds a joint: write the joint into the body"
+                )
+            places = (*body.before, *places_of(file, element, f"frame {own!r}"))
+            yield from _below(file, element, replace(body, body_class=inner, before=places), own)
         if element.tag == "site" and element.get("name"):
-            yield Frame(element.get("name", ""), element, name, body_class)
+            yield Frame(own, element, body.name, body.body_class, body.before)
         if element.tag == "body":
-            own = element.get("name") or f"{name}.{number_}"
-            inner = element.get("childclass") or body_class
-            yield Frame(own, element, name, inner)
-            yield from _below(file, element, own, inner)
+            yield (frame := Frame(own, element, body.name, inner, body.before))
+            yield from _below(file, element, replace(frame, before=()), own)
 
 
 def _only_end(path: Path, frames: Mapping[str, Frame]) -> str:
@@ -165,7 +171,8 @@ def _steps(
     file: File, frame: Frame, joints: Mapping[str, dict[str, str]], followers: Mapping[str, Follower], is_up: bool
 ) -> list[Step]:
     """The frame on its parent, then its joints, each about its own point; or the way back over them."""
-    steps = [Step(frame.name, places_of(file, frame.element, f"{frame.element.tag} {frame.name!r}"))]
+    places = places_of(file, frame.element, f"{frame.element.tag} {frame.name!r}")
+    steps = [Step(frame.name, (*frame.before, *places))]
     if frame.element.find("freejoint") is not None:
         raise UnreadableRobot(f"{file.path}: body {frame.name!r} {_FREE['free']}: choose a base that it carries")
     for index, joint in enumerate(frame.element.findall("joint")):
@@ -182,9 +189,10 @@ def _joint_steps(file: File, name: str, stated: Mapping[str, str], followers: Ma
     size = math.sqrt(sum(v * v for v in direction))
     if size < 1e-9:
         raise UnreadableRobot(f"{file.path}: joint {name!r}: its axis has no direction")
-    drives, offset = driven(file.path, name, followers)
+    by = driven(file.path, name, followers)
     along: Triple = (direction[0] / size, direction[1] / size, direction[2] / size)
-    moving = Moving(kind, along, drives, offset - _start(file, name, stated))
+    off = by.rounding + _start_rounding(file, name, stated)
+    moving = Moving(kind, along, by.drives, by.offset - _start(file, name, stated), off)
     return [Step(name, (Shifted((x, y, z)),), moving), Step(name, (Shifted((-x, -y, -z)),))]
 
 
@@ -192,6 +200,12 @@ def _start(file: File, name: str, stated: Mapping[str, str]) -> float:
     """The value of a joint as the file draws it."""
     unit = file.scale if _kind(file, name, stated) is Kind.LINEAR else file.degree
     return number(file.path, stated.get("ref", "0"), f"joint {name!r}, ref") * unit
+
+
+def _start_rounding(file: File, name: str, stated: Mapping[str, str]) -> float:
+    """How far that value may be from one that is rounded: in degrees 15 is written exactly."""
+    is_radian = _kind(file, name, stated) is Kind.ROTARY and file.degree == 1.0
+    return rounding(stated.get("ref", "0")) if is_radian else 0.0
 
 
 def _kind(file: File, name: str, stated: Mapping[str, str]) -> Kind:
@@ -222,7 +236,8 @@ def _followers(file: File, joints: Mapping[str, Mapping[str, str]]) -> dict[str,
         own, leader = required(file.path, equality, "joint1"), equality.get("joint2")
         if equality.get("active") == "false" or own not in joints:
             continue
-        numbers_ = [number(file.path, w, f"equality of {own!r}") for w in equality.get("polycoef", "0 1").split()]
+        words = equality.get("polycoef", "0 1").split()
+        numbers_ = [number(file.path, w, f"equality of {own!r}") for w in words]
         a0, a1, *rest = (*numbers_, 0.0, 0.0)
         if any(rest) or leader is None or leader not in joints:
             raise UnreadableRobot(
@@ -231,7 +246,9 @@ def _followers(file: File, joints: Mapping[str, Mapping[str, str]]) -> dict[str,
         sizes = [file.scale if _kind(file, n, joints[n]) is Kind.LINEAR else 1.0 for n in (own, leader)]
         multiplier = a1 * sizes[0] / sizes[1]
         start = _start(file, own, joints[own]) - multiplier * _start(file, leader, joints[leader])
-        found[own] = Follower(leader, multiplier, a0 * sizes[0] + start)
+        roundings = [_start_rounding(file, n, joints[n]) for n in (own, leader)]
+        off = rounding(words[0]) + roundings[0] + abs(multiplier) * roundings[1]
+        found[own] = Follower(leader, multiplier, a0 * sizes[0] + start, off)
     return found
 
 

@@ -10,10 +10,14 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from derive.importing.formats.documents import numbers
+from derive.importing.formats.documents import numbers, roundings
 from derive.importing.robot import Array, Oriented, Place, Shifted, Turned, UnreadableRobot, about
 
 Element = ElementTree.Element
+_AXES = 0.71
+"""The turn by which an axis is off whose rounded numbers are off by half a unit, in units: a hair more than 1/√2."""
+_QUATERNION = 2.0 * _AXES
+"""The same of a quaternion, whose numbers are those of half the turn."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +49,10 @@ def _euler(file: File, element: Element, place: str) -> tuple[Place, ...]:
     sequence = file.sequence
     if len(sequence) != 3 or set(sequence.lower()) - set("xyz") or sequence not in (sequence.lower(), sequence.upper()):
         raise UnreadableRobot(f"{file.path}: its sequence of angles {sequence!r} is not three of xyz, or of XYZ")
-    turns = [Turned("xyz".index(c.lower()), a * file.degree) for c, a in zip(sequence, angles, strict=True)]
+    rounded = roundings(element, "euler", 3) if file.degree == 1.0 else (0.0, 0.0, 0.0)
+    turns = [
+        Turned("xyz".index(c.lower()), a * file.degree, r) for c, a, r in zip(sequence, angles, rounded, strict=True)
+    ]
     return tuple(turns if sequence.islower() else turns[::-1])
 
 
@@ -59,14 +66,20 @@ def _quaternion(file: File, element: Element, place: str) -> tuple[Place, ...]:
                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
                 ]
-            )
+            ),
+            _QUATERNION * max(roundings(element, "quat", 4)),
         ),
     )
 
 
 def _axis_angle(file: File, element: Element, place: str) -> tuple[Place, ...]:
     x, y, z, angle = numbers(file.path, element, "axisangle", place, (1.0, 0.0, 0.0, 0.0))
-    return (_oriented(about(_unit(file, (x, y, z), place), angle * file.degree)),)
+    rounded = roundings(element, "axisangle", 4)[3] if file.degree == 1.0 else 0.0
+    axis = _unit(file, (x, y, z), place)
+    along = int(np.argmax(np.abs(axis)))
+    if np.count_nonzero(axis) == 1:
+        return (Turned(along, float(axis[along]) * angle * file.degree, rounded),)
+    return (_oriented(about(axis, angle * file.degree), 0.0),)
 
 
 def _two_axes(file: File, element: Element, place: str) -> tuple[Place, ...]:
@@ -74,16 +87,17 @@ def _two_axes(file: File, element: Element, place: str) -> tuple[Place, ...]:
     x = _unit(file, stated[:3], place)
     y = np.array(stated[3:])
     y = _unit(file, tuple(y - x * float(x @ y)), place)
-    return (_oriented(np.column_stack([x, y, np.cross(x, y)])),)
+    return (_oriented(np.column_stack([x, y, np.cross(x, y)]), _AXES * max(roundings(element, "xyaxes", 6))),)
 
 
 def _one_axis(file: File, element: Element, place: str) -> tuple[Place, ...]:
     z = _unit(file, numbers(file.path, element, "zaxis", place, (0.0, 0.0, 1.0)), place)
+    rounded = _AXES * max(roundings(element, "zaxis", 3))
     across = np.cross([0.0, 0.0, 1.0], z)
     sine = float(np.linalg.norm(across))
     if sine < 1e-10:
         return () if z[2] > 0.0 else (Turned(0, math.pi),)
-    return (_oriented(about(across / sine, math.atan2(sine, float(z[2])))),)
+    return (_oriented(about(across / sine, math.atan2(sine, float(z[2]))), rounded),)
 
 
 _ORIENTATIONS: Mapping[str, Callable[[File, Element, str], tuple[Place, ...]]] = {
@@ -102,6 +116,6 @@ def _unit(file: File, stated: Sequence[float], place: str) -> Array:
     return np.array(stated) / size
 
 
-def _oriented(rotation: Array) -> Oriented:
+def _oriented(rotation: Array, rounding: float) -> Oriented:
     first, second, third = (tuple(map(float, row)) for row in rotation)
-    return Oriented((first, second, third))  # type: ignore[arg-type]
+    return Oriented((first, second, third), rounding)  # type: ignore[arg-type]

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 
 from derive.description.joints import Kind
-from derive.importing.formats.documents import number, text_of
+from derive.importing.formats.documents import number, rounding, text_of
 from derive.importing.robot import Axis, Moving, Place, Robot, Shifted, Step, Turned, UnreadableRobot
 
 _SETTINGS: Mapping[str, tuple[str, ...]] = {
@@ -25,6 +27,8 @@ _SETTINGS: Mapping[str, tuple[str, ...]] = {
 _KINDS = {"revolute": Kind.ROTARY, "prismatic": Kind.LINEAR, "fixed": None}
 _NUMBERS = ("theta", "d", "a", "alpha", "lower", "upper")
 _ENTRIES = ("name", "type", *_NUMBERS, "coupling")
+_IN_PI = re.compile(r"([+-]?)(?:([1-9]\d*)\*)?pi(?:/([1-9]\d*))?")
+"""An angle in radians as people write it: pi/2, -3*pi/4."""
 _METRES = {"mm": 1e-3, "m": 1.0}
 
 
@@ -65,33 +69,45 @@ def read_table(path: Path, base: str | None, tip: str | None, scale: float) -> R
 
 def _toml(path: Path) -> tuple[dict[str, str], tuple[Mapping[str, object], ...]]:
     try:
-        data = tomllib.loads(text_of(path))
+        data = tomllib.loads(text_of(path), parse_float=Decimal)
     except tomllib.TOMLDecodeError as problem:
         raise UnreadableRobot(f"{path}: broken TOML: {problem}") from None
     rows = data.get("joints", [])
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise UnreadableRobot(f"{path}: its rows must be tables [[joints]]")
-    return {k: str(v) for k, v in data.items() if k != "joints"}, tuple(rows)
+    return {k.lower(): _setting(k, str(v)) for k, v in data.items() if k != "joints"}, tuple(
+        {k.lower(): value for k, value in row.items()} for row in rows
+    )
+
+
+def _setting(key: str, value: str) -> str:
+    """The value of a setting, whatever its capital letters; a name keeps them."""
+    return value if key.lower() == "name" else value.lower()
 
 
 def _csv(path: Path) -> tuple[dict[str, str], tuple[Mapping[str, object], ...]]:
-    lines = [line.strip() for line in text_of(path).splitlines() if line.strip(" ,;\t")]
+    lines = [_unquoted(line.strip(" ")) for line in text_of(path).splitlines() if line.strip(" ,;\t")]
     settings = {}
     for line in lines:
         key, colon, value = line.strip("# ").partition(":")
         if line.startswith("#") and colon:
-            settings[key.strip()] = value.strip(" ,;")
+            settings[key.strip().lower()] = _setting(key.strip(), value.strip(" ,;\t"))
     table = [line for line in lines if not line.startswith("#")]
-    delimiter = ";" if table and table[0].count(";") > table[0].count(",") else ","
+    delimiter = max(",;\t", key=table[0].count) if table else ","
     found = list(csv.reader(table, delimiter=delimiter))
     if not found:
         return settings, ()
-    header = [word.strip() for word in found[0]]
+    header = [word.strip().lower() for word in found[0]]
     for row in found[1:]:
         if len(row) != len(header):
             raise UnreadableRobot(f"{path}: the row {row[0]!r} has {len(row)} cells, and the header has {len(header)}")
     rows = [{k: c.strip() for k, c in zip(header, row, strict=True) if c.strip()} for row in found[1:]]
     return settings, tuple(rows)
+
+
+def _unquoted(line: str) -> str:
+    """A comment without the marks that a spreadsheet puts around its cell."""
+    return line.replace('"', "") if line.startswith('"#') else line
 
 
 def _name(table: Table, index: int) -> str:
@@ -104,27 +120,36 @@ def _kind(table: Table, index: int) -> Kind | None:
     strange = [key for key in row if key not in _ENTRIES]
     if strange:
         raise UnreadableRobot(f"{place} has an unknown entry {strange[0]!r}; there are {', '.join(_ENTRIES)}")
-    stated = row.get("type", "revolute")
+    stated = str(row.get("type", "revolute")).lower()
     if stated not in _KINDS:
         raise UnreadableRobot(f"{place} has the unknown type {stated!r}; there are {', '.join(_KINDS)}")
-    return _KINDS[str(stated)]
+    return _KINDS[stated]
 
 
 def _number(table: Table, index: int, entry: str, default: float = 0.0) -> float:
-    stated = table.rows[index].get(entry, default)
-    return number(table.path, str(stated), f"row {_name(table, index)!r}, {entry}")
+    stated = str(table.rows[index].get(entry, default))
+    in_pi = _IN_PI.fullmatch(stated.replace(" ", "")) if table.degree == 1.0 else None
+    if in_pi is not None:
+        sign, multiple, divisor = in_pi.groups()
+        return float(f"{sign}1") * int(multiple or 1) * math.pi / int(divisor or 1)
+    return number(table.path, stated, f"row {_name(table, index)!r}, {entry}")
 
 
 def _steps(table: Table, index: int, kinds: Mapping[str, Kind | None]) -> tuple[Step, ...]:
     theta, alpha = (_number(table, index, k) * table.degree for k in ("theta", "alpha"))
     d, a = (_number(table, index, k) * table.scale for k in ("d", "a"))
-    turned: tuple[Place, ...] = (Turned(2, theta), Shifted((0.0, 0.0, d)))
-    across: tuple[Place, ...] = (Shifted((a, 0.0, 0.0)), Turned(0, alpha))
+    turned: tuple[Place, ...] = (Turned(2, theta, _rounding(table, index, "theta")), Shifted((0.0, 0.0, d)))
+    across: tuple[Place, ...] = (Shifted((a, 0.0, 0.0)), Turned(0, alpha, _rounding(table, index, "alpha")))
     name, kind = _name(table, index), _kind(table, index)
     moving = None if kind is None else Moving(kind, (0.0, 0.0, 1.0), _drives(table, index, kinds))
     if table.settings["convention"] == "modified":
         return (Step(name, (*across[::-1], *turned), moving),)
     return Step(name, turned, moving), Step(name, across)
+
+
+def _rounding(table: Table, index: int, entry: str) -> float:
+    """How far an angle may be from one that is rounded: in degrees 15 is written exactly."""
+    return rounding(str(table.rows[index].get(entry, 0))) if table.settings["angles"] == "radians" else 0.0
 
 
 def _drives(table: Table, index: int, kinds: Mapping[str, Kind | None]) -> tuple[tuple[str, float], ...]:

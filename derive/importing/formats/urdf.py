@@ -12,8 +12,18 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from derive.description.joints import Kind
-from derive.importing.formats.documents import limit, number, numbers, parsed, required
+from derive.importing.formats.documents import (
+    limit,
+    number,
+    numbers,
+    parsed,
+    required,
+    rounding,
+    roundings,
+    without_namespace,
+)
 from derive.importing.formats.mimics import Follower, driven
+from derive.importing.formats.transmissions import transmission_notes
 from derive.importing.formats.trees import Edge, ends_of, path_between
 from derive.importing.robot import (
     Axis,
@@ -35,7 +45,7 @@ _NOT_SERIAL = {"floating": "moves freely in space", "planar": "moves freely in a
 
 def read_urdf(path: Path, base: str | None, tip: str | None, scale: float) -> Robot:
     """The chain between two links; without a name the root, and the one end there is. scale: our unit in metres."""
-    root = parsed(path)
+    root = without_namespace(parsed(path))
     if root.tag != "robot":
         raise UnreadableRobot(f"{path}: its root is <{root.tag}>, not <robot>: this is no URDF")
     _refuse_macros(path, root)
@@ -52,7 +62,11 @@ def read_urdf(path: Path, base: str | None, tip: str | None, scale: float) -> Ro
     )
     used = dict.fromkeys(name for s in steps if s.moving for name, _ in s.moving.drives)
     axes = tuple(_axis(path, _commanded(path, joints, name), scale) for name in used)
-    notes = (*_left_out(root, [edge.name for edge, _ in passed], used), *_ignored(root))
+    notes = (
+        *_left_out(root, [edge.name for edge, _ in passed], used),
+        *_ignored(root),
+        *transmission_notes(path, root, used),
+    )
     return Robot(root.get("name") or path.stem, f"{path.name} (URDF)", base, tip, steps, axes, notes)
 
 
@@ -83,8 +97,8 @@ def _step(path: Path, joint: Element, followers: Mapping[str, Follower], scale: 
     kind = _kind(path, joint)
     if kind is None:
         return Step(name, places)
-    drives, offset = driven(path, name, followers)
-    return Step(name, places, Moving(kind, _direction(path, joint, name), drives, offset))
+    by = driven(path, name, followers)
+    return Step(name, places, Moving(kind, _direction(path, joint, name), by.drives, by.offset, by.rounding))
 
 
 def _kind(path: Path, joint: Element) -> Kind | None:
@@ -107,8 +121,9 @@ def _places(path: Path, joint: Element, name: str, scale: float) -> tuple[Place,
     if origin is None:
         return ()
     x, y, z = numbers(path, origin, "xyz", f"joint {name!r}", (0.0, 0.0, 0.0))
-    roll, pitch, yaw = numbers(path, origin, "rpy", f"joint {name!r}", (0.0, 0.0, 0.0))
-    turns = tuple(Turned(k, a) for k, a in ((2, yaw), (1, pitch), (0, roll)) if a != 0.0)
+    angles = numbers(path, origin, "rpy", f"joint {name!r}", (0.0, 0.0, 0.0))
+    rounded = roundings(origin, "rpy", 3)
+    turns = tuple(Turned(k, angles[k], rounded[k]) for k in (2, 1, 0) if angles[k] != 0.0)
     return (Shifted((x * scale, y * scale, z * scale)), *turns)
 
 
@@ -136,6 +151,7 @@ def _follower(path: Path, joints: Mapping[str, Element], joint: Element, scale: 
         leader,
         number(path, mimic.get("multiplier", "1"), f"{place}, multiplier") * unit / of_leader,
         number(path, mimic.get("offset", "0"), f"{place}, offset") * unit,
+        rounding(mimic.get("offset", "0")) if unit == 1.0 else 0.0,
     )
 
 
@@ -173,9 +189,4 @@ def _ignored(root: Element) -> tuple[str, ...]:
     }
     found = [word for tag, word in tags.items() if root.find(f"link/{tag}") is not None]
     notes = [f"Not read, because kinematics does not need them: {', '.join(found)}."] if found else []
-    if root.find("transmission") is not None:
-        notes.append(
-            "Transmissions are not read: axis values are the joint values of the file. Where a motor moves two joints, "
-            "add `coupling=` to the second."
-        )
     return tuple(notes)

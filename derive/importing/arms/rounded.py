@@ -1,0 +1,95 @@
+"""Angles that a file has rounded, put back: 1.5708 is a right angle, and so is 1.570796325.
+
+An angle is put back to a multiple of 15 degrees where the file has it rounded to the decimals that it writes, or where
+it is within the limit. With a limit of 0 nothing is put back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from derive.importing.arms.headings import orientation, product
+from derive.importing.arms.lines import ROUNDING
+from derive.importing.arms.snapping import Snapped, angle_between, nearest_angle, right_angled
+from derive.importing.robot import Array, Moving, Place, Robot, Shifted, Step, Triple, Turned
+
+_NEARLY = 2e-3
+"""What is farther from a multiple of 15 degrees is an angle of the machine's own: 1.57 is 8e-4 off."""
+
+
+def snapped_robot(robot: Robot, limit: float) -> tuple[Robot, tuple[Snapped, ...]]:
+    """The robot with the angles of its file put back, and what was moved."""
+    moved: list[Snapped] = []
+    steps = tuple(_step(step, limit, moved) for step in robot.steps)
+    return replace(robot, steps=steps), tuple(moved)
+
+
+def nearly(robot: Robot) -> list[float]:
+    """By how much angles that were not put back miss a multiple of 15 degrees, where that is little."""
+    angles = [p.angle for s in robot.steps for p in s.places if isinstance(p, Turned)]
+    return [m for a in angles if ROUNDING < (m := abs(a - nearest_angle(a))) < _NEARLY]
+
+
+def _step(step: Step, limit: float, moved: list[Snapped]) -> Step:
+    places = tuple(_place(step, place, limit, moved) for place in step.places)
+    return replace(step, places=places, moving=_moving(step, step.moving, limit, moved))
+
+
+def _place(step: Step, place: Place, limit: float, moved: list[Snapped]) -> Place:
+    if isinstance(place, Shifted):
+        return place
+    if isinstance(place, Turned):
+        return replace(place, angle=_angle(step.name, place.angle, place.rounding, limit, moved))
+    stated = np.array(place.rows)
+    simple, words = _simple(stated, place.rounding, limit)
+    amount = angle_between(simple, stated)
+    if amount > ROUNDING:
+        moved.append(Snapped(f"{step.name}: its orientation {words}", amount, True))
+    first, second, third = (_triple(row) for row in simple)
+    return replace(place, rows=(first, second, third))
+
+
+def _triple(row: Array) -> Triple:
+    return float(row[0]), float(row[1]), float(row[2])
+
+
+def _moving(step: Step, moving: Moving | None, limit: float, moved: list[Snapped]) -> Moving | None:
+    """The movement with its offset put back, where it turns."""
+    if moving is None or not moving.offset or not moving.turns:
+        return moving
+    offset = _angle(f"{step.name}, offset", moving.offset, moving.rounding, limit, moved)
+    return replace(moving, offset=offset)
+
+
+def _angle(place: str, angle: float, rounding: float, limit: float, moved: list[Snapped]) -> float:
+    nearest = nearest_angle(angle)
+    amount = abs(nearest - angle)
+    if amount <= max(limit, ROUNDING):
+        words = f"{angle:.10g} read as {np.degrees(nearest):g}°"
+    elif limit > 0.0 and nearest != 0.0 and _is_within(amount, rounding):  # a file that means 0 writes 0
+        words = f"{angle:.10g} is {np.degrees(nearest):g}° rounded, off"
+    else:
+        return angle
+    if amount > ROUNDING:
+        moved.append(Snapped(f"{place}: {words}", amount, True))
+    return nearest
+
+
+def _is_within(amount: float, rounding: float) -> bool:
+    """Whether an amount is what rounding makes; half a unit has errors of calculation."""
+    return amount <= rounding * (1.0 + 1e-9)
+
+
+def _simple(stated: Array, rounding: float, limit: float) -> tuple[Array, str]:
+    """The rotation by right angles, or by multiples of 15 degrees, that a rotation is; itself where it is none."""
+    right = right_angled(stated)
+    if right is not None and angle_between(right, stated) <= max(limit, ROUNDING):
+        return right, "read as one of right angles"
+    if limit > 0.0 and rounding > 0.0:
+        turns, _ = orientation(stated, rounding)
+        simple = product(tuple((axis, nearest_angle(angle)) for axis, angle in turns))
+        if _is_within(angle_between(simple, stated), rounding):
+            return simple, "is rounded, off"
+    return stated, ""

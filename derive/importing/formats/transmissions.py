@@ -1,0 +1,53 @@
+"""Transmissions of a URDF, between motors and joints: a description is in joint values, so they are reported alone.
+
+Read are those of `transmission_interface`, as a child of the robot or of its `ros2_control`, and what came before them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator
+from pathlib import Path
+from xml.etree import ElementTree
+
+from derive.importing.formats.documents import number
+
+Element = ElementTree.Element
+_REDUCTIONS = ("mechanicalReduction", "mechanical_reduction")
+
+
+def transmission_notes(path: Path, root: Element, axes: Container[str]) -> Iterator[str]:
+    """What is said of the transmissions that move axes: the reductions, and a line for motors that share joints."""
+    reductions: list[str] = []
+    found = False
+    for element in root.iter("transmission"):
+        joints = [j.get("name", "") for j in element.findall("joint")]
+        if not any(name in axes for name in joints):
+            continue
+        found = True
+        reductions += _reductions(path, element, joints)
+        if len(joints) > 1:
+            yield (
+                f"The {_kind(element)} {element.get('name')!r} couples {' and '.join(joints)}: a motor moves both. "
+                "Axis values are joint values; where the controller commands the motors, add `coupling=` to "
+                f"{joints[-1]}."
+            )
+    if found:
+        told = f" Reductions, for the drives: {', '.join(reductions)}." if reductions else ""
+        yield f"Transmissions are not part of a description: axis values are the joint values of the file.{told}"
+
+
+def _kind(element: Element) -> str:
+    """The type of a transmission, without the package it is from: DifferentialTransmission."""
+    stated = element.get("type") or element.findtext("type") or element.findtext("plugin") or "transmission"
+    return stated.strip().rpartition("/")[2]
+
+
+def _reductions(path: Path, element: Element, joints: list[str]) -> Iterator[str]:
+    """Joint and reduction, of those that are not 1, wherever the file states them."""
+    owners = [element, *element.findall("actuator"), *element.findall("joint")]
+    for owner in owners:
+        for text in (owner.findtext(tag) for tag in _REDUCTIONS):
+            place = f"the reduction of {owner.get('name')!r}"
+            if text is not None and (value := number(path, text.strip(), place)) != 1.0:
+                name = joints[0] if len(joints) == 1 else owner.get("name")
+                yield f"{name} {value:g}"

@@ -1,0 +1,148 @@
+"""Angles that a file has rounded, by the decimals that it writes: in every format, and never one that is none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from derive.importing.arms.rounded import snapped_robot
+from derive.importing.formats.documents import rounding
+from derive.importing.importing import SNAP
+from derive.importing.robot import Robot, Step, Turned
+from tests.importing.kinematics import by_yourdfpy, described, differences, imported
+from tests.importing.robots import joint, urdf
+from tests.importing.test_mjcf import by_mujoco
+
+ROUNDED = (
+    "1.5708 1.571 -1.5708 3.1415 3.14160 3.142 1.570800 +1.5707963 1.5708e0 15708e-4 1.570796E+00 0.7854 0.785 4.7124"
+    " 6.283 2.0944 1.0472 0.523599 -0.261799 1.570796325 1.57079632679 3.14159265358979311600"
+)
+NOT_ROUNDED = "1.57 3.14 1.5703 1.5700 3.1420 0.7850 3.1410 1.5710 0.0001 -0.001 0.00010 1.58 0.3 2.5000 1.0470 1.57081"
+
+
+def put_back(text: str, limit: float = SNAP) -> float:
+    """The angle that is read."""
+    turned = Turned(0, float(text), rounding(text))
+    robot, moved = snapped_robot(Robot("r", "s", "b", "t", (Step("j", (turned,)),), ()), limit)
+    (place,) = robot.steps[0].places
+    assert isinstance(place, Turned)
+    assert sum(m.amount for m in moved) == pytest.approx(abs(place.angle - float(text)), abs=1e-13)
+    return place.angle
+
+
+@pytest.mark.parametrize("text", ROUNDED.split())
+def test_a_rounded_angle_is_put_back(text: str) -> None:
+    angle = put_back(text)
+    assert angle / (np.pi / 12) == pytest.approx(round(float(text) / (np.pi / 12)), abs=1e-14)
+    assert put_back(text, 0.0) == pytest.approx(float(text), abs=1e-13), "--snap 0 puts nothing back"
+
+
+@pytest.mark.parametrize("text", NOT_ROUNDED.split())
+def test_an_angle_that_is_no_rounding_stays(text: str) -> None:
+    assert put_back(text) == float(text)
+
+
+@given(st.integers(1, 48), st.sampled_from("+-"), st.integers(3, 15), st.booleans())
+def test_every_multiple_of_15_degrees_with_any_number_of_decimals(
+    multiple: int, sign: str, decimals: int, is_cut: bool
+) -> None:
+    meant = multiple * np.pi / 12
+    text = f"{sign}{meant:.{decimals}f}"
+    if is_cut and decimals > 3:
+        text = f"{sign}{meant:.17f}"[: len(text)]
+    assert abs(put_back(text)) == pytest.approx(meant, abs=1e-14)
+
+
+@given(st.integers(-60000, 60000), st.integers(3, 4))
+def test_nothing_is_moved_by_more_than_a_unit_of_its_last_decimal(number: int, decimals: int) -> None:
+    text = f"{number / 10**decimals:.{decimals}f}"
+    unit = 10.0**-decimals / (2 if decimals == 3 else 1)
+    assert abs(put_back(text) - float(text)) <= unit * (1.0 + 1e-9)
+
+
+def test_a_table_in_radians_is_read_by_its_decimals(tmp_path: Path) -> None:
+    rows = "[[joints]]\nd = 0.3\nalpha = {0}\n[[joints]]\na = 0.4\n[[joints]]\na = 0.3\ntheta = {1}\nalpha = {0}\n"
+    toml, table = tmp_path / "r.toml", tmp_path / "r.csv"
+    head = "# convention: standard\n# angles: {}\n# lengths: m\ntheta,d,a,alpha\n"
+    for half, quarter, is_read in (
+        ("1.5708", "0.7854", True),
+        ("1.5712", "0.7856", False),
+        ("1.57", "0.7860", False),
+    ):
+        settings = 'convention = "standard"\nangles = "radians"\nlengths = "m"\n'
+        toml.write_text(settings + rows.format(half, quarter), encoding="utf-8")
+        cells = f"0,0.3,0,{half}\n0,0,0.4,0\n{quarter},0,0.3,{half}\n"
+        table.write_text(head.format("radians") + cells, encoding="utf-8")
+        texts = [imported(path).text for path in (toml, table)]
+        assert [("radians(" not in text) for text in texts] == [is_read, is_read]
+        assert not is_read or all("pi/4" in text for text in texts)
+    table.write_text(head.format("degrees") + "0,0.3,0,89.9999\n0,0,0.4,0\n0,0,0.3,90\n", encoding="utf-8")
+    assert "radians(" in imported(table).text, "a file in degrees has no reason to round 90"
+
+
+MODEL = """<mujoco><compiler angle="radian"/><worldbody>
+  <body name="a" pos="0 0 0.3"><joint name="j1"/><geom size="0.01"/>
+    <body name="b" pos="0.1 0 0" {}><joint name="j2"/><geom size="0.01"/>
+      <body name="c" pos="0.4 0 0"><joint name="j3"/><geom size="0.01"/>
+        <body name="d" pos="0.3 0.02 0" {}/></body></body></body></worldbody></mujoco>"""
+SQUARE = ('euler="1.5708 0 0"', 'axisangle="-1 0 0 1.5708"', 'quat="0.7071 0.7071 0 0"', 'xyaxes="1 0 0 0 0 1"')
+INCLINED = (
+    'euler="0 0 0.5236"',
+    'axisangle="0 0 2 0.524"',
+    'quat="0.9659 0 0 0.2588"',
+    'quat="-0.965926 0 0 -0.258819"',
+    'xyaxes="0.866 0.5 0 -0.5 0.866 0"',
+    'quat="0.2706 0.6533 0.2706 0.6533"',
+)
+NOT_SIMPLE = (
+    'euler="0.0001 0 0"',
+    'axisangle="0 0 1 0.5231"',
+    'axisangle="0 0.0001 1 0.5236"',
+    'quat="1 0.0001 0 0"',
+    'quat="0.9659 0.0001 0 0.2588"',
+    'xyaxes="1 0.0001 0 0 1 0"',
+    'quat="0.97 0 0 0.26"',
+)
+
+
+@pytest.mark.parametrize("given_", [*SQUARE, *INCLINED, *NOT_SIMPLE])
+def test_an_orientation_of_a_model_is_read_by_its_decimals(given_: str, tmp_path: Path) -> None:
+    path = tmp_path / "model.xml"
+    path.write_text(MODEL.format(SQUARE[0], given_), encoding="utf-8")
+    found = imported(path, tip="d")
+    degrees = [p.nominal for p in described(found, tmp_path).parameters if p.unit == "deg"]
+    if given_ in NOT_SIMPLE:
+        assert any("d: " in m.what for m in found.moved) is False
+    else:
+        assert not degrees, "every turn is a multiple of 15 degrees"
+    pose = by_mujoco(path, "world", "d")
+    position, rotation = differences(found, described(found, tmp_path), pose)
+    assert position <= found.bounds.position + 1e-9 and rotation <= found.bounds.rotation + 1e-12
+    exact = imported(path, tip="d", snap=0.0)
+    position, rotation = differences(exact, described(exact, tmp_path), pose)
+    assert position <= 1e-9 and rotation <= 1e-12
+
+
+def test_the_offset_of_a_joint_that_follows_is_put_back(tmp_path: Path) -> None:
+    path = tmp_path / "r.urdf"
+    mimic = '<mimic joint="j2" multiplier="-1" offset="1.5708"/>'
+    path.write_text(
+        urdf(
+            "r",
+            joint("j1", "revolute", "0 0 0.4"),
+            joint("j2", "revolute", "0.1 0 0", axis="0 1 0"),
+            joint("j3", "revolute", "0 0 0.5", axis="0 1 0", mimic=mimic),
+            joint("j4", "revolute", "0.4 0 0", axis="0 1 0"),
+            joint("tool", "fixed", "0 0 0.1"),
+        ),
+        encoding="utf-8",
+    )
+    found = imported(path)
+    assert "j3, offset: 1.5708 is 90° rounded, off by 3.7e-06 rad" in found.report
+    assert "radians(" not in found.text
+    position, rotation = differences(found, described(found, tmp_path), by_yourdfpy(path, "link0", "link5"))
+    assert position <= found.bounds.position + 1e-9 and rotation <= found.bounds.rotation + 1e-12

@@ -1,0 +1,73 @@
+"""Transmissions of a URDF: forward kinematics is in joint values all the same, and the report tells them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from derive.importing.robot import UnreadableRobot
+from tests.importing.kinematics import by_yourdfpy, described, differences, imported
+from tests.importing.robots import joint, urdf
+
+ARM = urdf(
+    "arm",
+    joint("j1", "revolute", "0 0 0.4"),
+    joint("j2", "revolute", "0.1 0 0", axis="0 1 0"),
+    joint("j3", "revolute", "0 0 0.5", axis="0 1 0"),
+    joint("tool", "fixed", "0 0 0.1"),
+)
+SIMPLE = """<transmission name="t1"><type>transmission_interface/SimpleTransmission</type>
+  <joint name="j1"><hardwareInterface>PositionJointInterface</hardwareInterface></joint>
+  <actuator name="m1"><mechanicalReduction> 101 </mechanicalReduction></actuator></transmission>"""
+OLD = """<transmission name="t2" type="pr2_mechanism_model/SimpleTransmission">
+  <actuator name="m2"/><joint name="j2"/><mechanicalReduction>-50.5</mechanicalReduction></transmission>"""
+CONTROL = """<ros2_control name="c" type="system"><transmission name="t2">
+  <plugin>transmission_interface/SimpleTransmission</plugin><actuator name="m2" role="actuator1"/>
+  <joint name="j2" role="joint1"><mechanical_reduction>3</mechanical_reduction></joint></transmission></ros2_control>"""
+COUPLED = """<transmission name="arm"><type>transmission_interface/FourBarLinkageTransmission</type>
+  <actuator name="m2"><mechanicalReduction>50</mechanicalReduction></actuator><actuator name="m3"/>
+  <joint name="j2"/><joint name="j3"/></transmission>"""
+OTHER = SIMPLE.replace('"j1"', '"finger"')
+STATED = "Transmissions are not part of a description: axis values are the joint values of the file."
+REPORTS = {
+    "reductions": (SIMPLE + OLD, [f"{STATED} Reductions, for the drives: j1 101, j2 -50.5."]),
+    "ros2_control": (CONTROL, [f"{STATED} Reductions, for the drives: j2 3."]),
+    "no reduction": (SIMPLE.replace(" 101 ", "1"), [f"{STATED}\n"]),
+    "coupled": (
+        COUPLED,
+        [
+            "The FourBarLinkageTransmission 'arm' couples j2 and j3: a motor moves both. Axis values are joint values; "
+            "where the controller commands the motors, add `coupling=` to j3.",
+            f"{STATED} Reductions, for the drives: m2 50.",
+        ],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REPORTS)
+def test_they_are_reported_and_change_nothing(name: str, tmp_path: Path) -> None:
+    inside, lines = REPORTS[name]
+    path, plain = tmp_path / "arm.urdf", tmp_path / "plain.urdf"
+    path.write_text(ARM.replace("</robot>", f"{inside}</robot>"), encoding="utf-8")
+    plain.write_text(ARM, encoding="utf-8")
+    found = imported(path)
+    for line in lines:
+        assert line in found.report + "\n"
+    mechanism = described(found, tmp_path)
+    position, rotation = differences(found, mechanism, by_yourdfpy(plain, "link0", "link4"))
+    assert position <= 1e-9 and rotation <= 1e-12
+    assert mechanism.chain == described(imported(plain), tmp_path).chain
+
+
+def test_that_of_a_gripper_is_not_told(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(ARM.replace("</robot>", f"{OTHER}</robot>"), encoding="utf-8")
+    assert "ransmission" not in imported(path).report
+
+
+def test_a_reduction_that_is_no_number_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(ARM.replace("</robot>", SIMPLE.replace("101", "1:50") + "</robot>"), encoding="utf-8")
+    with pytest.raises(UnreadableRobot, match=r"arm\.urdf: the reduction of 'm1': '1:50' is no number"):
+        imported(path)

@@ -1,0 +1,91 @@
+"""What the witness says of programs that are wrong in a way of their own: searches, modes, tilts, frames alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+import sympy as sp
+
+from derive.description.catalogue import MECHANISMS, load
+from derive.description.mechanism import Mechanism, Task
+from derive.description.remedies import with_remedy
+from derive.description.validate import validate
+from derive.frames import Rz, Tx
+from derive.ir.program import Output, Program, Require, Status
+from derive.ir.symbols import real
+from derive.kinematics.build import build
+from derive.kinematics.kinematics import Kinematics
+from derive.mechanism import search
+from derive.witness import Disagreement, inverse, witness
+from derive.witness import assembly as witness_of_modes
+from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, invention
+
+
+def described(**stated: object) -> Mechanism:
+    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **stated).mechanism
+
+
+@pytest.fixture(scope="module")
+def arm() -> Kinematics:
+    """An arm with two links in a plane, said to be searched along its first joint: its slots are what they were."""
+    mechanism = described(
+        parameters=(L1, L2),
+        joints=(A1, A2),
+        chain=Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2),
+        task=Task("xy"),
+        branches=(ELBOW,),
+        offset_interface=False,
+    )
+    kinematics = build(validate(mechanism))
+    return replace(kinematics, mechanism=replace(kinematics.mechanism, search=search(A1, where=L2)))
+
+
+def refusing(program: Program, condition: sp.Basic) -> Program:
+    return replace(program, body=(Require(condition, Status.UNREACHABLE), *program.body))
+
+
+def said_of(kinematics: Kinematics) -> str:
+    with pytest.raises(Disagreement) as refused:
+        witness(kinematics)
+    assert "\n" not in str(refused.value)
+    return with_remedy(str(refused.value))
+
+
+def test_a_search_that_misses_solutions(arm: Kinematics, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One elbow is never found: half of the solutions."""
+    monkeypatch.setattr(inverse, "_round_trip", lambda *_: 0.0)
+    monkeypatch.setattr(inverse, "refused_when_planted", lambda *_: (0, 1))
+    one_elbow = replace(arm, branch=refusing(arm.branch, sp.Gt(real("sigma_elbow"), 0)))
+    assert "the search misses 24 of 48 solutions; leave search= out" in said_of(one_elbow)
+
+
+def test_a_search_that_refuses_poses_where_branches_meet(arm: Kinematics, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(inverse, "refused_when_planted", lambda *_: (2, 100))
+    said = said_of(arm)
+    assert "the search refuses 2 of 100 poses next to where branches meet; leave search= out" in said
+
+
+def test_a_home_pose_of_several_modes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With its working modes not told apart, the legs at home stand in both assembly modes."""
+    monkeypatch.setattr(witness_of_modes, "home_branches", lambda _: ())
+    said = said_of(build(load(MECHANISMS / "softkin_planar_3rrr.py")))
+    assert "the home pose has 2 assembly modes" in said
+    assert "choose a home= at which every rod has a side" in said
+
+
+def test_an_orientation_that_is_refused() -> None:
+    kinematics = build(load(MECHANISMS / "kin_scara4_zccoupled_type1.py"))
+    assert kinematics.projection is not None
+    condition = sp.Gt(kinematics.projection.inputs[0], 0)
+    assert "the projection refuses a tilt: at A1=" in said_of(
+        replace(kinematics, projection=refusing(kinematics.projection, condition))
+    )
+
+
+def test_a_frame_that_is_elsewhere() -> None:
+    kinematics = build(load(MECHANISMS / "kin_tool.py"))
+    (first, *rest) = kinematics.forward.outputs
+    moved = replace(kinematics.forward, outputs=(Output(first.name, first.value + sp.Float(0.5)), *rest))
+    said = said_of(replace(kinematics, forward=moved))
+    assert "the frame of a mechanism without joints: error 5.0e-01" in said
