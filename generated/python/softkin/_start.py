@@ -7,8 +7,9 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING
 
 from softkin._core import Mechanism, Pose
+from softkin._frame import Frame
 from softkin._input import position_of, reals, rotation_of
-from softkin._types import Configuration, Frame, FrameLike, Numbers, Reals, Rotation, Status, Vector
+from softkin._types import Configuration, FrameLike, Numbers, Reals, Rotation, Status, Vector
 
 if TYPE_CHECKING:
     import numpy as np

@@ -1,0 +1,272 @@
+"""A base and a tool around every machine: the truth is its equations, and the product of three matrices."""
+
+from __future__ import annotations
+
+import copy
+import math
+import pickle
+
+import numpy as np
+import pytest
+import softkin
+from softkin import Frame, KinematicsError, Status
+
+from derive.description.mechanism import Mechanism, Turning
+from tests.catalogue.mounted.machines import BASE, EVERY, TOOL, Sample, couplings, matrices, sample_of, tools_of
+from tests.catalogue.references import held_at
+from tests.text.samples import tilted
+
+EVERY_MECHANISM = pytest.mark.parametrize("mechanism", EVERY, ids=lambda m: m.name)
+EVERY_COUPLING = pytest.mark.parametrize("name", couplings())
+LATERAL = Frame((25.0, 0.0, 0.0))
+
+
+def size(sample: Sample) -> float:
+    """The size of the machine with base and tool."""
+    return sample.reach + float(np.abs(sample.flange[:, :3, 3]).max()) + 600.0
+
+
+def moving(sample: Sample) -> bool:
+    """Whether the inverse follows a position; that of an orientation kinematics does not."""
+    return sample.robot.ROLE != "orientation"
+
+
+@EVERY_MECHANISM
+def test_its_frames_are_those_of_the_tool(mechanism: Mechanism) -> None:
+    """Forward kinematics is base times flange times tool; the inverse leads back, alone and in a batch."""
+    sample = sample_of(mechanism)
+    for tool in tools_of(sample):
+        robot = sample.robot.with_tool(tool).with_base(BASE)
+        expected = BASE.matrix @ sample.flange @ tool.matrix
+        positions, rotations, configurations, statuses = robot.forward_batch(sample.axes)
+        assert (statuses == Status.OK).all()
+        assert np.abs(matrices(positions, rotations) - expected).max() < 1e-12 * size(sample)
+        near = held_at(robot, sample.axes, sample.axes)
+        back, statuses = robot.inverse_batch(expected, None, configurations, near)
+        assert (statuses == Status.OK).all() and np.abs(back - sample.axes).max(initial=0.0) < 1e-6
+        every, outcomes = robot.inverse_all_batch(expected, None, near)
+        for k, axes in enumerate(sample.axes.tolist()):
+            frame, configuration = robot.forward(axes)
+            assert np.abs(frame.matrix - matrices(positions, rotations)[k]).max() < 1e-12 * size(sample)
+            assert configuration == tuple(configurations[k])
+            assert robot.orientation(axes) == frame.rotation
+            assert robot.inverse(frame, configuration, axes) == pytest.approx(tuple(axes), abs=1e-6)
+            assert robot.inverse(expected[k], configuration, axes) == pytest.approx(tuple(back[k]), abs=1e-7)
+            slots = robot.inverse_all(expected[k], axes)
+            assert any(s.axes is not None and s.axes == pytest.approx(tuple(axes), abs=1e-5) for s in slots)
+            for slot, found, status in zip(slots, every[k], outcomes[k], strict=True):
+                assert slot.status == status
+                assert slot.axes is None or slot.axes == pytest.approx(tuple(found), abs=1e-6)
+
+
+@EVERY_MECHANISM
+def test_every_slot_meets_the_position(mechanism: Mechanism) -> None:
+    """Any rotation is commanded: whatever the machine makes of it, each answer has the tool where it was commanded."""
+    sample = sample_of(mechanism)
+    rng = np.random.default_rng(5)
+    for tool in tools_of(sample):
+        robot = sample.robot.with_base(BASE).with_tool(tool)
+        for pose, axes in zip(BASE.matrix @ sample.flange @ tool.matrix, sample.axes.tolist(), strict=True):
+            place = pose[:3, 3]
+            start = {"start": pose} if mechanism.is_platform else {}  # a far pose is not found from home
+            commanded = pose[:3, :3] if mechanism.is_platform else tilted(rng)
+            for slot in robot.inverse_all((place, commanded), axes):
+                if slot.axes is not None and moving(sample):
+                    reached = robot.forward(slot.axes, **start)[0]
+                    assert np.abs(np.subtract(reached.position, place)).max() < 2e-9 * size(sample)
+
+
+@EVERY_MECHANISM
+def test_what_the_equations_do_not_determine_is_refused(mechanism: Mechanism) -> None:
+    """A tool to the side of a flange that turns by itself; beside or inclined to a tool whose direction is followed."""
+    sample = sample_of(mechanism)
+    inclined = Frame.from_euler(0.0, 30.0, 0.0)
+    refused = [LATERAL] if (sample.turns_by_itself or sample.follows_the_direction) and moving(sample) else []
+    refused += [inclined] if sample.follows_the_direction else []
+    for tool in refused:
+        with pytest.raises(KinematicsError, match="does not determine the flange") as refusal:
+            sample.robot.with_tool(tool)
+        assert refusal.value.status is Status.INVALID_COUPLING and mechanism.name in str(refusal.value)
+    for tool in (LATERAL, inclined):
+        assert tool in refused or sample.robot.with_tool(tool).tool == tool
+
+
+def test_the_documented_cases() -> None:
+    """What is truly undetermined, by name, and what is not."""
+    undetermined = {"Kin_Scara2_Z", "Kin_Scara3_CCZ", "Kin_Polar", "Kin_Polar_Z", "Kin_Pos_RRR"}
+    directions = {m.name for m in EVERY if m.task.turning is Turning.DIRECTION and m.task.position}
+    found = set()
+    for mechanism in EVERY:
+        try:
+            sample_of(mechanism).robot.with_tool(LATERAL)
+        except KinematicsError:
+            found.add(mechanism.name)
+    assert found == undetermined | directions and len(directions) == 4
+
+
+@EVERY_MECHANISM
+def test_the_nearest_rotation_is_that_of_the_flange(mechanism: Mechanism) -> None:
+    """A rotation out of reach: the flange takes the nearest of all its turns about its axis."""
+    if mechanism.task.turning is not Turning.ABOUT_Z or not mechanism.task.position:
+        return
+    sample, rng = sample_of(mechanism), np.random.default_rng(3)
+    robot = sample.robot.with_tool(TOOL).with_base(BASE)
+    around = np.radians(np.linspace(0.0, 360.0, 721))
+    turns = np.zeros((721, 3, 3))
+    turns[:, 0, 0] = turns[:, 1, 1] = np.cos(around)
+    turns[:, 1, 0], turns[:, 0, 1], turns[:, 2, 2] = np.sin(around), -np.sin(around), 1.0
+    zero = np.array(sample.robot.orientation_image().rotation)
+    answered = 0
+    for axes in sample.axes.tolist():
+        (place, own), configuration = robot.forward(axes)
+        commanded = np.array(tilted(rng))
+        if mechanism.is_platform:  # so that forward kinematics, from home, finds the pose
+            commanded = np.array(own) @ Frame.from_euler(20.0, 15.0, -10.0).rotation
+        flange = np.array(BASE.rotation).T @ commanded @ np.array(TOOL.rotation).T
+        best = np.einsum("nij,ij->n", turns @ zero, flange).max()
+        for slot in robot.inverse_all((place, commanded), axes):
+            is_own = slot.configuration[: robot.BRANCHES] == configuration[: robot.BRANCHES]
+            if slot.axes is not None and (is_own or not mechanism.is_platform):
+                answered += 1
+                own = np.array(sample.robot.orientation(slot.axes))
+                assert np.sum(own * flange) >= best - 1e-12
+                assert np.abs(np.subtract(robot.forward(slot.axes)[0].position, place)).max() < 2e-9 * size(sample)
+    assert answered
+
+
+@EVERY_COUPLING
+def test_couplings_carry_tools_and_stand_on_bases(name: str) -> None:
+    """The frames of a coupling, with a base and with a tool where one is determined; batches and single calls."""
+    coupled = couplings()[name]
+    rng = np.random.default_rng(11)
+    axes = rng.uniform(20.0, 80.0, (8, len(coupled.AXES)))
+    positions, rotations, _, _ = coupled.forward_batch(axes)
+    flange = matrices(positions, rotations)
+    straight = Frame.from_euler(50.0, 0.0, 0.0, (0.0, 0.0, 44.0))
+    robot = coupled.with_tool(straight if name == "gantry, wrist" else TOOL).with_base(BASE)
+    expected = BASE.matrix @ flange @ robot.tool.matrix
+    found = robot.forward_batch(axes)
+    assert np.abs(matrices(found[0], found[1]) - expected).max() < 1e-9
+    back, statuses = robot.inverse_batch(expected, None, found[2], axes)
+    assert (statuses == Status.OK).all() and np.abs(back - axes).max() < 1e-7
+    for row, matrix, data in zip(axes.tolist(), expected, found[2], strict=True):
+        assert robot.inverse(matrix, data, row) == pytest.approx(tuple(row), abs=1e-7)
+        free = (matrix[:3, 3], tilted(rng))
+        for slot in robot.inverse_all(free, row):
+            if slot.axes is not None:
+                assert np.abs(robot.forward(slot.axes)[0].position - matrix[:3, 3]).max() < 1e-9
+    if name == "gantry, wrist":
+        with pytest.raises(KinematicsError, match="along z only"):
+            coupled.with_tool(LATERAL)
+
+
+def test_a_turn_that_is_commanded_carries_any_tool() -> None:
+    """The example of the user: a tool to the side of a SCARA with four axes, and of no other SCARA."""
+    scara = softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0, pitch_zc=20.0)
+    coupled, mounted = softkin.Coupled(scara, softkin.Tool(tool_x=30.0)), scara.with_tool(Frame((30.0, 0.0, 0.0)))
+    axes = (10.0, 20.0, 5.0, 60.0)
+    for robot in (coupled, mounted):
+        frame, configuration = robot.forward(axes)
+        at, _ = scara.forward(axes)
+        assert frame.position == pytest.approx(at.position[:1] + (at.position[1] + 30.0,) + at.position[2:], abs=1e-9)
+        assert robot.inverse(frame, configuration, axes) == pytest.approx(axes, abs=1e-9)
+        assert robot.inverse_batch([frame], None, configuration, axes)[0][0] == pytest.approx(axes, abs=1e-9)
+    opposite = ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0))
+    for robot in (coupled, mounted):
+        found = robot.diagnose((frame.position, opposite))
+        assert found.status is Status.UNREACHABLE and "exactly the opposite way" in found.reason
+        assert robot.inverse_batch([frame.position], [opposite])[1].tolist() == [Status.UNREACHABLE]
+        far = robot.diagnose(((900.0, 0.0, 0.0), frame.rotation))
+        assert "out of reach" in far.reason and far.missing == pytest.approx(math.hypot(900.0, 30.0) - 550.0, abs=1e-9)
+
+
+def test_bases_and_tools_compose() -> None:
+    """Two tools are their product, two bases likewise, in every order of the calls; and it says so."""
+    bare = softkin.ArticulatedRobot6DOF(d1=400.0, a1=25.0, a2=455.0, a3=35.0, d4=420.0, d6=80.0)
+    second = Frame.from_quaternion((0.1, 0.2, 0.3, math.sqrt(0.86)), (5.0, 6.0, 7.0))
+    once = bare.with_tool(TOOL @ second).with_base(second @ BASE)
+    axes = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0)
+    for robot in (
+        bare.with_tool(TOOL).with_tool(second).with_base(BASE).with_base(second),
+        bare.with_base(BASE).with_tool(TOOL).with_base(second).with_tool(second),
+    ):
+        assert robot.bare is bare
+        assert np.abs(robot.tool.matrix - once.tool.matrix).max() < 1e-12
+        assert np.abs(robot.base.matrix - once.base.matrix).max() < 1e-12
+        assert np.abs(robot.forward(axes)[0].matrix - once.forward(axes)[0].matrix).max() < 1e-9
+    assert once.NAME == "Kin_ArticulatedRobot_6DOF on a base with a tool" and once.ROLE == "complete"
+    known = {"ArticulatedRobot6DOF": softkin.ArticulatedRobot6DOF, "Frame": Frame}
+    assert repr(eval(repr(once), known)) == repr(once)
+    for other in (copy.copy(once), copy.deepcopy(once), pickle.loads(pickle.dumps(once))):
+        assert repr(other) == repr(once) and other.forward(axes) == once.forward(axes)
+    assert once == bare.with_tool(once.tool).with_base(once.base) != bare.with_tool(once.tool)
+    assert len({once, bare.with_tool(once.tool).with_base(once.base)}) == 1
+
+
+def test_an_iterative_machine_starts_where_the_tool_is() -> None:
+    """The start is a frame of the tool, alone and in a batch."""
+    sample = sample_of(next(m for m in EVERY if m.name == "Kin_Hexapod"))
+    robot = sample.robot.with_tool(TOOL).with_base(BASE)
+    for axes in sample.axes.tolist():
+        frame, _ = robot.forward(axes)
+        again, _ = robot.forward(axes, start=frame)
+        assert np.abs(again.matrix - frame.matrix).max() < 1e-8
+        positions, rotations, _, statuses = robot.forward_batch([axes], start=frame)
+        assert statuses.tolist() == [Status.OK] and np.abs(positions[0] - frame.position).max() < 1e-8
+        assert np.abs(rotations[0] - frame.rotation).max() < 1e-10
+    upside_down = (frame.position, np.array(frame.rotation) @ np.diag([1.0, -1.0, -1.0]))
+    outcome = robot.forward_batch([axes], start=upside_down)[3]
+    try:
+        robot.forward(axes, start=upside_down)
+    except KinematicsError as refusal:
+        assert outcome.tolist() == [refusal.status]
+    else:
+        assert outcome.tolist() == [Status.OK]
+
+
+@EVERY_MECHANISM
+def test_garbage_is_refused_alike(mechanism: Mechanism) -> None:
+    """Numbers that are none, wherever they stand: the same status alone and in a batch, and never an answer."""
+    sample = sample_of(mechanism)
+    robot = sample.robot.with_tool(tools_of(sample)[-1]).with_base(BASE)
+    axes = sample.axes[0].tolist()
+    frame, configuration = robot.forward(axes)
+    for garbage in (math.nan, math.inf, -math.inf, 1e300, 1e9 + 10.0):
+        for place in range(12):
+            matrix = frame.matrix
+            matrix[place // 4, place % 4] = garbage
+            alone = _status(robot, matrix, configuration, axes)
+            together = robot.inverse_batch(matrix[None], None, configuration, axes)[1]
+            assert together.tolist() == [alone]
+            assert {s.status for s in robot.inverse_all(matrix, axes)} >= {alone} - {Status.OK}
+            reads = place % 4 == 3 and moving(sample)
+            assert alone is not Status.OK or not (reads or (sample.robot.READS_ROTATION and place % 4 < 3))
+        for place in range(len(axes)):
+            wrong = [*axes[:place], garbage, *axes[place + 1 :]]
+            with pytest.raises(KinematicsError):
+                robot.jacobian(wrong)
+            assert robot.forward_batch([wrong])[3][0] != Status.OK
+            assert robot.singularity(wrong).is_singular and robot.singularity_batch([wrong])[0].all()
+
+
+def _status(robot: softkin.Mechanism, frame: object, configuration: tuple[int, ...], reference: list[float]) -> Status:
+    try:
+        robot.inverse(frame, configuration, reference)  # type: ignore[arg-type]
+    except KinematicsError as error:
+        return error.status
+    return Status.OK
+
+
+def test_limits_are_those_of_the_bare_machine() -> None:
+    """Limits refuse, with the axis; where they are not tested they do not."""
+    given = {"link_length_1": 325.0, "link_length_2": 225.0, "lower_a3": -50.0, "upper_a3": 80.0}
+    for checks in (True, False):
+        robot = softkin.Scara4ZCcoupledType1(**given, check_limits=checks).with_tool(LATERAL).with_base(BASE)
+        frame, configuration = robot.forward((10.0, 20.0, 90.0, 30.0))
+        statuses = robot.inverse_batch([frame], None, configuration)[1].tolist()
+        if checks:
+            assert statuses == [Status.UNREACHABLE]
+            found = robot.diagnose(frame, configuration)
+            assert "A3" in found.reason and found.missing == pytest.approx(10.0)
+        else:
+            assert statuses == [Status.OK] and robot.inverse(frame, configuration)[2] == pytest.approx(90.0)
