@@ -62,8 +62,8 @@ TWIST = ("x", "y", "z", "turn x", "turn y", "turn z")
 """The rows of a twist: along and about the axes of the machine."""
 FIXED, WHOLE, TURN, DIRECTION, PITCH = "fixed", "whole", "turn", "direction", "pitch"
 ONE_AXIS, SEVERAL_AXES = "one axis", "several axes"
-"""What the flange follows: it keeps its rotation; all of the commanded one; the turn about one axis; the direction of the
-tool; its pitch, which depends on the position; the position alone, which turns it about one axis, or about several."""
+"""What the flange follows: it keeps its rotation; all of the commanded one; the turn about one axis; the direction of
+the tool; its pitch, which depends on the position; the position alone, which turns it about one axis, or several."""
 _IDENTITY: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 _STATUSES = tuple(Status)
@@ -240,8 +240,8 @@ class Mechanism(ABC):
         """The axis values that reach a frame.
 
         frame: position (3) and rotation (3 rows of 3), a `Frame` or any pair of sequences, or a matrix (4, 4). A
-        rotation with few exact digits, as from single precision, is repaired: the direction of z is kept. No entry of R^T R - I may be beyond
-        0.0001.
+        rotation with few exact digits, as from single precision, is repaired: the direction of z is kept. No entry of
+        R^T R - I may be beyond 0.0001.
         configuration: see `CONFIGURATION`; None stands for `DEFAULT_CONFIGURATION`. Where it leaves a branch open, the
         solution nearest to the reference is taken. Where it leaves a period open, an axis whose limits are at most
         350 degrees apart takes its one value inside them; any other axis takes the value nearest to the
@@ -344,7 +344,7 @@ class Mechanism(ABC):
         return _differential.jacobian(self, self._array_programs(), axes)
 
     def singularity_batch(self, axes: ArrayLike) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
-        """The singularities of N rows: axes (N, n) → whether each is singular (N,), margins (N, margins) as in `MARGINS`.
+        """The singularities of N rows: axes (N, n) → whether each is singular (N,), margins (N, m) as in `MARGINS`.
 
         Both are those of `singularity`: axis values that allow no pose are singular, with margins NaN. Raises BAD_INPUT
         for a wrong shape.
@@ -392,9 +392,9 @@ class Mechanism(ABC):
         """The condition number of the Jacobian: at least 1, and infinite where the pose is singular to all digits.
 
         length: the characteristic length (u) that makes the Jacobian dimensionless: rows of positions are divided by
-        it, columns of linear axes multiplied. It is needed where rows or axes differ in their unit, and has no influence
-        elsewhere. Axes of `HELD` do not count. Raises the errors of `jacobian`, and BAD_INPUT for a length that is
-        missing or not positive.
+        it, columns of linear axes multiplied. It is needed where rows or axes differ in their unit, and has no
+        influence elsewhere. Axes of `HELD` do not count. Raises the errors of `jacobian`, and BAD_INPUT for a length
+        that is missing or not positive.
         """
         from softkin import _velocities
 

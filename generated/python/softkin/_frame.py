@@ -103,7 +103,10 @@ class Frame(_Parts):
 
     @property
     def quaternion(self) -> tuple[float, float, float, float]:
-        """The quaternion x, y, z, w of length one, with w >= 0; where w is 0, the first other that is not 0 is positive."""
+        """The quaternion x, y, z, w of length one.
+
+        w is at least 0; where it is 0, the first number that is not 0 is positive.
+        """
         return _quaternion(orthonormalize(self.rotation))
 
     @property
@@ -170,7 +173,7 @@ def _error(rows: Rotation) -> float:
 
 
 def _orthogonal(rows: Rotation) -> Rotation:
-    """The rotation with z of the matrix, and x next to its x; a mirrored matrix keeps its determinant and is refused."""
+    """The rotation with z of the matrix, and x next to its x; a mirrored matrix stays one, and is refused."""
     x, y, z = zip(*rows, strict=True)
     e3 = _unit(z)
     along = sum(a * b for a, b in zip(x, e3, strict=True))

@@ -20,7 +20,8 @@ _ROUNDED = 1e-9
 
 def reals(values: Numbers, count: int, what: str) -> tuple[float, ...]:
     """A tuple of `count` floats. Text is refused, although `float` would accept it."""
-    refuse_strange(values, f"{what} must be {count} numbers")
+    if type(values) is not tuple and type(values) is not list:  # in nearly every call it is one of them
+        refuse_strange(values, f"{what} must be {count} numbers")
     try:
         found = tuple(array("d", iter(values)))
     except (TypeError, ValueError, OverflowError) as error:

@@ -62,11 +62,11 @@ _TRANSLATIONS, _ROTATIONS, _TILTS = TWIST[:3], TWIST[3:], ("tilt x", "tilt y")
 class Mounted(Mechanism):
     """A machine on a base, with a tool at its flange: what `Mechanism.with_base` and `Mechanism.with_tool` return.
 
-    It has the axes, the configuration, the limits and the singularities of the bare machine; its frames are those of the
-    tool, as seen from where the base is seen from. Of a rotation that the flange cannot take, the bare machine takes the
-    nearest for the flange; the position of the tool is met or refused.
+    It has the axes, the configuration, the limits and the singularities of the bare machine; its frames are those of
+    the tool, as seen from where the base is seen from. Of a rotation that the flange cannot take, it takes what the bare
+    machine takes; the position of the tool is met or refused.
     The Jacobian has the rows of the bare machine, unless the base or the tool turns these into others: then all six.
-    Parameters are those of the bare machine, `bare.parameters`.
+    Parameters, `project` and the offset interface are those of the bare machine: `bare.parameters`, `bare.project`.
     """
 
     NAME = "Mounted"
@@ -302,11 +302,11 @@ def _check(robot: Mechanism, tool: Frame) -> None:
     kind, shift, noticed = robot._follows(), tool.position, UNNOTICED * sum(map(abs, tool.position))
     why = ""
     if kind == DIRECTION and hypot(tool.rotation[0][2], tool.rotation[1][2], tool.rotation[2][2] - 1.0) > UNNOTICED:
-        why = "it follows the direction of the tool, and the turn about it is passive: the tool may not be inclined"
+        why = "the turn about the direction that it follows is passive: the tool may not be inclined"
     elif robot.ROLE == "orientation":  # alone it follows rotations, and no position
         return
     elif kind == DIRECTION and hypot(shift[0], shift[1]) > noticed:
-        why = "it follows the direction of the tool, and the turn about it is passive: the tool may be shifted along z only"
+        why = "the turn about the direction that it follows is passive: the tool may be shifted along z only"
     elif kind == ONE_AXIS:
         (axis, _), along = _axes_of(robot), 0.0
         along = sum(a * s for a, s in zip(axis, shift, strict=True))

@@ -12,13 +12,24 @@ import softkin
 from softkin import Frame, KinematicsError, Status
 
 from derive.description.mechanism import Mechanism, Turning
-from tests.catalogue.mounted.machines import BASE, EVERY, TOOL, Sample, couplings, matrices, sample_of, tools_of
+from tests.catalogue.mounted.machines import (
+    BASE,
+    EVERY,
+    LATERAL,
+    TOOL,
+    Sample,
+    couplings,
+    matrices,
+    sample_of,
+    tools_of,
+)
 from tests.catalogue.references import held_at
+from tests.catalogue.search.arms import frame as frame_of_arm
 from tests.text.samples import tilted
 
 EVERY_MECHANISM = pytest.mark.parametrize("mechanism", EVERY, ids=lambda m: m.name)
 EVERY_COUPLING = pytest.mark.parametrize("name", couplings())
-LATERAL = Frame((25.0, 0.0, 0.0))
+ASIDE = Frame((25.0, 0.0, 0.0))
 
 
 def size(sample: Sample) -> float:
@@ -81,13 +92,13 @@ def test_what_the_equations_do_not_determine_is_refused(mechanism: Mechanism) ->
     """A tool to the side of a flange that turns by itself; beside or inclined to a tool whose direction is followed."""
     sample = sample_of(mechanism)
     inclined = Frame.from_euler(0.0, 30.0, 0.0)
-    refused = [LATERAL] if (sample.turns_by_itself or sample.follows_the_direction) and moving(sample) else []
+    refused = [ASIDE] if (sample.turns_by_itself or sample.follows_the_direction) and moving(sample) else []
     refused += [inclined] if sample.follows_the_direction else []
     for tool in refused:
         with pytest.raises(KinematicsError, match="does not determine the flange") as refusal:
             sample.robot.with_tool(tool)
         assert refusal.value.status is Status.INVALID_COUPLING and mechanism.name in str(refusal.value)
-    for tool in (LATERAL, inclined):
+    for tool in (ASIDE, inclined):
         assert tool in refused or sample.robot.with_tool(tool).tool == tool
 
 
@@ -98,7 +109,7 @@ def test_the_documented_cases() -> None:
     found = set()
     for mechanism in EVERY:
         try:
-            sample_of(mechanism).robot.with_tool(LATERAL)
+            sample_of(mechanism).robot.with_tool(ASIDE)
         except KinematicsError:
             found.add(mechanism.name)
     assert found == undetermined | directions and len(directions) == 4
@@ -157,7 +168,7 @@ def test_couplings_carry_tools_and_stand_on_bases(name: str) -> None:
                 assert np.abs(robot.forward(slot.axes)[0].position - matrix[:3, 3]).max() < 1e-9
     if name == "gantry, wrist":
         with pytest.raises(KinematicsError, match="along z only"):
-            coupled.with_tool(LATERAL)
+            coupled.with_tool(ASIDE)
 
 
 def test_a_turn_that_is_commanded_carries_any_tool() -> None:
@@ -224,6 +235,24 @@ def test_an_iterative_machine_starts_where_the_tool_is() -> None:
         assert outcome.tolist() == [Status.OK]
 
 
+def test_a_searched_arm_keeps_its_further_solutions() -> None:
+    """Every root of the search is a solution of the mounted arm, in the same slot and order."""
+    sample = sample_of(next(m for m in EVERY if m.search is not None))
+    robot = sample.robot.with_tool(TOOL).with_base(BASE)
+    further = 0
+    drawn = np.random.default_rng(1).uniform(-170.0, 170.0, (40, 6))
+    for pose, axes in zip(frame_of_arm(drawn, LATERAL), drawn.tolist(), strict=True):
+        bare = sample.robot.inverse_all(pose, axes)
+        for slot, expected in zip(robot.inverse_all(BASE.matrix @ pose @ TOOL.matrix, axes), bare, strict=True):
+            assert slot.status == expected.status and len(slot.others) == len(expected.others)
+            for own, other in zip(slot.others, expected.others, strict=True):
+                further += 1
+                assert own == pytest.approx(other, abs=1e-5)
+        skewed = robot.inverse_all((pose[:3, 3], 1.01 * pose[:3, :3]), axes)
+        assert {s.status for s in skewed} == {Status.BAD_INPUT}
+    assert further
+
+
 @EVERY_MECHANISM
 def test_garbage_is_refused_alike(mechanism: Mechanism) -> None:
     """Numbers that are none, wherever they stand: the same status alone and in a batch, and never an answer."""
@@ -257,11 +286,38 @@ def _status(robot: softkin.Mechanism, frame: object, configuration: tuple[int, .
     return Status.OK
 
 
+@EVERY_MECHANISM
+def test_metres_give_what_millimetres_give(mechanism: Mechanism) -> None:
+    """The same machine, base and tool in metres: angles are the same, lengths a thousandth."""
+    sample = sample_of(mechanism)
+    given = {
+        p.name: sample.robot.parameters[p.name] * (1e-3 if p.unit.startswith("u") else 1.0)
+        for p in sample.robot.PARAMETERS
+    }
+    small = type(sample.robot)(**given)
+    lengths = np.array([1e-3 if axis.unit == "u" else 1.0 for axis in small.AXES])
+    for tool in tools_of(sample):
+        large = sample.robot.with_tool(tool).with_base(BASE)
+        robot = small.with_tool(_metres(tool)).with_base(_metres(BASE))
+        assert robot.JACOBIAN_ROWS == large.JACOBIAN_ROWS
+        for axes in sample.axes[:3]:
+            frame, configuration = large.forward(axes)
+            found, written = robot.forward(axes * lengths)
+            assert np.abs(found.matrix - _metres(frame).matrix).max() < 1e-11 and written == configuration
+            back = np.array(robot.inverse(_metres(frame), configuration, axes * lengths))
+            assert np.abs(back / lengths - axes).max(initial=0.0) < 1e-6
+
+
+def _metres(frame: Frame) -> Frame:
+    x, y, z = frame.position
+    return Frame((1e-3 * x, 1e-3 * y, 1e-3 * z), frame.rotation)
+
+
 def test_limits_are_those_of_the_bare_machine() -> None:
     """Limits refuse, with the axis; where they are not tested they do not."""
     given = {"link_length_1": 325.0, "link_length_2": 225.0, "lower_a3": -50.0, "upper_a3": 80.0}
     for checks in (True, False):
-        robot = softkin.Scara4ZCcoupledType1(**given, check_limits=checks).with_tool(LATERAL).with_base(BASE)
+        robot = softkin.Scara4ZCcoupledType1(**given, check_limits=checks).with_tool(ASIDE).with_base(BASE)
         frame, configuration = robot.forward((10.0, 20.0, 90.0, 30.0))
         statuses = robot.inverse_batch([frame], None, configuration)[1].tolist()
         if checks:
