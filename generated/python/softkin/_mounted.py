@@ -63,8 +63,8 @@ class Mounted(Mechanism):
     """A machine on a base, with a tool at its flange: what `Mechanism.with_base` and `Mechanism.with_tool` return.
 
     It has the axes, the configuration, the limits and the singularities of the bare machine; its frames are those of
-    the tool, as seen from where the base is seen from. Of a rotation that the flange cannot take, it takes what the bare
-    machine takes; the position of the tool is met or refused.
+    the tool, as seen from where the base is seen from. Of a rotation that the flange cannot take, it takes what the
+    bare machine takes; the position of the tool is met or refused.
     The Jacobian has the rows of the bare machine, unless the base or the tool turns these into others: then all six.
     Parameters, `project` and the offset interface are those of the bare machine: `bare.parameters`, `bare.project`.
     """

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from softkin._input import refuse_strange
-from softkin._types import KinematicsError, Status
+from softkin._types import FrameLike, KinematicsError, Status
 
 _Number = TypeVar("_Number", np.float64, np.int64)
 
@@ -29,10 +29,26 @@ def poses(positions: ArrayLike, rotations: ArrayLike | None) -> tuple[ArrayLike,
     found = _array(positions, "positions")
     if found.ndim != 3 or found.shape[1:] != (4, 4) or found.dtype.kind not in "fiub":
         return positions, None
-    matrices = found.astype(np.float64)
-    if not (np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)) <= 1e-9).all():
+    return _halves(found.astype(np.float64))
+
+
+def starts(start: FrameLike | tuple[ArrayLike, ArrayLike] | ArrayLike) -> tuple[ArrayLike, ArrayLike]:
+    """Positions and rotations of frames to start from: a pair of both, or matrices (N, 4, 4), or one for all rows."""
+    if isinstance(start, tuple) and len(start) == 2:
+        places: Any = start[0]
+        turns: Any = start[1]
+        return places, turns
+    found = _array(start, "start")
+    if found.shape[-2:] != (4, 4) or found.ndim > 3 or found.dtype.kind not in "fiub":
+        raise _bad("start must be a pair of positions and rotations, or matrices (N, 4, 4)")
+    return _halves(found.astype(np.float64))
+
+
+def _halves(matrices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The positions and the rotations of matrices (…, 4, 4)."""
+    if not (np.abs(matrices[..., 3, :] - (0.0, 0.0, 0.0, 1.0)) <= 1e-9).all():
         raise _bad("the last row of a frame's matrix must be 0 0 0 1")
-    return matrices[:, :3, 3], matrices[:, :3, :3]
+    return matrices[..., :3, 3], matrices[..., :3, :3]
 
 
 def whole_numbers(values: ArrayLike, count: int, size: int, what: str) -> NDArray[np.int64]:
@@ -43,7 +59,7 @@ def whole_numbers(values: ArrayLike, count: int, size: int, what: str) -> NDArra
     return _shaped(found.astype(np.int64, copy=False), count, (size,), what)
 
 
-def _array(values: ArrayLike, what: str) -> NDArray[np.generic]:
+def _array(values: object, what: str) -> NDArray[np.generic]:
     for one in (values, *values) if isinstance(values, list | tuple) else (values,):
         refuse_strange(one, f"{what} must be an array of numbers")
     try:

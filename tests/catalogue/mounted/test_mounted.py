@@ -222,9 +222,14 @@ def test_an_iterative_machine_starts_where_the_tool_is() -> None:
         frame, _ = robot.forward(axes)
         again, _ = robot.forward(axes, start=frame)
         assert np.abs(again.matrix - frame.matrix).max() < 1e-8
-        positions, rotations, _, statuses = robot.forward_batch([axes], start=frame)
-        assert statuses.tolist() == [Status.OK] and np.abs(positions[0] - frame.position).max() < 1e-8
-        assert np.abs(rotations[0] - frame.rotation).max() < 1e-10
+        for start in (frame, frame.matrix, [frame], ([frame.position], [frame.rotation])):
+            positions, rotations, _, statuses = robot.forward_batch([axes], start=start)
+            assert statuses.tolist() == [Status.OK] and np.abs(positions[0] - frame.position).max() < 1e-8
+            assert np.abs(rotations[0] - frame.rotation).max() < 1e-10
+        for wrong in (frame.matrix[:3], frame.matrix + 1e-3, "no frame", [frame.position]):
+            with pytest.raises(KinematicsError) as refusal:
+                robot.forward_batch([axes], start=wrong)
+            assert refusal.value.status is Status.BAD_INPUT
     upside_down = (frame.position, np.array(frame.rotation) @ np.diag([1.0, -1.0, -1.0]))
     outcome = robot.forward_batch([axes], start=upside_down)[3]
     try:
