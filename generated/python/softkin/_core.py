@@ -673,6 +673,10 @@ class Mechanism(ABC):
             return FIXED
         if not self.READS_ROTATION:
             return ONE_AXIS if self.FREEDOM == "one" else SEVERAL_AXES
+        if len(self.JACOBIAN_ROWS) != len(self.AXES) - len(
+            self.HELD
+        ):  # more rows than a task: what is met is not known
+            return SEVERAL_AXES
         if "pitch" in self.JACOBIAN_ROWS:
             return PITCH
         return DIRECTION if "tilt x" in self.JACOBIAN_ROWS else WHOLE

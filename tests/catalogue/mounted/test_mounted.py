@@ -171,6 +171,31 @@ def test_couplings_carry_tools_and_stand_on_bases(name: str) -> None:
             coupled.with_tool(ASIDE)
 
 
+def test_couplings_whose_flange_is_not_determined() -> None:
+    """A C axis behind an arm that turns its flange, a wrist that follows a direction there, a tool on a SCARA."""
+    arm = softkin.PosRRR(d1=350.0, a1=80.0, a2=310.0, d3=50.0, a3=30.0, d4=290.0)
+    scara = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0)
+    along = Frame((0.0, 0.0, 44.0))
+    cases = (
+        (softkin.Coupled(arm, softkin.CAxis()), (ASIDE, along), ()),
+        (softkin.Coupled(arm, softkin.Wrist2(tool_length=90.0)), (ASIDE,), (along,)),
+        (softkin.Coupled(scara, softkin.Wrist2(tool_length=90.0)), (ASIDE,), (along,)),
+        (softkin.Coupled(scara, softkin.Tool(tool_z=-60.0)), (ASIDE,), (along,)),
+        (softkin.Coupled(arm, softkin.Tool()), (ASIDE, along), ()),
+    )
+    for coupled, refused, carried in cases:
+        for tool in refused:
+            with pytest.raises(KinematicsError, match="does not determine the flange"):
+                coupled.with_tool(tool)
+        for tool in (Frame((0.0, 0.0, 0.0)), *carried):
+            robot = coupled.with_tool(tool).with_base(BASE)
+            axes = tuple(np.random.default_rng(6).uniform(20.0, 60.0, len(robot.AXES)).tolist())
+            frame, configuration = robot.forward(axes)
+            assert robot.inverse(frame, configuration, axes) == pytest.approx(axes, abs=1e-8)
+            back, statuses = robot.inverse_batch([frame], None, configuration, axes)
+            assert statuses.tolist() == [Status.OK] and back[0] == pytest.approx(axes, abs=1e-8)
+
+
 def test_a_turn_that_is_commanded_carries_any_tool() -> None:
     """The example of the user: a tool to the side of a SCARA with four axes, and of no other SCARA."""
     scara = softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0, pitch_zc=20.0)
