@@ -9,6 +9,8 @@ import pickle
 import numpy as np
 import pytest
 import softkin
+from hypothesis import given
+from hypothesis import strategies as st
 from softkin import Frame, KinematicsError, Status
 
 from derive.description.mechanism import Mechanism, Turning
@@ -214,6 +216,27 @@ def test_a_turn_that_is_commanded_carries_any_tool() -> None:
         assert robot.inverse_batch([frame.position], [opposite])[1].tolist() == [Status.UNREACHABLE]
         far = robot.diagnose(((900.0, 0.0, 0.0), frame.rotation))
         assert "out of reach" in far.reason and far.missing == pytest.approx(math.hypot(900.0, 30.0) - 550.0, abs=1e-9)
+
+
+ANGLES, LENGTHS = st.floats(-180.0, 180.0), st.floats(-500.0, 500.0)
+FRAMES = st.builds(Frame.from_euler, ANGLES, ANGLES, ANGLES, st.tuples(LENGTHS, LENGTHS, LENGTHS))
+
+
+@given(FRAMES, FRAMES, st.tuples(*[st.floats(-170.0, 170.0)] * 6))
+def test_any_base_and_any_tool(base: Frame, tool: Frame, axes: tuple[float, ...]) -> None:
+    """Of six axes and of four: base times flange times tool; and the answer has the frame, alone and in a batch."""
+    arm = softkin.ArticulatedRobot6DOF(d1=400.0, a1=25.0, a2=455.0, a3=35.0, d4=420.0, d6=80.0)
+    quill = softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0, pitch_zc=20.0)
+    for bare, given_axes in ((arm, axes), (quill, axes[:4])):
+        robot = bare.with_base(base).with_tool(tool)
+        frame, configuration = robot.forward(given_axes)
+        assert np.abs(base.matrix @ bare.forward(given_axes)[0].matrix @ tool.matrix - frame.matrix).max() < 1e-11
+        found = robot.inverse(frame, configuration, given_axes)
+        assert np.abs(robot.forward(found)[0].matrix - frame.matrix).max() < 1e-8
+        together, statuses = robot.inverse_batch([frame], None, configuration, given_axes)
+        assert statuses.tolist() == [Status.OK]
+        reached = robot.forward_batch(together)
+        assert np.abs(matrices(reached[0], reached[1])[0] - frame.matrix).max() < 1e-8
 
 
 def test_bases_and_tools_compose() -> None:
