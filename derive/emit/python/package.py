@@ -106,6 +106,7 @@ _FIXED = (
     "softkin/_solutions.py",
     "softkin/_start.py",
     "softkin/_table.py",
+    "softkin/_tools.py",
     "softkin/_twist.py",
     "softkin/_types.py",
     "softkin/_unrolled/__init__.py",

@@ -668,7 +668,7 @@ class Mechanism(ABC):
         return type(self)._twist is not Mechanism._twist
 
     def _follows(self) -> str:
-        """What of a commanded rotation the flange follows: see `_mounted`."""
+        """What of a commanded rotation the flange follows: see `_tools`."""
         if self.FREEDOM == "zero":
             return FIXED
         if not self.READS_ROTATION:
