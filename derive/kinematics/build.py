@@ -32,6 +32,7 @@ from derive.kinematics.branch_assignment import Assignment, assign, margin_lets,
 from derive.kinematics.coupling import coupling_programs
 from derive.kinematics.derived_branches import with_derived_branches
 from derive.kinematics.differential import (
+    TWIST_ROWS,
     Factor,
     factor_of,
     jacobian_program,
@@ -133,7 +134,7 @@ def _further_programs(
         programs.append(_projection_program(mechanism))
     if mechanism.is_platform:
         programs.append(_forward_from(mechanism, inverse, margins))
-    if _turns_in_a_coupling(mechanism):
+    if _needs_twist(mechanism):
         programs.append(twist_program(mechanism, closed.forward))
     if mechanism.is_orientation:
         programs += coupling_programs(mechanism)
@@ -182,6 +183,7 @@ def _scanned(mechanism: Mechanism) -> Kinematics:
         jacobian_program(mechanism, both.forward),
         _image_program(mechanism),
         _projection_program(mechanism),
+        *([twist_program(mechanism, both.forward)] if _needs_twist(mechanism) else []),
     ]
     finished = _finished(mechanism, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
     return replace(finished, tried_branches=len(both.trial_branches))
@@ -336,9 +338,9 @@ def _projection_program(mechanism: Mechanism) -> Program:
     return normalise("projection", heading_lets(mechanism), outputs)
 
 
-def _turns_in_a_coupling(mechanism: Mechanism) -> bool:
-    """Whether a coupling with this mechanism needs all six rows of the twist: the task has fewer."""
-    return (mechanism.is_position or mechanism.is_orientation) and _freedom(mechanism) is not Freedom.ZERO
+def _needs_twist(mechanism: Mechanism) -> bool:
+    """Whether its Jacobian lacks rows of the twist that are not zero: a coupling and a turned base need them."""
+    return _freedom(mechanism) is not Freedom.ZERO and not set(TWIST_ROWS) <= set(jacobian_rows(mechanism))
 
 
 def _freedom(mechanism: Mechanism) -> Freedom:

@@ -21,6 +21,7 @@ from derive.description.mechanism import (
 from derive.equations.axes import finite
 from derive.equations.closure import flange_rotation
 from derive.geometry.frames import Factor, Motion
+from derive.geometry.pose import pose_of
 from derive.ir.constants import (
     HELD,
 )
@@ -133,7 +134,8 @@ def _end_point_shift(mechanism: Mechanism) -> Program:
 def _total_image(mechanism: Mechanism) -> Program:
     """The orientations that tool and flange can take together, and the distance between both axes of rotation."""
     assert mechanism.chain is not None
-    own = sp.Matrix(flange_rotation(mechanism.chain))
+    without_joints = mechanism.task.turning is Turning.NONE  # then it may be inclined by any angle
+    own = sp.Matrix(pose_of(mechanism.chain).rotation if without_joints else flange_rotation(mechanism.chain))
     outputs = [Output(f"zero_{r.name}", v) for r, v in zip(ROTATION_ENTRIES, _ROTATION * own, strict=True)]
     read = [*FLANGE_AXIS]
     axis = sp.Matrix([0, 0, 1])

@@ -62,6 +62,8 @@ from derive.plate.plate import platform_jacobian
 _ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
 """The rows of a twist: along and about the axes of the base, and about the x and y axes of the tool, which tilt its z
 axis."""
+TWIST_ROWS = _ROWS[:6]
+"""The rows of a twist along and about the axes of the base."""
 _EXACT = 1e-6
 """The largest difference of logarithms of what is one product."""
 _DIGITS = 1e-6
@@ -96,13 +98,13 @@ def twist_program(mechanism: Mechanism, forward: Forward) -> Program:
     """All six rows of the twist, whatever the task: a coupling needs them."""
     width = len(mechanism.joints)
     if mechanism.chain is not None:
-        lets, values = _per_motor(mechanism, _by_screws(mechanism, _ROWS[:6]))
+        lets, values = _per_motor(mechanism, _by_screws(mechanism, TWIST_ROWS))
         return normalise("twist", (*forward.statements, *lets), _entries_of(values, width))
     solved, values = (
         platform_jacobian(mechanism, _motor_matrix(mechanism)) if mechanism.is_platform else jacobian_entries(mechanism)
     )
     own = {row: values[k * width : (k + 1) * width] for k, row in enumerate(jacobian_rows(mechanism))}
-    entries = [e for row in _ROWS[:6] for e in own.get(row, [sp.Integer(0)] * width)]
+    entries = [e for row in TWIST_ROWS for e in own.get(row, [sp.Integer(0)] * width)]
     return normalise("twist", (*forward.statements, *solved), _entries_of(entries, width))
 
 

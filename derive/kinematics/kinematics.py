@@ -99,8 +99,8 @@ class Kinematics:
     projection       r11…r33 → the nearest rotation that the flange can take; None where the task has no rotation
     offset_branch    x y z of the point, point_*, sigma_*, turn_*, ref_* → axis_*; None without the offset interface
     offset_configuration   axis_*, point_* → `branch_<name>`; None likewise
-    twist            axis_* → j11 … of all six rows, x y z turn x turn y turn z; None where no coupling needs it, and
-                     where the flange keeps its orientation: then the rows of `jacobian` are all
+    twist            axis_* → j11 … of all six rows, x y z turn x turn y turn z; None where `jacobian` has all six, and
+                     where the flange keeps its orientation: then the rows that it lacks are zero
 
     For an orientation kinematics, None for any other. The flange under it turns about the axis flange_axis_* in the
     frame of the flange, base_axis_* in that of the machine; both are zero for a flange that turns freely:

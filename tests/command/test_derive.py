@@ -52,6 +52,7 @@ def test_one_command_gives_everything_that_a_user_of_the_machine_needs(scara: Fo
     """Package, block, XML, picture, self-test; headers say what was measured; and the package works alone."""
     names = scara.names("build")
     assert {
+        "python/LICENSE",
         "python/pyproject.toml",
         "python/README.md",
         "python/my_scara/__init__.py",

@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from softkin import KinematicsError, Status
+from softkin import Frame, KinematicsError, Status
 
 from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning
 from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz
 from derive.kinematics.build import build
 from derive.solver.solve import Unsolved
+from tests.catalogue.mounted.machines import BASE, matrices
 from tests.machines.made import Array, Made, made
 from tests.machines.task_machines import (
     A1,
@@ -225,3 +226,73 @@ def test_what_cannot_be_commanded_is_refused(mechanism: Mechanism, message: str)
     with pytest.raises((DescriptionError, Unsolved)) as refusal:
         build(mechanism)
     assert str(refusal.value) == message
+
+
+def carried_tool(machine: Made) -> Frame:
+    """A tool to every side, a tenth of the reach long, and inclined."""
+    shift = (0.06 * machine.reach, -0.04 * machine.reach, 0.07 * machine.reach)
+    return Frame.from_euler(20.0, 30.0, 40.0, shift)
+
+
+@EVERY
+def test_an_arm_that_follows_a_pitch_carries_any_tool(name: str) -> None:
+    """Forward kinematics is base times flange times tool by the equations; the inverse leads back, also in a batch."""
+    machine = made(name)
+    axes = within_reach(machine, 8)
+    tool = carried_tool(machine)
+    robot = machine.robot.with_tool(tool).with_base(BASE)
+    expected = BASE.matrix @ matrices(*machine.closure.poses(axes)) @ tool.matrix
+    positions, rotations, configurations, statuses = robot.forward_batch(axes)
+    assert (statuses == Status.OK).all()
+    assert np.abs(matrices(positions, rotations) - expected).max() < 1e-11 * (machine.reach + 600.0)
+    back, statuses = robot.inverse_batch(expected, None, configurations, axes)
+    assert (statuses == Status.OK).all() and np.abs(back - axes).max() < 1e-6
+    for row, matrix, data in zip(axes, expected, configurations, strict=True):
+        assert robot.inverse(matrix, data, row) == pytest.approx(tuple(row), abs=1e-6)
+        jacobian = np.array(robot.jacobian(row))
+        assert np.abs(jacobian - robot.jacobian_batch([row])[0][0]).max() < 1e-9 * (machine.reach + 600.0)
+
+
+@EVERY
+def test_the_position_is_met_or_refused(name: str) -> None:
+    """A rotation that the arm cannot take: the tool is where it was commanded, or nowhere; alone as in a batch."""
+    machine = made(name)
+    axes = within_reach(machine, 8)
+    tool = carried_tool(machine)
+    robot = machine.robot.with_tool(tool)
+    rng = np.random.default_rng(9)
+    met = 0
+    for row in axes:
+        pose = robot.forward(row)[0].matrix
+        for angle in (0.5, 5.0, 40.0, 170.0):
+            turn = Frame.from_euler(rng.uniform(-180.0, 180.0), angle, rng.uniform(-180.0, 180.0))
+            command = Frame.from_matrix(pose) @ turn
+            slots = robot.inverse_all(command, row)
+            every, statuses = robot.inverse_all_batch([command], None, row)
+            for slot, found, status in zip(slots, every[0], statuses[0], strict=True):
+                assert slot.status == status
+                if slot.axes is None:
+                    continue
+                met += 1
+                assert np.abs(np.subtract(slot.axes, found)).max() < 1e-5
+                reached = machine.closure.poses(np.array([slot.axes]))
+                at = reached[0][0] + reached[1][0] @ tool.position
+                assert np.abs(at - command.position).max() < 1e-9 * machine.reach
+    assert met > 8
+
+
+@EVERY
+def test_the_reason_of_the_arm_is_said(name: str) -> None:
+    """Out of reach it is the arm's own reason, and never an answer."""
+    machine = made(name)
+    robot = machine.robot.with_tool(carried_tool(machine))
+    row = within_reach(machine, 1)[0]
+    frame, configuration = robot.forward(row)
+    far = Frame(tuple(50.0 * machine.reach + v for v in frame.position), frame.rotation)
+    if all(a.unit == "deg" for a in robot.AXES):
+        with pytest.raises(KinematicsError) as refusal:
+            robot.inverse(far, configuration, row)
+        assert refusal.value.status is Status.UNREACHABLE and refusal.value.refusal is not None
+        assert robot.inverse_batch([far], None, configuration, row)[1].tolist() == [Status.UNREACHABLE]
+    with pytest.raises(KinematicsError):
+        robot.inverse(Frame((float("nan"),) * 3, frame.rotation), configuration, row)

@@ -41,7 +41,9 @@ CALLED = frozenset((
     "sqrt",
 ))  # fmt: skip
 """The functions that programs on arrays call."""
-TYPES = frozenset(("Codes", "Real", "Reals", "Rotation", "Signs", "Truth", "Turns", "Values", "Vector", "Whole"))
+TYPES = frozenset((
+    "Codes", "Matrix", "Real", "Reals", "Rotation", "Signs", "Truth", "Turns", "Values", "Vector", "Whole",
+))  # fmt: skip
 """The types that programs on arrays name."""
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from derive.emit.python.calls import GIVEN
 from derive.emit.python.program import Argument, Method, Shape
+from derive.kinematics.differential import TWIST_ROWS
 from derive.kinematics.kinematics import Kinematics
 
 POSITION: tuple[Shape, ...] = ("x", "y", "z")
@@ -23,8 +24,6 @@ def methods(kin: Kinematics) -> list[Method]:
     axes = _axes(kin)
     axis_values = axes.shape
     branch_margins = _branch_margins(kin)
-    rows = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i, _ in enumerate(kin.rows, 1))
-    margins = tuple(m.name for m in kin.margins)
     found = [
         *shared(kin),
         *every_root(kin),
@@ -32,18 +31,13 @@ def methods(kin: Kinematics) -> list[Method]:
         Method("orientation", "The rotation of the frame.", kin.orientation, (axes,), "Rotation", ROTATION),
         branch(kin),
         limits(kin),
-        Method("singularity", "The margins, each zero at its singularity.", kin.singularity, (axes,), "Reals", margins),
-        Method("jacobian", "The Jacobian by rows, per radian.", kin.jacobian, (axes,), "Matrix", rows),
+        *differential(kin),
         Method("image", "The orientations of the flange.", kin.image, (), "Image", IMAGE),
+        *_compatible(kin),
+        *end_point_shift(kin),
+        *_total_image(kin),
+        *projection(kin),
     ]
-    if kin.twist is not None:
-        text = "The twist of the frame by rows, per radian."
-        entries = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i in range(1, 7))
-        found.append(Method("twist", text, kin.twist, (axes,), "Matrix", entries))
-    found += [*_compatible(kin), *end_point_shift(kin), *_total_image(kin)]
-    if kin.projection is not None and kin.chooses_twist:
-        text = "The nearest rotation that the flange can have."
-        found.append(Method("projection", text, kin.projection, (ROTATION_ARGUMENT,), "Rotation", ROTATION))
     offset = Argument("offset", "Vector", OFFSET)
     if kin.offset_branch is not None:
         text = "The axes of one branch for a point off the flange."
@@ -115,6 +109,35 @@ def branch(kin: Kinematics) -> Method:
     pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
     text = "The axes of one branch, on their turns; limits are not tested."
     return Method("branch", text, kin.branch, (*pose, *_choice(kin)), "Reals", _axes(kin).shape, is_explained=True)
+
+
+def differential(kin: Kinematics) -> list[Method]:
+    """The margins, the Jacobian and, where that lacks rows that are not zero, all rows of the twist."""
+    axes, margins = _axes(kin), tuple(m.name for m in kin.margins)
+    text = "The margins, each zero at its singularity."
+    found = [
+        Method("singularity", text, kin.singularity, (axes,), "Reals", margins),
+        Method(
+            "jacobian", "The Jacobian by rows, per radian.", kin.jacobian, (axes,), "Matrix", _rows(kin, len(kin.rows))
+        ),
+    ]
+    if kin.twist is not None:
+        text = "The twist of the frame by rows, per radian."
+        found.append(Method("twist", text, kin.twist, (axes,), "Matrix", _rows(kin, len(TWIST_ROWS))))
+    return found
+
+
+def projection(kin: Kinematics) -> list[Method]:
+    """The projection of the commanded rotation, where the mechanism follows a turn alone."""
+    if kin.projection is None or not kin.chooses_twist:
+        return []
+    text = "The nearest rotation that the flange can have."
+    return [Method("projection", text, kin.projection, (ROTATION_ARGUMENT,), "Rotation", ROTATION)]
+
+
+def _rows(kin: Kinematics, count: int) -> tuple[Shape, ...]:
+    """The entries of a matrix with a column for each axis."""
+    return tuple(tuple(f"j{i}{k}" for k, _ in enumerate(kin.mechanism.joints, 1)) for i in range(1, count + 1))
 
 
 def end_point_shift(kin: Kinematics) -> list[Method]:

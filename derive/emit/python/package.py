@@ -18,7 +18,16 @@ from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
 from derive.emit.python.calls import every_root
 from derive.emit.python.finish import Function
 from derive.emit.python.layout import formatted
-from derive.emit.python.methods import branch, end_point_shift, forwards, limits, methods, shared
+from derive.emit.python.methods import (
+    branch,
+    differential,
+    end_point_shift,
+    forwards,
+    limits,
+    methods,
+    projection,
+    shared,
+)
 from derive.emit.python.printer import ScalarPrinter, literal, primitives_in
 from derive.emit.python.program import Method, constants_of, has_search, scalar_body, unpacked
 from derive.emit.python.refusal import explained
@@ -61,15 +70,19 @@ from derive.report.reasons import NO_MEANING, OTHER_TURN, reasons_of
 name = "python"
 PACKAGE = "softkin"
 """The package of the catalogue."""
+_VERSION = "0.1.0"
+"""The version of the package, and of each package that is made for a user's machines."""
 _OF_THE_SEARCH = (
     *("ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
     *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
 )
 
 _FIXED = (
+    "LICENSE",
     "pyproject.toml",
     "softkin/_array.py",
     "softkin/_array_coupled.py",
+    "softkin/_array_mounted.py",
     "softkin/_array_programs/__init__.py",
     "softkin/_array_rotation.py",
     "softkin/_batch.py",
@@ -78,8 +91,11 @@ _FIXED = (
     "softkin/_configuration.py",
     "softkin/_core.py",
     "softkin/_coupled.py",
+    "softkin/_differential.py",
+    "softkin/_frame.py",
     "softkin/_input.py",
     "softkin/_limits.py",
+    "softkin/_mounted.py",
     "softkin/_offset.py",
     "softkin/_orientation.py",
     "softkin/_rotation.py",
@@ -90,18 +106,21 @@ _FIXED = (
     "softkin/_solutions.py",
     "softkin/_start.py",
     "softkin/_table.py",
+    "softkin/_tools.py",
     "softkin/_twist.py",
     "softkin/_types.py",
     "softkin/_unrolled/__init__.py",
     "softkin/_vectors.py",
+    "softkin/_velocities.py",
     "softkin/py.typed",
 )
 """The files that do not depend on the mechanisms."""
 _INDEXED = ("README.md", "softkin/__init__.py")
 """The files that list the mechanisms."""
 _EXPORTS = (
-    "Axis", "ConfigurationByte", "Coupled", "Diagnosis", "Frame", "KinematicsError", "Mechanism", "OrientationImage",
-    "Parameter", "Singularity", "Solution", "Status", "catalogue",
+    "Axis", "Configuration", "ConfigurationByte", "Coupled", "Diagnosis", "Frame", "FrameLike", "KinematicsError",
+    "Mechanism", "Mounted", "OrientationImage", "Parameter", "Rotation", "Singularity", "Solution", "Status",
+    "__version__", "catalogue", "orthonormalize",
 )  # fmt: skip
 _MADE = ("Axis", "ConfigurationByte", "Diagnosis", "Parameter", "Status")
 """The types of which a module creates values; it names all other types in annotations alone."""
@@ -149,6 +168,7 @@ def _templates() -> Environment:
     templates.globals |= {
         "generated": GENERATED,
         "statuses": [{"name": s.name, "softmotion": s.value, "meaning": _MEANINGS[s]} for s in Status],
+        "version": _VERSION,
         "chunk": _CHUNK,
         "edge": literal(float(EDGE)),
         "held": literal(float(HELD)),
@@ -204,7 +224,8 @@ def _index(kin: Kinematics) -> dict[str, Any]:
 def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     """The class of a mechanism, and its programs on arrays."""
     names = _index(kin)
-    arrays = [_untold(m) for m in (*shared(kin), *forwards(kin), branch(kin), limits(kin), *end_point_shift(kin))]
+    programs = (*shared(kin), *forwards(kin), branch(kin), limits(kin), *differential(kin))
+    arrays = [_untold(m) for m in (*programs, *projection(kin), *end_point_shift(kin))]
     lean = unrolled(kin) if is_unrolled(kin) else None
     contexts = {
         "": ("mechanism.py.j2", _class_context(kin, arrays, lean)),

@@ -11,14 +11,18 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Mechanism
 from softkin._coupled import Coupled
+from softkin._frame import Frame, orthonormalize
+from softkin._mounted import Mounted
 from softkin._types import (
     Axis,
+    Configuration,
     ConfigurationByte,
     Diagnosis,
-    Frame,
+    FrameLike,
     KinematicsError,
     OrientationImage,
     Parameter,
+    Rotation,
     Singularity,
     Solution,
     Status,
@@ -90,6 +94,7 @@ __all__ = [
     "BipodRotary",
     "CAxis",
     "CAxisTool",
+    "Configuration",
     "ConfigurationByte",
     "Coupled",
     "Crane",
@@ -98,6 +103,7 @@ __all__ = [
     "Diagnosis",
     "DualScara",
     "Frame",
+    "FrameLike",
     "Gantry2",
     "Gantry3",
     "GantryCutter2",
@@ -112,6 +118,7 @@ __all__ = [
     "KinType12XY",
     "KinematicsError",
     "Mechanism",
+    "Mounted",
     "OrientationImage",
     "P2CType1",
     "P2CType2",
@@ -123,6 +130,7 @@ __all__ = [
     "Polar",
     "PolarZ",
     "PosRRR",
+    "Rotation",
     "Scara2Z",
     "Scara3CCZ",
     "Scara3Z",
@@ -143,8 +151,12 @@ __all__ = [
     "TripodRotary",
     "Wrist2",
     "Wrist3",
+    "__version__",
     "catalogue",
+    "orthonormalize",
 ]
+
+__version__ = "0.1.0"
 
 _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": ("ac6_rzryryrxryrz_j6offset", "Ac6RZRYRYRXRYRZJ6Offset"),

@@ -17,6 +17,7 @@ __all__ = [
     "DEGREE",
     "Array",
     "Codes",
+    "Matrix",
     "OrientationPrograms",
     "Programs",
     "Real",
@@ -62,6 +63,8 @@ Signs: TypeAlias = tuple[Whole, ...]
 Turns: TypeAlias = tuple[Whole, ...]
 Vector: TypeAlias = tuple[Real, Real, Real]
 Rotation: TypeAlias = tuple[Vector, Vector, Vector]
+Matrix: TypeAlias = tuple[Reals, ...]
+"""By rows."""
 Truth: TypeAlias = NDArray[np.bool_] | bool
 Codes: TypeAlias = NDArray[np.uint8]
 """A `Status` for every row."""
@@ -101,6 +104,22 @@ class Programs(ABC):
     @abstractmethod
     def limits(self, axes: Reals) -> Codes:
         """The statuses of the test of all limits."""
+
+    @abstractmethod
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+
+    @abstractmethod
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, where the Jacobian lacks rows that are not zero."""
+        raise NotImplementedError
+
+    def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
+        """The nearest rotation that the flange can have: the rotation itself, unless a program says otherwise."""
+        return rotation, passed(*rotation)
 
 
 class StartedPrograms(Programs):

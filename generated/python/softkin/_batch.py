@@ -25,8 +25,8 @@ from softkin._array import (
 from softkin._array_rotation import made_rotations
 from softkin._columns import Bytes, Configurations, Mask, Poses, Rows, Table, columns, configurations
 from softkin._configuration import COINCIDE, COINCIDENT, EDGE, FIRST, SECOND
-from softkin._table import numbers, whole_numbers
-from softkin._types import Status
+from softkin._table import numbers, starts, whole_numbers
+from softkin._types import FrameLike, Status
 
 if TYPE_CHECKING:
     from softkin._core import Mechanism
@@ -48,12 +48,13 @@ def forward(robot: Mechanism, programs: Programs, axes: ArrayLike) -> tuple[Arra
 
 
 def forward_from(
-    robot: Mechanism, programs: StartedPrograms, axes: ArrayLike, start: tuple[ArrayLike, ArrayLike]
+    robot: Mechanism, programs: StartedPrograms, axes: ArrayLike, start: FrameLike | tuple[ArrayLike, ArrayLike]
 ) -> tuple[Array, Array, Bytes, Codes]:
     """Forward kinematics of every row, from a start of its own or from one start for all."""
     values = numbers(axes, None, (len(robot.AXES),), "axes")
-    places = numbers(start[0], len(values), (3,), "start positions")
-    turns = numbers(start[1], len(values), (3, 3), "start rotations")
+    given = starts(start)
+    places = numbers(given[0], len(values), (3,), "start positions")
+    turns = numbers(given[1], len(values), (3, 3), "start rotations")
 
     def from_start(rows: slice) -> _Forward:
         x, y, z = columns(places[rows])

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from softkin._array import Array, Codes, Reals, Rotation, Signs, Turns, Vector, Whole
 from softkin._array_rotation import made_rotations
 from softkin._configuration import AUTOMATIC, COINCIDE, FIRST, SECOND
-from softkin._table import numbers
+from softkin._table import numbers, poses
 from softkin._types import KinematicsError, Status
 
 if TYPE_CHECKING:
@@ -53,6 +53,7 @@ class Table:
     ) -> None:
         """Raises BAD_INPUT for input that does not have the form of a batch."""
         width = len(robot.AXES)
+        positions, rotations = poses(positions, rotations)
         self._positions = numbers(positions, None, (3,), "positions")
         self.count = len(self._positions)
         near = np.array(robot._without_reference()) if references is None else references

@@ -21,6 +21,7 @@ from softkin._configuration import (
     slots,
     squared_distance,
 )
+from softkin._frame import Frame
 from softkin._input import bytes_of, parameter_value, pose_of, position_of, reals, unusable
 from softkin._rotation import in_words, made_rotation
 from softkin._scalar import reasonable
@@ -30,7 +31,6 @@ from softkin._types import (
     Configuration,
     ConfigurationByte,
     Diagnosis,
-    Frame,
     FrameLike,
     KinematicsError,
     Matrix,
@@ -53,12 +53,17 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from softkin._array import Programs
+    from softkin._mounted import Mounted
 
 SINGULAR = 0.001
 """A pose is singular where a margin is smaller than this in size."""
 
 TWIST = ("x", "y", "z", "turn x", "turn y", "turn z")
 """The rows of a twist: along and about the axes of the machine."""
+FIXED, WHOLE, TURN, DIRECTION, PITCH = "fixed", "whole", "turn", "direction", "pitch"
+ONE_AXIS, SEVERAL_AXES = "one axis", "several axes"
+"""What the flange follows: it keeps its rotation; all of the commanded one; the turn about one axis; the direction of
+the tool; its pitch, which depends on the position; the position alone, which turns it about one axis, or several."""
 _IDENTITY: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 _STATUSES = tuple(Status)
@@ -234,9 +239,9 @@ class Mechanism(ABC):
     ) -> Reals:
         """The axis values that reach a frame.
 
-        frame: position (3) and rotation (3 rows of 3), a `Frame` or any pair of sequences. A rotation with few exact
-        digits, as from single precision, is repaired: the direction of z is kept. No entry of R^T R - I may be beyond
-        0.0001.
+        frame: position (3) and rotation (3 rows of 3), a `Frame` or any pair of sequences, or a matrix (4, 4). A
+        rotation with few exact digits, as from single precision, is repaired: the direction of z is kept. No entry of
+        R^T R - I may be beyond 0.0001.
         configuration: see `CONFIGURATION`; None stands for `DEFAULT_CONFIGURATION`. Where it leaves a branch open, the
         solution nearest to the reference is taken. Where it leaves a period open, an axis whose limits are at most
         350 degrees apart takes its one value inside them; any other axis takes the value nearest to the
@@ -329,6 +334,103 @@ class Mechanism(ABC):
         is_singular = any(abs(margin) < SINGULAR for margin in margins)
         return Singularity(is_singular, dict(zip(self.MARGINS, margins, strict=True)))
 
+    def jacobian_batch(self, axes: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """The Jacobians of N rows: axes (N, n) → Jacobians (N, rows, n), statuses (N,).
+
+        Each is that of `jacobian`. A row whose status is not OK holds NaN. Raises BAD_INPUT for a wrong shape.
+        """
+        from softkin import _differential
+
+        return _differential.jacobian(self, self._array_programs(), axes)
+
+    def singularity_batch(self, axes: ArrayLike) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+        """The singularities of N rows: axes (N, n) → whether each is singular (N,), margins (N, m) as in `MARGINS`.
+
+        Both are those of `singularity`: axis values that allow no pose are singular, with margins NaN. Raises BAD_INPUT
+        for a wrong shape.
+        """
+        from softkin import _differential
+
+        return _differential.singularity(self, self._array_programs(), axes)
+
+    def twist(self, axes: Numbers, velocities: Numbers) -> Reals:
+        """The velocity of the frame: rows as in `JACOBIAN_ROWS`, in lengths and radians per time.
+
+        velocities: one for each axis, of `HELD` axes too: radians per time for an axis in degrees, else lengths.
+        Raises the errors of `jacobian`.
+        """
+        from softkin import _velocities
+
+        return _velocities.twist(self, axes, velocities)
+
+    def axis_velocities(
+        self,
+        axes: Numbers,
+        twist: Numbers,
+        *,
+        held: Numbers | None = None,
+        damping: float = 0.0,
+        length: float | None = None,
+    ) -> Reals:
+        """The velocities of all axes that move the frame with a twist: the inverse of `twist`, in its units.
+
+        twist: one number for each of `JACOBIAN_ROWS`. held: the velocities of the axes of `HELD`, which nobody but the
+        caller knows; None stands for zeros. The other axes make up for their motion.
+        damping: 0 for the exact velocities, which are refused where `singularity` says that the pose is singular, and
+        where the axes cannot move so. A positive number for damped least squares: the velocities v that minimise
+        |J v - twist|² + damping² |v|², which are finite everywhere, and near a singularity not exact.
+        length: the characteristic length of `condition`, which makes the terms of that sum comparable; it is needed
+        for damping where rows or axes differ in their unit, and has no influence on an exact solution.
+        Raises IMPOSSIBLE at a singular pose without damping, UNREACHABLE for a motion that the axes do not have (of a
+        machine with fewer axes than rows), BAD_INPUT for invalid numbers, and the errors of `jacobian`.
+        """
+        from softkin import _velocities
+
+        return _velocities.axis_velocities(self, axes, twist, held, damping, length)
+
+    def condition(self, axes: Numbers, length: float | None = None) -> float:
+        """The condition number of the Jacobian: at least 1, and infinite where the pose is singular to all digits.
+
+        length: the characteristic length (u) that makes the Jacobian dimensionless: rows of positions are divided by
+        it, columns of linear axes multiplied. It is needed where rows or axes differ in their unit, and has no
+        influence elsewhere. Axes of `HELD` do not count. Raises the errors of `jacobian`, and BAD_INPUT for a length
+        that is missing or not positive.
+        """
+        from softkin import _velocities
+
+        return _velocities.condition(self, axes, length)
+
+    def manipulability(self, axes: Numbers, length: float | None = None) -> float:
+        """Yoshikawa's measure: the product of the singular values of the Jacobian, 0 at a singular pose.
+
+        For as many rows as axes it is the absolute value of the determinant. length: as in `condition`; without one,
+        where all rows and all axes have one unit, the measure has the unit of the determinant.
+        """
+        from softkin import _velocities
+
+        return _velocities.manipulability(self, axes, length)
+
+    def with_tool(self, tool: FrameLike) -> Mounted:
+        """This machine with a tool at its flange: the same calls, for the frame of the tool.
+
+        tool: the frame of the tool, seen from the flange (`Frame`, matrix, or pair). Tools compose: the second one is
+        seen from the first. Raises INVALID_COUPLING, with the reason, where a commanded frame does not determine the
+        flange: where the position alone turns it, a tool may be shifted along the axis of that turn only.
+        """
+        from softkin._mounted import mounted
+
+        return mounted(self, tool=tool)
+
+    def with_base(self, base: FrameLike) -> Mounted:
+        """This machine on a base: the same calls, for frames that are seen from where the base is seen from.
+
+        base: the frame of the machine, as seen from there. Bases compose: the machine with its first base stands on the
+        second one.
+        """
+        from softkin._mounted import mounted
+
+        return mounted(self, base=base)
+
     def orientation_image(self) -> OrientationImage:
         """The orientations that the flange can have."""
         image = self._image()
@@ -357,7 +459,8 @@ class Mechanism(ABC):
     ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
         """Inverse kinematics of N rows → axes (N, n), statuses (N,).
 
-        positions (N, 3); rotations (N, 3, 3), not read (and may be None) where `READS_ROTATION` is False;
+        positions (N, 3); rotations (N, 3, 3), not read (and may be None) where `READS_ROTATION` is False. Frames, or
+        their matrices (N, 4, 4), may stand in the place of both: `inverse_batch(frames)`.
         configurations (N, m), or (m,) for all rows, or None for the default; references (N, n), or (n,) for all rows,
         or None for zeros.
         A row whose status is not OK holds NaN. Raises BAD_INPUT for a wrong shape.
@@ -559,6 +662,28 @@ class Mechanism(ABC):
             return rows
         known = dict(zip(self.JACOBIAN_ROWS, rows, strict=True))
         return tuple(known.get(row, (0.0,) * len(axes)) for row in TWIST)
+
+    def _turns_unseen(self) -> bool:
+        """Whether the Jacobian lacks rows of the twist that are not zero."""
+        return type(self)._twist is not Mechanism._twist
+
+    def _follows(self) -> str:
+        """What of a commanded rotation the flange follows: see `_tools`."""
+        if self.FREEDOM == "zero":
+            return FIXED
+        if not self.READS_ROTATION:
+            return ONE_AXIS if self.FREEDOM == "one" else SEVERAL_AXES
+        if len(self.JACOBIAN_ROWS) != len(self.AXES) - len(
+            self.HELD
+        ):  # more rows than a task: what is met is not known
+            return SEVERAL_AXES
+        if "pitch" in self.JACOBIAN_ROWS:
+            return PITCH
+        return DIRECTION if "tilt x" in self.JACOBIAN_ROWS else WHOLE
+
+    def _nearest_flange(self, rotation: Rotation) -> Rotation | Status:
+        """The rotation that the inverse gives the flange for a commanded one, where it depends on nothing else."""
+        return rotation
 
     @abstractmethod
     def _image(self) -> Image | Status: ...

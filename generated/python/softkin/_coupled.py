@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from softkin._configuration import TIE, Criterion
-from softkin._core import TWIST, Image, Mechanism, Pose
+from softkin._core import SEVERAL_AXES, TURN, TWIST, Image, Mechanism, Pose
 from softkin._input import bytes_of
 from softkin._orientation import OrientationKinematics, turning_axis
 from softkin._twist import TwistChoice
@@ -27,7 +27,7 @@ from softkin._types import (
     Turns,
     Vector,
 )
-from softkin._vectors import moved, plus, product, seen_from, turned
+from softkin._vectors import moved, plus, product, seen_from, transposed, turned
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -68,6 +68,7 @@ class Coupled(Mechanism):
         carrying = position.orientation_image()
         self._axis = turning_axis(carrying)
         self._flange = carrying.rotation if carrying.freedom == "zero" else None
+        self._tool = _tool_of(orientation) if _commands_the_flange(position, orientation) else None
         total = orientation.image_on(carrying)
         self.FREEDOM = total.freedom
         self._orientations: Image = total.rotation, total.base_axis, total.flange_axis
@@ -185,6 +186,8 @@ class Coupled(Mechanism):
         self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
     ) -> Reals | Diagnosis | Status:
         """The axes where the position axes turn the flange: in a pair that is allowed these come first."""
+        if self._tool is not None:
+            return self._with_tool(position, rotation, carrier, *self._tool)
         shift = self.orientation_part._end_point_shift(rotation, *self._axis)
         if isinstance(shift, Status):
             return shift
@@ -196,6 +199,34 @@ class Coupled(Mechanism):
             return flange
         own = self.orientation_part._branch(_ORIGIN, seen_from(flange, rotation), *wrist)
         return _of(self.orientation_part, own) if isinstance(own, Diagnosis) else axes + own
+
+    def _with_tool(
+        self, position: Vector, rotation: Rotation, carrier: _Choice, end: Vector, turn: Rotation
+    ) -> Reals | Diagnosis:
+        """The axes of the position part where the commanded rotation says how these turn the flange."""
+        wanted = product(rotation, transposed(turn))
+        flange = self.position_part._nearest_flange(wanted)
+        shift = _ORIGIN if isinstance(flange, Status) else turned(flange, end)  # refused below, with the reason
+        axes = self.position_part._branch(plus(position, shift, -1.0), wanted, *carrier)
+        return _of(self.position_part, axes) if isinstance(axes, Diagnosis) else axes
+
+    def _follows(self) -> str:
+        """The orientation part follows the rotation; without axes it is a tool on the flange of the position part."""
+        position, orientation = self.position_part, self.orientation_part
+        if self.FREEDOM == "zero" or not orientation.AXES:
+            return position._follows()
+        follows = orientation._follows()
+        return SEVERAL_AXES if follows == TURN and self.FREEDOM == "three" else follows
+
+    def _nearest_flange(self, rotation: Rotation) -> Rotation | Status:
+        """The nearest rotation of the tool, where the commanded one says the turn of the flange."""
+        if self._tool is not None:
+            _, turn = self._tool
+            flange = self.position_part._nearest_flange(product(rotation, transposed(turn)))
+            return flange if isinstance(flange, Status) else product(flange, turn)
+        at_zero = self.position_part.orientation_image().rotation
+        own = self.orientation_part._nearest_flange(seen_from(at_zero, rotation))
+        return own if isinstance(own, Status) else product(at_zero, own)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
         parts = (self.position_part, axes[: self._count]), (self.orientation_part, axes[self._count :])
@@ -234,7 +265,7 @@ class Coupled(Mechanism):
         """The programs on arrays, which run those of both parts one after the other."""
         from softkin._array_coupled import CoupledPrograms
 
-        return CoupledPrograms(self.position_part, self.orientation_part, self._flange, self._axis)
+        return CoupledPrograms(self.position_part, self.orientation_part, self._flange, self._axis, self._tool)
 
 
 def _check(position: Mechanism, orientation: Mechanism) -> None:
@@ -248,13 +279,27 @@ def _check(position: Mechanism, orientation: Mechanism) -> None:
     if isinstance(position, TwistChoice) and orientation.AXES:
         raise _refused(f"{position.NAME} follows the turn of the tool itself: {orientation.NAME} may have no axes")
     image = position.orientation_image()
-    if not orientation.is_compatible(image):
+    if not _commands_the_flange(position, orientation) and not orientation.is_compatible(image):
         how = "about one axis" if image.freedom == "one" else "freely"
         raise _refused(
             f"the axes of {position.NAME} turn its flange {how}, and a commanded frame does not determine where "
             f"{orientation!r} then has its end point: only shifts along the axis of that turn, and those whose "
             "direction the commanded rotation tells, may be there; all others must be 0"
         )
+
+
+def _commands_the_flange(position: Mechanism, orientation: OrientationKinematics) -> bool:
+    """Whether the commanded rotation says how the position axes turn the flange: then any tool may be there."""
+    return position._follows() == TURN and not orientation.AXES
+
+
+def _tool_of(orientation: OrientationKinematics) -> tuple[Vector, Rotation]:
+    """Position and rotation of an orientation kinematics without axes."""
+    pose = orientation._forward(())
+    if isinstance(pose, Status):
+        raise _refused(f"{orientation.NAME} has no end point: {pose.meaning}")
+    position, rotation, _ = pose
+    return position, rotation
 
 
 def _of(part: Mechanism, refused: Diagnosis) -> Diagnosis:

@@ -3,18 +3,25 @@
 
 from __future__ import annotations
 
+import sys
 from array import array
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Set
 from math import isnan, nan
+from typing import Any
 
 from softkin._types import FrameLike, KinematicsError, Numbers, Parameter, Rotation, Status, Vector
 
 LARGEST = 1e9
 """Numbers larger in size than this are refused."""
+_LAST_ROW = (0.0, 0.0, 0.0, 1.0)
+_ROUNDED = 1e-9
+"""The last row of a matrix (4, 4) may differ by this."""
 
 
 def reals(values: Numbers, count: int, what: str) -> tuple[float, ...]:
     """A tuple of `count` floats. Text is refused, although `float` would accept it."""
+    if type(values) is not tuple and type(values) is not list:  # in nearly every call it is one of them
+        refuse_strange(values, f"{what} must be {count} numbers")
     try:
         found = tuple(array("d", iter(values)))
     except (TypeError, ValueError, OverflowError) as error:
@@ -22,6 +29,17 @@ def reals(values: Numbers, count: int, what: str) -> tuple[float, ...]:
     if len(found) != count:
         raise _bad(f"{what} must be {count} numbers, not {len(found)}")
     return found
+
+
+def refuse_strange(values: object, needed: str) -> None:
+    """Refuse what has numbers, but not in an order that counts (sets, mappings), bytes, and arrays with a mask."""
+    if type(values) is tuple or type(values) is list:
+        return
+    masked = sys.modules.get("numpy.ma")  # where it is not loaded, nobody has an array with a mask
+    if masked is not None and isinstance(values, masked.MaskedArray):
+        raise _bad(f"{needed}, not an array with a mask: fill it, or leave its rows out")
+    if isinstance(values, Set | Mapping | bytes | bytearray):
+        raise _bad(f"{needed} in a sequence, not {type(values).__name__}: {_shown(values)}")
 
 
 def pose_of(frame: FrameLike) -> tuple[Vector, Rotation]:
@@ -59,8 +77,12 @@ def rotation_of(frame: FrameLike) -> Rotation:
 
 def rotation_by_rows(rows: Iterable[Numbers]) -> Rotation:
     """A rotation by rows."""
+    refuse_strange(rows, "rotation must be three rows of three numbers")
     try:
-        (a, b, c), (d, e, f), (g, h, i) = rows
+        first, second, third = rows
+        for row in (first, second, third):
+            refuse_strange(row, "rotation must be three rows of three numbers")
+        (a, b, c), (d, e, f), (g, h, i) = first, second, third
     except (TypeError, ValueError) as error:
         raise _bad(f"rotation must be three rows of three numbers, not {_shown(rows)}") from error
     a, b, c, d, e, f, g, h, i = reals((a, b, c, d, e, f, g, h, i), 9, "rotation")
@@ -127,12 +149,25 @@ def _named(what: str, value: object) -> Iterable[tuple[str, float]]:
         yield what, value
 
 
-def _halves(frame: FrameLike) -> FrameLike:
+def _halves(frame: FrameLike) -> tuple[Any, Any]:
+    """The position and the rotation of a pair, or of a matrix (4, 4)."""
+    if isinstance(frame, tuple) and len(frame) == 2:
+        return frame
+    refuse_strange(frame, "a frame must be a pair of position and rotation, or a matrix (4, 4)")
     try:
-        position, rows = frame
+        parts: tuple[Any, ...] = tuple(frame)  # type: ignore[arg-type]
+        if len(parts) == 2:
+            return parts[0], parts[1]
+        (a, b, c, x), (d, e, f, y), (g, h, i, z), last = parts
     except (TypeError, ValueError) as error:
-        raise _bad("a frame must be a pair of position and rotation") from error
-    return position, rows
+        raise _bad(
+            f"a frame must be a pair of position and rotation, or a matrix (4, 4), not {_shown(frame)}"
+        ) from error
+    if not all(
+        abs(given - needed) <= _ROUNDED for given, needed in zip(reals(last, 4, "last row"), _LAST_ROW, strict=True)
+    ):
+        raise _bad(f"the last row of a frame's matrix must be 0 0 0 1, not {_shown(last)}")
+    return (x, y, z), ((a, b, c), (d, e, f), (g, h, i))
 
 
 def _bad(message: str) -> KinematicsError:

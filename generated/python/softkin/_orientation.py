@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from softkin._core import Mechanism
 from softkin._rotation import made_rotation
 from softkin._types import Diagnosis, OrientationImage, Rotation, Status, Vector
+from softkin._vectors import transposed, turned
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
@@ -54,6 +55,8 @@ class OrientationKinematics(Mechanism):
             freedom = "one"
         if freedom != "one":
             base, flange = image.base_axis, image.flange_axis
+        if freedom == "zero" and rotation != given:  # a tool without an axis that is turned against the flange
+            flange = turned(transposed(rotation), base)
         return OrientationImage(freedom, rotation, base, flange)
 
     def _total_image(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> TotalImage | Status:

@@ -7,8 +7,9 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING
 
 from softkin._core import Mechanism, Pose
+from softkin._frame import Frame
 from softkin._input import position_of, reals, rotation_of
-from softkin._types import Configuration, Frame, FrameLike, Numbers, Reals, Rotation, Status, Vector
+from softkin._types import Configuration, FrameLike, Numbers, Reals, Rotation, Status, Vector
 
 if TYPE_CHECKING:
     import numpy as np
@@ -42,11 +43,12 @@ class IterativeForward(Mechanism):
         return Frame(position, rows), self._written(margins, values)
 
     def forward_batch(
-        self, axes: ArrayLike, start: tuple[ArrayLike, ArrayLike] | None = None
+        self, axes: ArrayLike, start: FrameLike | tuple[ArrayLike, ArrayLike] | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8], NDArray[np.uint8]]:
         """Forward kinematics of N rows, as `Mechanism.forward_batch`.
 
-        start: positions (N, 3) and rotations (N, 3, 3), or one frame for all rows; without it, the home pose.
+        start: positions (N, 3) and rotations (N, 3, 3), or frames (N, 4, 4), or one frame for all rows; without it, the
+        home pose.
         """
         from softkin import _batch
 

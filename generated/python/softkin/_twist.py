@@ -6,7 +6,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterable
 
-from softkin._core import Mechanism
+from softkin._core import TURN, Mechanism
 from softkin._input import rotation_by_rows
 from softkin._types import Numbers, Rotation, Status
 
@@ -25,6 +25,12 @@ class TwistChoice(Mechanism):
         if isinstance(nearest, Status):
             self._fail("project", nearest, rotation=rows)
         return nearest
+
+    def _follows(self) -> str:
+        return TURN
+
+    def _nearest_flange(self, rotation: Rotation) -> Rotation | Status:
+        return self._projection(rotation)
 
     @abstractmethod
     def _projection(self, rotation: Rotation) -> Rotation | Status: ...

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any, NamedTuple, Self, TypeAlias
+from typing import Any, NamedTuple, Protocol, Self, TypeAlias
 
 Vector: TypeAlias = tuple[float, float, float]
 Rotation: TypeAlias = tuple[Vector, Vector, Vector]
@@ -23,8 +23,16 @@ Configuration: TypeAlias = tuple[int, ...]
 """The branch bytes, then a signed period number for every axis that turns more than once."""
 
 Numbers: TypeAlias = Iterable[float]
-FrameLike: TypeAlias = tuple[Numbers, Iterable[Numbers]]
-"""A position and three rows of a rotation, of any sequence type."""
+
+
+class SupportsArray(Protocol):
+    """An object that becomes a NumPy array: a matrix (4, 4) where it is a frame."""
+
+    def __array__(self) -> Any: ...
+
+
+FrameLike: TypeAlias = tuple[Numbers, Iterable[Numbers]] | Sequence[Numbers] | SupportsArray
+"""A `Frame`, a pair of a position and three rows of a rotation, of any sequence type, or a matrix (4, 4)."""
 PlainFrame: TypeAlias = tuple[Vector, Rotation]
 """A frame in tuples of floats: a `Frame`, or the pair alone, which is read a little faster."""
 
@@ -79,13 +87,6 @@ class KinematicsError(ValueError):
     def __reduce__(self) -> tuple[type[KinematicsError], tuple[Status, str, Diagnosis | None]]:
         """Copying and pickling keep the refusal."""
         return type(self), (self.status, str(self), self.refusal)
-
-
-class Frame(NamedTuple):
-    """A frame: position in the user's length unit, and rotation by rows."""
-
-    position: Vector
-    rotation: Rotation
 
 
 class Solution(NamedTuple):

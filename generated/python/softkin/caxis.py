@@ -167,10 +167,6 @@ class CAxis(OrientationKinematics, TwistChoice):
             return Status.BAD_INPUT
         return ((1.0,),)
 
-    def _image(self) -> Image | Status:
-        """The orientations of the flange."""
-        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         (axis_c,) = axes
@@ -178,6 +174,10 @@ class CAxis(OrientationKinematics, TwistChoice):
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         return ((0.0,), (0.0,), (0.0,), (0.0,), (0.0,), (1.0,))
+
+    def _image(self) -> Image | Status:
+        """The orientations of the flange."""
+        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _compatible(self, flange_axis: Vector) -> Status:
         """Whether a flange that turns can carry this mechanism."""

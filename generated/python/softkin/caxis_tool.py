@@ -190,10 +190,6 @@ class CAxisTool(OrientationKinematics, TwistChoice):
             return Status.BAD_INPUT
         return ((1.0,),)
 
-    def _image(self) -> Image | Status:
-        """The orientations of the flange."""
-        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         (axis_c,) = axes
@@ -206,6 +202,10 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         sin_c = sin(c)
         cos_c = cos(c)
         return ((-tool_y * cos_c - tool_x * sin_c,), (tool_x * cos_c - tool_y * sin_c,), (0.0,), (0.0,), (0.0,), (1.0,))
+
+    def _image(self) -> Image | Status:
+        """The orientations of the flange."""
+        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _compatible(self, flange_axis: Vector) -> Status:
         """Whether a flange that turns can carry this mechanism."""

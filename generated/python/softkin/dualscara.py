@@ -669,10 +669,6 @@ class DualScara(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0, 1.0),
         )
 
-    def _image(self) -> Image | Status:
-        """The orientations of the flange."""
-        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
@@ -760,6 +756,10 @@ class DualScara(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 1.0),
         )
+
+    def _image(self) -> Image | Status:
+        """The orientations of the flange."""
+        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""

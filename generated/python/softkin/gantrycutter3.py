@@ -236,10 +236,6 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, direction_r))
 
-    def _image(self) -> Image | Status:
-        """The orientations of the flange."""
-        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_x, axis_y, axis_z, axis_r = axes
@@ -255,6 +251,10 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, direction_r),
         )
+
+    def _image(self) -> Image | Status:
+        """The orientations of the flange."""
+        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""

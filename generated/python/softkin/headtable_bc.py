@@ -340,6 +340,42 @@ class HeadTableBC(Mechanism):
             (0.0, 0.0, 0.0, cos_c * cos_c + sin_c * sin_c, 0.0),
         )
 
+    def _twist(self, axes: Reals) -> Matrix | Status:
+        """The twist of the frame by rows, per radian."""
+        axis_x, axis_y, axis_z, axis_b, axis_c = axes
+        k = self._constants
+        head_offset, offset_b, offset_c, offset_x = k.head_offset, k.offset_b, k.offset_c, k.offset_x
+        offset_y, offset_z, pivot_length = k.offset_y, k.offset_z, k.pivot_length
+        if not reasonable(axis_b, axis_c, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        c = DEGREE * (axis_c - offset_c)
+        cos_c = cos(c)
+        sin_c = sin(c)
+        joint_x = axis_x - offset_x
+        joint_y = axis_y - offset_y
+        y_at_b = joint_y * cos_c - joint_x * sin_c
+        b = DEGREE * (axis_b - offset_b)
+        cos_b = cos(b)
+        r21_at_b = -cos_b * sin_c
+        sin_b = sin(b)
+        r23_at_b = -sin_b * sin_c
+        y = y_at_b + head_offset * r21_at_b - pivot_length * r23_at_b
+        x_at_b = joint_x * cos_c + joint_y * sin_c
+        r11_at_b = cos_b * cos_c
+        r13_at_b = cos_c * sin_b
+        x = x_at_b + head_offset * r11_at_b - pivot_length * r13_at_b
+        joint_z = axis_z - offset_z
+        z = joint_z - pivot_length * cos_b - head_offset * sin_b
+        z_minus_joint_z = z - joint_z
+        return (
+            (cos_c, sin_c, 0.0, z_minus_joint_z * cos_c, y),
+            (-sin_c, cos_c, 0.0, -z_minus_joint_z * sin_c, -x),
+            (0.0, 0.0, 1.0, (x_at_b - x) * cos_c + (y - y_at_b) * sin_c, 0.0),
+            (0.0, 0.0, 0.0, sin_c, 0.0),
+            (0.0, 0.0, 0.0, cos_c, 0.0),
+            (0.0, 0.0, 0.0, 0.0, -1.0),
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))

@@ -335,6 +335,42 @@ class Kin5Axes(Mechanism):
             (0.0, 0.0, 0.0, 0.0, tool_side * (cos_a * cos_a + sin_a * sin_a)),
         )
 
+    def _twist(self, axes: Reals) -> Matrix | Status:
+        """The twist of the frame by rows, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_b = axes
+        k = self._constants
+        offset_a, offset_b, offset_x, offset_y, offset_z = k.offset_a, k.offset_b, k.offset_x, k.offset_y, k.offset_z
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
+        if not reasonable(axis_a, axis_b, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        a = DEGREE * (axis_a - offset_a)
+        sin_a = sin(a)
+        sin_a_times_tool_side = tool_side * sin_a
+        cos_a = cos(a)
+        cos_a_times_tool_side = tool_side * cos_a
+        joint_z = axis_z - offset_z
+        b = DEGREE * (axis_b - offset_b)
+        cos_b = cos(b)
+        z = joint_z + tool_length_times_tool_side * cos_b
+        z_minus_joint_z = z - joint_z
+        joint_y = axis_y - offset_y
+        sin_b = sin(b)
+        r23_at_b = sin_a_times_tool_side * sin_b
+        y = joint_y + r23_at_b * tool_length_times_tool_side
+        joint_y_minus_y = joint_y - y
+        joint_x = axis_x - offset_x
+        r13_at_b = cos_a_times_tool_side * sin_b
+        x = joint_x + r13_at_b * tool_length_times_tool_side
+        x_minus_joint_x = x - joint_x
+        return (
+            (1.0, 0.0, 0.0, joint_y_minus_y, z_minus_joint_z * cos_a_times_tool_side),
+            (0.0, 1.0, 0.0, x_minus_joint_x, z_minus_joint_z * sin_a_times_tool_side),
+            (0.0, 0.0, 1.0, 0.0, (joint_y_minus_y * sin_a - x_minus_joint_x * cos_a) * tool_side),
+            (0.0, 0.0, 0.0, 0.0, -sin_a_times_tool_side),
+            (0.0, 0.0, 0.0, 0.0, cos_a_times_tool_side),
+            (0.0, 0.0, 0.0, 1.0, 0.0),
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))

@@ -1020,10 +1020,6 @@ class Planar3RRR(IterativeForward, TwistChoice):
             ),
         )
 
-    def _image(self) -> Image | Status:
-        """The orientations of the flange."""
-        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes
@@ -1100,6 +1096,10 @@ class Planar3RRR(IterativeForward, TwistChoice):
                 column_3_wz * one_by_platform_radius,
             ),
         )
+
+    def _image(self) -> Image | Status:
+        """The orientations of the flange."""
+        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""

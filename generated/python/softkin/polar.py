@@ -237,10 +237,6 @@ class Polar(Mechanism):
         cos_c = cos(c)
         return ((-r * sin_c, cos_c), (r * cos_c, sin_c))
 
-    def _image(self) -> Image | Status:
-        """The orientations of the flange."""
-        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_c, axis_r = axes
@@ -257,6 +253,10 @@ class Polar(Mechanism):
         sin_c = sin(c)
         cos_c = cos(c)
         return ((-r * sin_c, cos_c), (r * cos_c, sin_c), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (1.0, 0.0))
+
+    def _image(self) -> Image | Status:
+        """The orientations of the flange."""
+        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """The one branch: see `Mechanism.branches`."""

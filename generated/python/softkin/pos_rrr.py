@@ -484,10 +484,6 @@ class PosRRR(OffsetKinematics):
             (0.0, (x - x_at_q2) * cos_q1 + (y - y_at_q2) * sin_q1, (x - x_at_q3) * cos_q1 + (y - y_at_q3) * sin_q1),
         )
 
-    def _image(self) -> Image | Status:
-        """The orientations of the flange."""
-        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes
@@ -530,6 +526,10 @@ class PosRRR(OffsetKinematics):
             (0.0, -cos_q1, -cos_q1),
             (1.0, 0.0, 0.0),
         )
+
+    def _image(self) -> Image | Status:
+        """The orientations of the flange."""
+        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals

@@ -294,10 +294,6 @@ class Scara3CCZ(OffsetKinematics):
             (0.0, 0.0, 1.0),
         )
 
-    def _image(self) -> Image | Status:
-        """The orientations of the flange."""
-        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes
@@ -322,6 +318,10 @@ class Scara3CCZ(OffsetKinematics):
             (0.0, 0.0, 0.0),
             (1.0, 1.0, 0.0),
         )
+
+    def _image(self) -> Image | Status:
+        """The orientations of the flange."""
+        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals

@@ -395,16 +395,6 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             (1.0, 1.0, 0.0, 1.0),
         )
 
-    def _image(self) -> Image | Status:
-        """The orientations of the flange."""
-        k = self._constants
-        shared_value = k.shared_value
-        return (
-            ((1.0, 0.0, 0.0), (0.0, shared_value, 0.0), (0.0, 0.0, shared_value)),
-            (0.0, 0.0, 1.0),
-            (0.0, 0.0, shared_value),
-        )
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
@@ -429,6 +419,16 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 1.0, 0.0, 1.0),
+        )
+
+    def _image(self) -> Image | Status:
+        """The orientations of the flange."""
+        k = self._constants
+        shared_value = k.shared_value
+        return (
+            ((1.0, 0.0, 0.0), (0.0, shared_value, 0.0), (0.0, 0.0, shared_value)),
+            (0.0, 0.0, 1.0),
+            (0.0, 0.0, shared_value),
         )
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:

@@ -459,10 +459,6 @@ class SCCC(OffsetKinematics, TwistChoice):
             (coupling_12_plus_coupling_13_plus_one, coupling_23_plus_one, 1.0),
         )
 
-    def _image(self) -> Image | Status:
-        """The orientations of the flange."""
-        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes
@@ -503,6 +499,10 @@ class SCCC(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0),
             (coupling_12_plus_coupling_13_plus_one, coupling_23_plus_one, 1.0),
         )
+
+    def _image(self) -> Image | Status:
+        """The orientations of the flange."""
+        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""

@@ -356,6 +356,43 @@ class TableTableAC(Mechanism):
             (0.0, 0.0, 0.0, r22_at_a * sin_c - r12_at_a * cos_c, sin_a),
         )
 
+    def _twist(self, axes: Reals) -> Matrix | Status:
+        """The twist of the frame by rows, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_c = axes
+        k = self._constants
+        offset_a, offset_c, offset_x, offset_y, offset_z = k.offset_a, k.offset_c, k.offset_x, k.offset_y, k.offset_z
+        pivot_y, pivot_z, tool_length = k.pivot_y, k.pivot_z, k.tool_length
+        if not reasonable(axis_a, axis_c, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        c = DEGREE * (axis_c - offset_c)
+        cos_c = cos(c)
+        sin_c = sin(c)
+        a = DEGREE * (axis_a - offset_a)
+        cos_a = cos(a)
+        r12_at_a = cos_a * sin_c
+        sin_a = sin(a)
+        r13_at_a = sin_a * sin_c
+        y_at_a = -pivot_y * cos_c
+        r22_at_a = cos_a * cos_c
+        r23_at_a = cos_c * sin_a
+        joint_y = axis_y - offset_y
+        joint_z = axis_z - offset_z
+        joint_z_minus_tool_length = joint_z - tool_length
+        joint_x = axis_x - offset_x
+        y = y_at_a + joint_y * r22_at_a + joint_z_minus_tool_length * r23_at_a - joint_x * sin_c
+        x_at_a = -pivot_y * sin_c
+        x = x_at_a + joint_x * cos_c + joint_y * r12_at_a + joint_z_minus_tool_length * r13_at_a
+        z = joint_z_minus_tool_length * cos_a - pivot_z - joint_y * sin_a
+        pivot_z_plus_z = pivot_z + z
+        return (
+            (cos_c, r12_at_a, r13_at_a, pivot_z_plus_z * sin_c, y),
+            (-sin_c, r22_at_a, r23_at_a, pivot_z_plus_z * cos_c, -x),
+            (0.0, -sin_a, cos_a, (y_at_a - y) * cos_c + (x_at_a - x) * sin_c, 0.0),
+            (0.0, 0.0, 0.0, -cos_c, 0.0),
+            (0.0, 0.0, 0.0, sin_c, 0.0),
+            (0.0, 0.0, 0.0, 0.0, -1.0),
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))

@@ -295,10 +295,6 @@ class Wrist2(OrientationKinematics):
             (0.0, tool_side * (cos_a * cos_a + sin_a * sin_a)),
         )
 
-    def _image(self) -> Image | Status:
-        """The orientations of the flange."""
-        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a, axis_b = axes
@@ -333,6 +329,10 @@ class Wrist2(OrientationKinematics):
             (0.0, cos_a_times_tool_side),
             (1.0, 0.0),
         )
+
+    def _image(self) -> Image | Status:
+        """The orientations of the flange."""
+        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _compatible(self, flange_axis: Vector) -> Status:
         """Whether a flange that turns can carry this mechanism."""

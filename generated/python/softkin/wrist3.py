@@ -292,10 +292,6 @@ class Wrist3(OrientationKinematics):
         cos_b = cos(b)
         return ((0.0, sin_a, r13_at_b), (0.0, -cos_a, r23_at_b), (1.0, 0.0, cos_b))
 
-    def _image(self) -> Image | Status:
-        """The orientations of the flange."""
-        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a, axis_b, axis_c = axes
@@ -334,6 +330,10 @@ class Wrist3(OrientationKinematics):
             (0.0, -cos_a, r23_at_b),
             (1.0, 0.0, cos_b),
         )
+
+    def _image(self) -> Image | Status:
+        """The orientations of the flange."""
+        return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _compatible(self, flange_axis: Vector) -> Status:
         """Whether a flange that turns can carry this mechanism."""

@@ -17,10 +17,14 @@ def is_determined(carrier: Part, wrist: Part) -> bool:
     Directions that are fixed in the machine are known, and so are the columns of the rotation that are met. If the
     flange keeps its orientation, every direction is known. A rotation about z counts as unknown on a flange that turns,
     as documented for CODESYS's own kinematics (a C axis with an X or Y offset on a SCARA). A position kinematics that
-    follows a rotation itself shares it with any axis behind it.
+    follows a rotation itself shares it with any axis behind it, and meets all of it where there is none: then the
+    commanded rotation is that of the flange.
     """
-    if carrier.mechanism.task.turning is not Turning.NONE and wrist.mechanism.joints:
-        return False
+    met = _MET[wrist.mechanism.task.turning]
+    if carrier.mechanism.task.turning is not Turning.NONE:
+        if wrist.mechanism.joints:
+            return False
+        met = _MET[Turning.FULL]
     rng = np.random.default_rng(5)
     count = 40
     first, second = carrier.draw(count, rng), rng.uniform(-170.0, 170.0, (count, len(wrist.mechanism.joints)))
@@ -32,9 +36,7 @@ def is_determined(carrier: Part, wrist: Part) -> bool:
     fixed = np.tile(np.eye(3), (count, 1, 1))
     if np.ptp(turns[:, :, 2], axis=0).max() > 1e-12:
         fixed = np.zeros((count, 3, 0))  # the flange turns freely: no direction of it is the same for all axes
-    features = np.concatenate([fixed, commanded[:, :, list(_MET[wrist.mechanism.task.turning])]], axis=2).reshape(
-        3 * count, -1
-    )
+    features = np.concatenate([fixed, commanded[:, :, list(met)]], axis=2).reshape(3 * count, -1)
     wanted = shifts.reshape(-1)
     found = features @ np.linalg.lstsq(features, wanted, rcond=None)[0] if features.size else 0.0 * wanted
     return bool(np.max(np.abs(wanted - found)) < 1e-9)

@@ -76,6 +76,8 @@ def _every_slot(coupled: softkin.Coupled, first: Part, second: Part, frame: soft
     for slot in slots:
         assert (slot.axes is None) == (slot.status is not Status.OK)
         assert slot.status in (Status.OK, Status.UNREACHABLE, Status.IMPOSSIBLE)
+    if first.mechanism.is_platform:
+        answers = [s for s in answers if _is_found_again(coupled, s.axes, frame)]
     for slot in answers:
         again, configuration = coupled.forward(slot.axes)
         assert np.abs(np.subtract(again.position, frame.position)).max() < TOLERANCE
@@ -88,14 +90,15 @@ def _every_slot(coupled: softkin.Coupled, first: Part, second: Part, frame: soft
     ):  # one place of the flange for all branches behind it
         flange = first.robot.forward(values[: len(first.robot.AXES)])[0]
         alone = [s for s in first.robot.inverse_all(flange, values[: len(first.robot.AXES)]) if s.status is Status.OK]
-        alone = [s for s in alone if not first.mechanism.is_platform or _is_found_again(first, s.axes, flange)]
+        alone = [s for s in alone if not first.mechanism.is_platform or _is_found_again(first.robot, s.axes, flange)]
         assert len(answers) == len(alone) * 2**second.robot.BRANCHES
 
 
-def _is_found_again(first: Part, axes: tuple[float, ...], flange: softkin.Frame) -> bool:
+def _is_found_again(robot: softkin.Mechanism, axes: tuple[float, ...] | None, flange: softkin.Frame) -> bool:
     """Whether forward kinematics, which iterates from home, comes to the flange."""
+    assert axes is not None
     try:
-        found = first.robot.forward(axes)[0]
+        found = robot.forward(axes)[0]
     except KinematicsError:
         return False
     return bool(np.abs(np.subtract(found.position, flange.position)).max() < TOLERANCE)

@@ -30,7 +30,7 @@ from softkin._roots import nearest_root
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Values, Vector, Whole
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Values, Vector, Whole
     from softkin.ac6_rzryryrxryrz_j6offset import Constants
 
 
@@ -1154,3 +1154,197 @@ class ArrayPrograms(Programs):
         # limits of A6
         require(status, (axis_a6 >= k.lowest_a6) & (axis_a6 <= k.highest_a6), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), Status.BAD_INPUT)
+        q1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_q1 = sin(q1)
+        cos_q1 = cos(q1)
+        x_at_q2 = k.a1 * cos_q1
+        y_at_q2 = k.a1 * sin_q1
+        q2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_q2 = sin(q2)
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        q3 = DEGREE * (axis_a3 - k.offset_a3)
+        q2_plus_q3 = q2 + q3
+        sin_q23 = sin(q2_plus_q3)
+        cos_q23 = cos(q2_plus_q3)
+        r11_at_q23 = cos_q1 * cos_q23
+        r21_at_q23 = cos_q23 * sin_q1
+        r13_at_q23 = cos_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - k.offset_a4)
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r23_at_q23 = sin_q1 * sin_q23
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        q5 = DEGREE * (axis_a5 - k.offset_a5)
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q4 + k.j6_offset_x * r11_at_q5
+        x = x_at_q6 + k.d6 * r13_at_q5
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q4 + k.j6_offset_x * r21_at_q5
+        y = y_at_q6 + k.d6 * r23_at_q5
+        cos_q2 = cos(q2)
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23 - k.d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q4 + k.j6_offset_x * r31_at_q5
+        z = z_at_q6 + k.d6 * r33_at_q5
+        z_minus_d1 = z - k.d1
+        z_minus_z_at_q3 = z - z_at_q3
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q6 = x - x_at_q6
+        cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
+        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
+        # determinant of the Jacobian, positions in characteristic lengths
+        (determinant,) = solve(
+            (
+                (
+                    -k.one_by_machine_scale * y,
+                    z_minus_d1 * cos_q1_times_one_by_machine_scale,
+                    z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale,
+                    k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23),
+                    k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4),
+                    k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6),
+                ),
+                (
+                    k.one_by_machine_scale * x,
+                    z_minus_d1 * sin_q1_times_one_by_machine_scale,
+                    z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale,
+                    (-r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23) * k.one_by_machine_scale,
+                    (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * k.one_by_machine_scale,
+                    (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale,
+                ),
+                (
+                    0.0,
+                    k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1),
+                    k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1),
+                    k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4),
+                    k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4),
+                    k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6),
+                ),
+                (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
+                (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
+                (1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5),
+            ),
+            (),
+        )
+        margin_determinant = determinant * k.quotient_in_fits
+        return (margin_determinant,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), Status.BAD_INPUT)
+        q1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_q1 = sin(q1)
+        q2 = DEGREE * (axis_a2 - k.offset_a2)
+        q3 = DEGREE * (axis_a3 - k.offset_a3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r21_at_q23 = cos_q23 * sin_q1
+        cos_q1 = cos(q1)
+        sin_q23 = sin(q2_plus_q3)
+        r23_at_q23 = sin_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - k.offset_a4)
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        q5 = DEGREE * (axis_a5 - k.offset_a5)
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        y_at_q2 = k.a1 * sin_q1
+        sin_q2 = sin(q2)
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q4 + k.j6_offset_x * r21_at_q5
+        y = y_at_q6 + k.d6 * r23_at_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
+        r11_at_q23 = cos_q1 * cos_q23
+        r13_at_q23 = cos_q1 * sin_q23
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        x_at_q2 = k.a1 * cos_q1
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q4 + k.j6_offset_x * r11_at_q5
+        x = x_at_q6 + k.d6 * r13_at_q5
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        cos_q2 = cos(q2)
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23 - k.d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q4 + k.j6_offset_x * r31_at_q5
+        z = z_at_q6 + k.d6 * r33_at_q5
+        z_minus_d1 = z - k.d1
+        z_minus_z_at_q3 = z - z_at_q3
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q6 = x - x_at_q6
+        return (
+            (
+                -y,
+                z_minus_d1 * cos_q1,
+                z_minus_z_at_q3 * cos_q1,
+                r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23,
+                r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4,
+                r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6,
+            ),
+            (
+                x,
+                z_minus_d1 * sin_q1,
+                z_minus_z_at_q3 * sin_q1,
+                -r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23,
+                r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4,
+                r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6,
+            ),
+            (
+                0.0,
+                (x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1,
+                (x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1,
+                r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4,
+                r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4,
+                r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6,
+            ),
+            (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
+            (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
+            (1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5),
+        ), status

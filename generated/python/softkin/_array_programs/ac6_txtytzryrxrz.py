@@ -22,7 +22,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.ac6_txtytzryrxrz import Constants
 
 
@@ -138,3 +138,65 @@ class ArrayPrograms(Programs):
         # limits of A3
         require(status, (axis_a3 >= k.lowest_a3) & (axis_a3 <= k.highest_a3), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), Status.BAD_INPUT)
+        a5 = DEGREE * (axis_a5 - k.offset_a5)
+        cos_a5 = cos(a5)
+        return (cos_a5,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), Status.BAD_INPUT)
+        a4 = DEGREE * (axis_a4 - k.offset_a4)
+        cos_a4 = cos(a4)
+        a5 = DEGREE * (axis_a5 - k.offset_a5)
+        cos_a5 = cos(a5)
+        r33_at_a5 = cos_a4 * cos_a5
+        sin_a4 = sin(a4)
+        sin_a5 = sin(a5)
+        r13_at_a5 = cos_a5 * sin_a4
+        a3 = axis_a3 - k.offset_a3
+        r32_at_a5 = cos_a4 * sin_a5
+        a6 = DEGREE * (axis_a6 - k.offset_a6)
+        sin_a6 = sin(a6)
+        cos_a6 = cos(a6)
+        r31_at_a6 = r32_at_a5 * sin_a6 - cos_a6 * sin_a4
+        r32_at_a6 = r32_at_a5 * cos_a6 + sin_a4 * sin_a6
+        z = a3 + k.flange_x * r31_at_a6 + k.flange_y * r32_at_a6 + k.flange_z * r33_at_a5
+        z_minus_a3 = z - a3
+        a2 = axis_a2 - k.offset_a2
+        r21_at_a6 = cos_a5 * sin_a6
+        r22_at_a6 = cos_a5 * cos_a6
+        y = a2 + k.flange_x * r21_at_a6 + k.flange_y * r22_at_a6 - k.flange_z * sin_a5
+        y_minus_a2 = y - a2
+        a1 = axis_a1 - k.offset_a1
+        r12_at_a5 = sin_a4 * sin_a5
+        r11_at_a6 = cos_a4 * cos_a6 + r12_at_a5 * sin_a6
+        r12_at_a6 = r12_at_a5 * cos_a6 - cos_a4 * sin_a6
+        x = a1 + k.flange_x * r11_at_a6 + k.flange_y * r12_at_a6 + k.flange_z * r13_at_a5
+        x_minus_a1 = x - a1
+        return (
+            (1.0, 0.0, 0.0, z_minus_a3, y_minus_a2 * sin_a4, -r33_at_a5 * y_minus_a2 - z_minus_a3 * sin_a5),
+            (
+                0.0,
+                1.0,
+                0.0,
+                0.0,
+                -z_minus_a3 * cos_a4 - x_minus_a1 * sin_a4,
+                r33_at_a5 * x_minus_a1 - r13_at_a5 * z_minus_a3,
+            ),
+            (0.0, 0.0, 1.0, -x_minus_a1, y_minus_a2 * cos_a4, r13_at_a5 * y_minus_a2 + x_minus_a1 * sin_a5),
+            (0.0, 0.0, 0.0, 0.0, cos_a4, r13_at_a5),
+            (0.0, 0.0, 0.0, 1.0, 0.0, -sin_a5),
+            (0.0, 0.0, 0.0, 0.0, -sin_a4, r33_at_a5),
+        ), status

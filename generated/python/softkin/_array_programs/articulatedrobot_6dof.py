@@ -24,7 +24,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.articulatedrobot_6dof import Constants
 
 
@@ -365,3 +365,145 @@ class ArrayPrograms(Programs):
         # limits of A6
         require(status, (axis_a6 >= k.lowest_a6) & (axis_a6 <= k.highest_a6), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), Status.BAD_INPUT)
+        q5 = DEGREE * (axis_a5 - k.offset_a5)
+        sin_q5 = sin(q5)
+        q1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_q1 = sin(q1)
+        cos_q1 = cos(q1)
+        q2 = DEGREE * (axis_a2 - k.offset_a2)
+        q3 = DEGREE * (axis_a3 - k.offset_a3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r12_at_q23 = -cos_q1 * cos_q23
+        sin_q23 = sin(q2_plus_q3)
+        r11_at_q23 = -cos_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - k.offset_a4)
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r11_at_q4 = r11_at_q23 * cos_q4 + sin_q1 * sin_q4
+        cos_q5 = cos(q5)
+        r12_at_q5 = -r12_at_q23 * cos_q5 - r11_at_q4 * sin_q5
+        d6_times_r12_at_q5 = k.d6 * r12_at_q5
+        x_at_q2 = k.a1 * cos_q1
+        sin_q2 = sin(q2)
+        r11_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r11_at_q2
+        x_at_q4 = x_at_q3 + k.a3 * r11_at_q23 + k.d3 * sin_q1
+        x_at_q5 = x_at_q4 - k.d4 * r12_at_q23
+        x = d6_times_r12_at_q5 + x_at_q5
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
+        r22_at_q23 = -cos_q23 * sin_q1
+        r21_at_q23 = -sin_q1 * sin_q23
+        r21_at_q4 = r21_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r22_at_q5 = -r22_at_q23 * cos_q5 - r21_at_q4 * sin_q5
+        d6_times_r22_at_q5 = k.d6 * r22_at_q5
+        y_at_q2 = k.a1 * sin_q1
+        r21_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r21_at_q2
+        y_at_q4 = y_at_q3 + k.a3 * r21_at_q23 - k.d3 * cos_q1
+        y_at_q5 = y_at_q4 - k.d4 * r22_at_q23
+        y = d6_times_r22_at_q5 + y_at_q5
+        wrist_y = y - d6_times_r22_at_q5
+        margin_wrist_on_axis_1 = (wrist_x * cos_q1 + wrist_y * sin_q1) / k.machine_scale
+        sin_q3 = sin(q3)
+        cos_q3 = cos(q3)
+        margin_elbow = k.d4_by_effective_q3 * cos_q3 - k.a3_by_effective_q3 * sin_q3
+        return (margin_wrist_on_axis_1, margin_elbow, sin_q5), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), Status.BAD_INPUT)
+        q1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_q1 = sin(q1)
+        q2 = DEGREE * (axis_a2 - k.offset_a2)
+        q3 = DEGREE * (axis_a3 - k.offset_a3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r22_at_q23 = -cos_q23 * sin_q1
+        cos_q1 = cos(q1)
+        y_at_q2 = k.a1 * sin_q1
+        sin_q2 = sin(q2)
+        r21_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r21_at_q2
+        sin_q23 = sin(q2_plus_q3)
+        r21_at_q23 = -sin_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - k.offset_a4)
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r21_at_q4 = r21_at_q23 * cos_q4 - cos_q1 * sin_q4
+        q5 = DEGREE * (axis_a5 - k.offset_a5)
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r22_at_q5 = -r22_at_q23 * cos_q5 - r21_at_q4 * sin_q5
+        y_at_q4 = y_at_q3 + k.a3 * r21_at_q23 - k.d3 * cos_q1
+        y_at_q5 = y_at_q4 - k.d4 * r22_at_q23
+        y = y_at_q5 + k.d6 * r22_at_q5
+        r31_at_q4 = cos_q23 * cos_q4
+        r32_at_q5 = cos_q5 * sin_q23 - r31_at_q4 * sin_q5
+        r22_at_q4 = -cos_q1 * cos_q4 - r21_at_q23 * sin_q4
+        r32_at_q4 = -cos_q23 * sin_q4
+        r12_at_q23 = -cos_q1 * cos_q23
+        x_at_q2 = k.a1 * cos_q1
+        r11_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r11_at_q2
+        r11_at_q23 = -cos_q1 * sin_q23
+        r11_at_q4 = r11_at_q23 * cos_q4 + sin_q1 * sin_q4
+        r12_at_q5 = -r12_at_q23 * cos_q5 - r11_at_q4 * sin_q5
+        x_at_q4 = x_at_q3 + k.a3 * r11_at_q23 + k.d3 * sin_q1
+        x_at_q5 = x_at_q4 - k.d4 * r12_at_q23
+        x = x_at_q5 + k.d6 * r12_at_q5
+        r12_at_q4 = cos_q4 * sin_q1 - r11_at_q23 * sin_q4
+        cos_q2 = cos(q2)
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23
+        z_at_q5 = z_at_q4 + k.d4 * sin_q23
+        z = z_at_q5 + k.d6 * r32_at_q5
+        z_minus_d1 = z - k.d1
+        z_minus_z_at_q3 = z - z_at_q3
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        y_minus_y_at_q5 = y - y_at_q5
+        z_minus_z_at_q5 = z - z_at_q5
+        x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q5 = x - x_at_q5
+        return (
+            (
+                -y,
+                -z_minus_d1 * cos_q1,
+                -z_minus_z_at_q3 * cos_q1,
+                -r22_at_q23 * z_minus_z_at_q4 - y_minus_y_at_q4 * sin_q23,
+                r32_at_q4 * y_minus_y_at_q5 - r22_at_q4 * z_minus_z_at_q5,
+                r22_at_q5 * z_minus_z_at_q5 - r32_at_q5 * y_minus_y_at_q5,
+            ),
+            (
+                x,
+                -z_minus_d1 * sin_q1,
+                -z_minus_z_at_q3 * sin_q1,
+                r12_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23,
+                r12_at_q4 * z_minus_z_at_q5 - r32_at_q4 * x_minus_x_at_q5,
+                r32_at_q5 * x_minus_x_at_q5 - r12_at_q5 * z_minus_z_at_q5,
+            ),
+            (
+                0.0,
+                (x - x_at_q2) * cos_q1 + (y - y_at_q2) * sin_q1,
+                (x - x_at_q3) * cos_q1 + (y - y_at_q3) * sin_q1,
+                r22_at_q23 * x_minus_x_at_q4 - r12_at_q23 * y_minus_y_at_q4,
+                r22_at_q4 * x_minus_x_at_q5 - r12_at_q4 * y_minus_y_at_q5,
+                r12_at_q5 * y_minus_y_at_q5 - r22_at_q5 * x_minus_x_at_q5,
+            ),
+            (0.0, sin_q1, sin_q1, -r12_at_q23, -r12_at_q4, r12_at_q5),
+            (0.0, -cos_q1, -cos_q1, -r22_at_q23, -r22_at_q4, r22_at_q5),
+            (1.0, 0.0, 0.0, sin_q23, -r32_at_q4, r32_at_q5),
+        ), status

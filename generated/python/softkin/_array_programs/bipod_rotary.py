@@ -22,7 +22,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Reals, Rotation, Signs, Turns, Vector
     from softkin.bipod_rotary import Constants
 
 
@@ -176,3 +176,129 @@ class ArrayPrograms(Programs):
         # limits of A2
         require(status, (axis_a2 >= k.lowest_a2) & (axis_a2 <= k.highest_a2), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a1, axis_a2 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        cos_a1 = cos(a1)
+        # rod 1: centre about which it swings
+        pivot_1_x = k.tcp_displacement_minus_displacement - k.inner_arm * cos_a1
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        cos_a2 = cos(a2)
+        # rod 2: centre about which it swings
+        pivot_2_x = k.inner_arm * cos_a2 - k.tcp_displacement_minus_displacement
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        sin_a1 = sin(a1)
+        pivot_1_y = -k.inner_arm * sin_a1
+        sin_a2 = sin(a2)
+        pivot_2_y = -k.inner_arm * sin_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
+        between_centres = root(normal_divisor)  # distance between the centres
+        # square of the height over the line of the centres
+        height_square = (
+            0.25
+            * (k.twice_outer_arm - between_centres)
+            * (between_centres + k.twice_outer_arm)
+            * between_centres
+            * between_centres
+            / normal_divisor
+        )
+        foot_y = 0.5 * centre_1_to_2_y
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square / normal_divisor) * k.assembly_sign
+        y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
+        foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        span_1_x = x - k.tcp_displacement_minus_displacement  # rod 1: known part of its vector
+        margin_stretched_1 = (span_1_x * sin_a1 - y * cos_a1) / k.outer_arm
+        span_2_x = k.tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
+        margin_stretched_2 = (-y * cos_a2 - span_2_x * sin_a2) / k.outer_arm
+        rod_1_x = x - pivot_1_x
+        rod_1_y = y - pivot_1_y
+        rod_2_x = x - pivot_2_x
+        rod_2_y = y - pivot_2_y
+        margin_arms_aligned = (rod_1_x * rod_2_y - rod_1_y * rod_2_x) / k.outer_arm_squared
+        # the centres coincide or lie on a line: nothing holds the plate
+        # the rods do not meet
+        require(
+            status,
+            (normal_square > k.product_in_normal_divisor) & (height_square >= -k.outer_arm_squared_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        return (margin_stretched_1, margin_stretched_2, margin_arms_aligned), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a1, axis_a2 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        cos_a1 = cos(a1)
+        # rod 1: centre about which it swings
+        pivot_1_x = k.tcp_displacement_minus_displacement - k.inner_arm * cos_a1
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        cos_a2 = cos(a2)
+        # rod 2: centre about which it swings
+        pivot_2_x = k.inner_arm * cos_a2 - k.tcp_displacement_minus_displacement
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        sin_a1 = sin(a1)
+        pivot_1_y = -k.inner_arm * sin_a1
+        sin_a2 = sin(a2)
+        pivot_2_y = -k.inner_arm * sin_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
+        between_centres = root(normal_divisor)  # distance between the centres
+        # square of the height over the line of the centres
+        height_square = (
+            0.25
+            * (k.twice_outer_arm - between_centres)
+            * (between_centres + k.twice_outer_arm)
+            * between_centres
+            * between_centres
+            / normal_divisor
+        )
+        foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square / normal_divisor) * k.assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        twice_x = 2.0 * x
+        slope_1_by_x = twice_x + k.twice_inner_arm * cos_a1 - k.sum_in_slope_1_by_x
+        foot_y = 0.5 * centre_1_to_2_y
+        y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
+        twice_y = 2.0 * y
+        slope_1_by_y = twice_y + k.twice_inner_arm * sin_a1
+        slope_2_by_x = k.sum_in_slope_1_by_x + twice_x - k.twice_inner_arm * cos_a2
+        slope_2_by_y = twice_y + k.twice_inner_arm * sin_a2
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x
+        slope_1_by_a1 = k.twice_inner_arm * ((y - pivot_1_y) * cos_a1 + (pivot_1_x - x) * sin_a1)
+        determinant_divisor = select(absolute(determinant) > k.machine_scale_squared_times_free_angle, determinant, 1.0)
+        slope_1_by_a1_by_determinant = slope_1_by_a1 / determinant_divisor
+        slope_2_by_a2 = k.twice_inner_arm * ((y - pivot_2_y) * cos_a2 + (x - pivot_2_x) * sin_a2)
+        slope_2_by_a2_by_determinant = slope_2_by_a2 / determinant_divisor
+        # the centres coincide or lie on a line: nothing holds the plate
+        # the rods do not meet
+        # nothing controls the plate
+        require(
+            status,
+            (normal_square > k.product_in_normal_divisor)
+            & (absolute(determinant) > k.machine_scale_squared_times_free_angle)
+            & (height_square >= -k.outer_arm_squared_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            (-slope_1_by_a1_by_determinant * slope_2_by_y, slope_1_by_y * slope_2_by_a2_by_determinant),
+            (slope_1_by_a1_by_determinant * slope_2_by_x, -slope_1_by_x * slope_2_by_a2_by_determinant),
+        ), status

@@ -24,7 +24,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.crane import Constants
 
 
@@ -119,3 +119,68 @@ class ArrayPrograms(Programs):
         # limits of Phi
         require(status, (axis_phi >= k.lowest_phi) & (axis_phi <= k.highest_phi), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_r, axis_theta, axis_phi = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_phi, axis_r, axis_theta), Status.BAD_INPUT)
+        r = axis_r - k.offset_r
+        axis_phi_minus_offset_phi = axis_phi - k.offset_phi
+        phi = DEGREE * axis_phi_minus_offset_phi
+        sin_phi = sin(phi)
+        cos_phi = cos(phi)
+        z = r * cos_phi  # z from the z equation, which is linear in it
+        theta = DEGREE * (axis_theta - k.offset_theta)
+        cos_theta = cos(theta)
+        r_times_sin_phi = r * sin_phi
+        x = r_times_sin_phi * cos_theta  # x from the x equation, which is linear in it
+        sin_theta = sin(theta)
+        y = r_times_sin_phi * sin_theta  # y from the y equation, which is linear in it
+        radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
+        radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
+        length_free_phi = radius_phi / k.machine_scale
+        # 0 where nothing determines the axis, else 1 or -1
+        margin_free_phi = select(length_free_phi > 1e-11, 1.0, 0.0)
+        # R where the machine has no pose
+        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
+        # Phi where the machine has no pose
+        require(
+            status,
+            (axis_phi_minus_offset_phi >= -1e-9) & (axis_phi_minus_offset_phi <= 180.000000181),
+            Status.IMPOSSIBLE,
+        )
+        return (sin_phi, margin_free_phi), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_r, axis_theta, axis_phi = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_phi, axis_r, axis_theta), Status.BAD_INPUT)
+        r = axis_r - k.offset_r
+        axis_phi_minus_offset_phi = axis_phi - k.offset_phi
+        theta = DEGREE * (axis_theta - k.offset_theta)
+        cos_theta = cos(theta)
+        phi = DEGREE * axis_phi_minus_offset_phi
+        sin_phi = sin(phi)
+        sin_theta = sin(theta)
+        cos_phi = cos(phi)
+        cos_phi_times_r = r * cos_phi
+        r_times_sin_phi = r * sin_phi
+        # R where the machine has no pose
+        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
+        # Phi where the machine has no pose
+        require(
+            status,
+            (axis_phi_minus_offset_phi >= -1e-9) & (axis_phi_minus_offset_phi <= 180.000000181),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            (cos_theta * sin_phi, -r_times_sin_phi * sin_theta, cos_phi_times_r * cos_theta),
+            (sin_phi * sin_theta, r_times_sin_phi * cos_theta, cos_phi_times_r * sin_theta),
+            (cos_phi, 0.0, -r_times_sin_phi),
+        ), status

@@ -9,7 +9,7 @@ from softkin._array import Programs, absolute, passed, reasonable, require
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Reals, Rotation, Signs, Turns, Vector
     from softkin.gantry2 import Constants
 
 
@@ -54,3 +54,19 @@ class ArrayPrograms(Programs):
         # limits of Y
         require(status, (axis_y >= k.lowest_y) & (axis_y <= k.highest_y), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_x, axis_y = axes
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_x, axis_y), Status.BAD_INPUT)
+        return (), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_x, axis_y = axes
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_x, axis_y), Status.BAD_INPUT)
+        return ((1.0, 0.0), (0.0, 1.0)), status

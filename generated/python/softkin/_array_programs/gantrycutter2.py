@@ -22,7 +22,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Reals, Rotation, Signs, Turns, Vector
     from softkin.gantrycutter2 import Constants
 
 
@@ -90,3 +90,51 @@ class ArrayPrograms(Programs):
         # limits of Y
         require(status, (axis_y >= k.lowest_y) & (axis_y <= k.highest_y), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_x, axis_y, axis_r = axes
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_r, axis_x, axis_y), Status.BAD_INPUT)
+        return (), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_x, axis_y, axis_r = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_r, axis_x, axis_y), Status.BAD_INPUT)
+        return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, k.direction_r)), status
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        axis_x, axis_y, axis_r = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_r, axis_x, axis_y), Status.BAD_INPUT)
+        return (
+            (1.0, 0.0, 0.0),
+            (0.0, 1.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, k.direction_r),
+        ), status
+
+    def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
+        """The nearest rotation that the flange can have."""
+        (r11, r12, _), (r21, r22, _), _ = rotation
+        status = passed(rotation)
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
+        heading_across = r21 - r12
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        cos_heading = heading_along / heading_divisor
+        sin_heading = heading_across / heading_divisor
+        # the tool points exactly the opposite way
+        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

@@ -22,7 +22,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.headhead_cb import Constants
 
 
@@ -122,3 +122,83 @@ class ArrayPrograms(Programs):
         # limits of Z
         require(status, (axis_z >= k.lowest_z) & (axis_z <= k.highest_z), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_x, axis_y, axis_z, axis_c, axis_b = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_b, axis_c, axis_x, axis_y, axis_z), Status.BAD_INPUT)
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        return (sin_b,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_x, axis_y, axis_z, axis_c, axis_b = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_b, axis_c, axis_x, axis_y, axis_z), Status.BAD_INPUT)
+        joint_y = axis_y - k.offset_y
+        c = DEGREE * (axis_c - k.offset_c)
+        sin_c = sin(c)
+        y_at_b = joint_y + k.fork_offset * sin_c
+        b = DEGREE * (axis_b - k.offset_b)
+        cos_b = cos(b)
+        r21_at_b = cos_b * sin_c
+        sin_b = sin(b)
+        r23_at_b = sin_b * sin_c
+        y = y_at_b + k.head_offset * r21_at_b - k.pivot_length * r23_at_b
+        cos_c = cos(c)
+        joint_x = axis_x - k.offset_x
+        x_at_b = joint_x + k.fork_offset * cos_c
+        r11_at_b = cos_b * cos_c
+        r13_at_b = cos_c * sin_b
+        x = x_at_b + k.head_offset * r11_at_b - k.pivot_length * r13_at_b
+        joint_z = axis_z - k.offset_z
+        z = joint_z - k.pivot_length * cos_b - k.head_offset * sin_b
+        z_minus_joint_z = z - joint_z
+        return (
+            (1.0, 0.0, 0.0, joint_y - y, z_minus_joint_z * cos_c),
+            (0.0, 1.0, 0.0, x - joint_x, z_minus_joint_z * sin_c),
+            (0.0, 0.0, 1.0, 0.0, (x_at_b - x) * cos_c + (y_at_b - y) * sin_c),
+            (0.0, 0.0, 0.0, -sin_b, r21_at_b * cos_c - r11_at_b * sin_c),
+            (0.0, 0.0, 0.0, 0.0, cos_c * cos_c + sin_c * sin_c),
+        ), status
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        axis_x, axis_y, axis_z, axis_c, axis_b = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_b, axis_c, axis_x, axis_y, axis_z), Status.BAD_INPUT)
+        joint_y = axis_y - k.offset_y
+        c = DEGREE * (axis_c - k.offset_c)
+        sin_c = sin(c)
+        y_at_b = joint_y + k.fork_offset * sin_c
+        b = DEGREE * (axis_b - k.offset_b)
+        cos_b = cos(b)
+        r21_at_b = cos_b * sin_c
+        sin_b = sin(b)
+        r23_at_b = sin_b * sin_c
+        y = y_at_b + k.head_offset * r21_at_b - k.pivot_length * r23_at_b
+        cos_c = cos(c)
+        joint_x = axis_x - k.offset_x
+        x_at_b = joint_x + k.fork_offset * cos_c
+        r11_at_b = cos_b * cos_c
+        r13_at_b = cos_c * sin_b
+        x = x_at_b + k.head_offset * r11_at_b - k.pivot_length * r13_at_b
+        joint_z = axis_z - k.offset_z
+        z = joint_z - k.pivot_length * cos_b - k.head_offset * sin_b
+        z_minus_joint_z = z - joint_z
+        return (
+            (1.0, 0.0, 0.0, joint_y - y, z_minus_joint_z * cos_c),
+            (0.0, 1.0, 0.0, x - joint_x, z_minus_joint_z * sin_c),
+            (0.0, 0.0, 1.0, 0.0, (x_at_b - x) * cos_c + (y_at_b - y) * sin_c),
+            (0.0, 0.0, 0.0, 0.0, -sin_c),
+            (0.0, 0.0, 0.0, 0.0, cos_c),
+            (0.0, 0.0, 0.0, 1.0, 0.0),
+        ), status

@@ -24,7 +24,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Values, Vector
+    from softkin._array import Codes, Matrix, Reals, Rotation, Signs, Turns, Values, Vector
     from softkin.hexapod import Constants
 
 
@@ -610,3 +610,204 @@ class ArrayPrograms(StartedPrograms):
         # limits of L6
         require(status, (axis_l6 >= k.lowest_l6) & (axis_l6 <= k.highest_l6), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
+        k = self.constants
+        status = passed(axes)
+        # pose of the platform, by Newton's method from the home pose
+        found = self.find_platform(
+            (
+                axis_l1,
+                axis_l2,
+                axis_l3,
+                axis_l4,
+                axis_l5,
+                axis_l6,
+                k.home_r11,
+                k.home_r12,
+                k.home_r13,
+                k.home_r21,
+                k.home_r22,
+                k.home_r23,
+                k.home_r31,
+                k.home_r32,
+                k.home_r33,
+                k.home_x,
+                k.home_y,
+                k.home_z,
+            ),
+            status,
+        )
+        _, _, _, _, _, _, _, _, _, _, _, _, determinant, *_ = found
+        return (determinant,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
+        k = self.constants
+        status = passed(axes)
+        # pose of the platform, by Newton's method from the home pose
+        found = self.find_platform(
+            (
+                axis_l1,
+                axis_l2,
+                axis_l3,
+                axis_l4,
+                axis_l5,
+                axis_l6,
+                k.home_r11,
+                k.home_r12,
+                k.home_r13,
+                k.home_r21,
+                k.home_r22,
+                k.home_r23,
+                k.home_r31,
+                k.home_r32,
+                k.home_r33,
+                k.home_x,
+                k.home_y,
+                k.home_z,
+            ),
+            status,
+        )
+        (
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            determinant,
+            along_1_x,
+            along_1_y,
+            along_1_z,
+            moment_1_x,
+            moment_1_y,
+            moment_1_z,
+            along_2_x,
+            along_2_y,
+            along_2_z,
+            moment_2_x,
+            moment_2_y,
+            moment_2_z,
+            along_3_x,
+            along_3_y,
+            along_3_z,
+            moment_3_x,
+            moment_3_y,
+            moment_3_z,
+            along_4_x,
+            along_4_y,
+            along_4_z,
+            moment_4_x,
+            moment_4_y,
+            moment_4_z,
+            along_5_x,
+            along_5_y,
+            along_5_z,
+            moment_5_x,
+            moment_5_y,
+            moment_5_z,
+            along_6_x,
+            along_6_y,
+            along_6_z,
+            moment_6_x,
+            moment_6_y,
+            moment_6_z,
+        ) = found
+        # twist of the platform per velocity of each axis
+        (
+            _,
+            column_1_vx,
+            column_2_vx,
+            column_3_vx,
+            column_4_vx,
+            column_5_vx,
+            column_6_vx,
+            column_1_vy,
+            column_2_vy,
+            column_3_vy,
+            column_4_vy,
+            column_5_vy,
+            column_6_vy,
+            column_1_vz,
+            column_2_vz,
+            column_3_vz,
+            column_4_vz,
+            column_5_vz,
+            column_6_vz,
+            column_1_wx,
+            column_2_wx,
+            column_3_wx,
+            column_4_wx,
+            column_5_wx,
+            column_6_wx,
+            column_1_wy,
+            column_2_wy,
+            column_3_wy,
+            column_4_wy,
+            column_5_wy,
+            column_6_wy,
+            column_1_wz,
+            column_2_wz,
+            column_3_wz,
+            column_4_wz,
+            column_5_wz,
+            column_6_wz,
+        ) = solve(
+            (
+                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
+                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
+                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
+                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
+                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
+                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+            ),
+            (
+                (1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+                (0.0, 1.0, 0.0, 0.0, 0.0, 0.0),
+                (0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
+                (0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
+                (0.0, 0.0, 0.0, 0.0, 1.0, 0.0),
+                (0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
+            ),
+        )
+        # nothing controls the plate
+        require(status, absolute(determinant) > 1e-11, Status.IMPOSSIBLE)
+        return (
+            (column_1_vx, column_2_vx, column_3_vx, column_4_vx, column_5_vx, column_6_vx),
+            (column_1_vy, column_2_vy, column_3_vy, column_4_vy, column_5_vy, column_6_vy),
+            (column_1_vz, column_2_vz, column_3_vz, column_4_vz, column_5_vz, column_6_vz),
+            (
+                column_1_wx * k.one_by_platform_radius,
+                column_2_wx * k.one_by_platform_radius,
+                column_3_wx * k.one_by_platform_radius,
+                column_4_wx * k.one_by_platform_radius,
+                column_5_wx * k.one_by_platform_radius,
+                column_6_wx * k.one_by_platform_radius,
+            ),
+            (
+                column_1_wy * k.one_by_platform_radius,
+                column_2_wy * k.one_by_platform_radius,
+                column_3_wy * k.one_by_platform_radius,
+                column_4_wy * k.one_by_platform_radius,
+                column_5_wy * k.one_by_platform_radius,
+                column_6_wy * k.one_by_platform_radius,
+            ),
+            (
+                column_1_wz * k.one_by_platform_radius,
+                column_2_wz * k.one_by_platform_radius,
+                column_3_wz * k.one_by_platform_radius,
+                column_4_wz * k.one_by_platform_radius,
+                column_5_wz * k.one_by_platform_radius,
+                column_6_wz * k.one_by_platform_radius,
+            ),
+        ), status

@@ -22,7 +22,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.kin_5axes import Constants
 
 
@@ -122,3 +122,84 @@ class ArrayPrograms(Programs):
         # limits of Z
         require(status, (axis_z >= k.lowest_z) & (axis_z <= k.highest_z), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_x, axis_y, axis_z, axis_a, axis_b = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b, axis_x, axis_y, axis_z), Status.BAD_INPUT)
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        return (sin_b,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_b = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b, axis_x, axis_y, axis_z), Status.BAD_INPUT)
+        a = DEGREE * (axis_a - k.offset_a)
+        sin_a = sin(a)
+        cos_a = cos(a)
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        r31_at_b = -k.tool_side * sin_b
+        cos_b = cos(b)
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
+        joint_y = axis_y - k.offset_y
+        r23_at_b = -r31_at_b * sin_a
+        y = joint_y + r23_at_b * k.tool_length_times_tool_side
+        joint_y_minus_y = joint_y - y
+        joint_z = axis_z - k.offset_z
+        z = joint_z + k.tool_length_times_tool_side * cos_b
+        shared_product = (joint_z - z) * k.tool_side
+        joint_x = axis_x - k.offset_x
+        r13_at_b = -r31_at_b * cos_a
+        x = joint_x + r13_at_b * k.tool_length_times_tool_side
+        x_minus_joint_x = x - joint_x
+        return (
+            (1.0, 0.0, 0.0, joint_y_minus_y, -shared_product * cos_a),
+            (0.0, 1.0, 0.0, x_minus_joint_x, -shared_product * sin_a),
+            (0.0, 0.0, 1.0, 0.0, (joint_y_minus_y * sin_a - x_minus_joint_x * cos_a) * k.tool_side),
+            (0.0, 0.0, 0.0, r31_at_b, k.tool_side * (r21_at_b * cos_a - r11_at_b * sin_a)),
+            (0.0, 0.0, 0.0, 0.0, k.tool_side * (cos_a * cos_a + sin_a * sin_a)),
+        ), status
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_b = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b, axis_x, axis_y, axis_z), Status.BAD_INPUT)
+        a = DEGREE * (axis_a - k.offset_a)
+        sin_a = sin(a)
+        sin_a_times_tool_side = k.tool_side * sin_a
+        cos_a = cos(a)
+        cos_a_times_tool_side = k.tool_side * cos_a
+        joint_z = axis_z - k.offset_z
+        b = DEGREE * (axis_b - k.offset_b)
+        cos_b = cos(b)
+        z = joint_z + k.tool_length_times_tool_side * cos_b
+        z_minus_joint_z = z - joint_z
+        joint_y = axis_y - k.offset_y
+        sin_b = sin(b)
+        r23_at_b = sin_a_times_tool_side * sin_b
+        y = joint_y + r23_at_b * k.tool_length_times_tool_side
+        joint_y_minus_y = joint_y - y
+        joint_x = axis_x - k.offset_x
+        r13_at_b = cos_a_times_tool_side * sin_b
+        x = joint_x + r13_at_b * k.tool_length_times_tool_side
+        x_minus_joint_x = x - joint_x
+        return (
+            (1.0, 0.0, 0.0, joint_y_minus_y, z_minus_joint_z * cos_a_times_tool_side),
+            (0.0, 1.0, 0.0, x_minus_joint_x, z_minus_joint_z * sin_a_times_tool_side),
+            (0.0, 0.0, 1.0, 0.0, (joint_y_minus_y * sin_a - x_minus_joint_x * cos_a) * k.tool_side),
+            (0.0, 0.0, 0.0, 0.0, -sin_a_times_tool_side),
+            (0.0, 0.0, 0.0, 0.0, cos_a_times_tool_side),
+            (0.0, 0.0, 0.0, 1.0, 0.0),
+        ), status

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import Programs, absolute, passed, reasonable, require, root
+from softkin._array import Programs, absolute, passed, reasonable, require, root, select
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Reals, Rotation, Signs, Turns, Vector
     from softkin.p2x_type2 import Constants
 
 
@@ -71,3 +71,47 @@ class ArrayPrograms(Programs):
         # limits of A2
         require(status, (axis_a2 >= k.lowest_a2) & (axis_a2 <= k.highest_a2), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a1, axis_a2 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
+        a1 = axis_a1 - k.offset_a1
+        a2 = axis_a2 - k.offset_a2
+        pivot_1_x = -0.5 * (a1 + k.tcp_link_distance - a2)  # rod 1: centre about which it swings
+        radicand_y = (k.arm_length + pivot_1_x) * (k.arm_length - pivot_1_x)  # quadratic equation for y: rod 1
+        x = 0.5 * (a1 + a2)  # x from the x equation, which is linear in it
+        margin_meet_a2 = -2.0 * (k.span_1_x + x - a2) / k.arm_length
+        y = root(radicand_y) * k.assembly_sign
+        margin_flat = y / k.arm_length
+        # the mirror that the machine does not have
+        require(status, pivot_1_x >= -k.machine_scale_times_rounding, Status.IMPOSSIBLE)
+        # rod 1 cannot reach
+        require(status, radicand_y >= -k.arm_length_squared_times_rounding, Status.IMPOSSIBLE)
+        return (margin_meet_a2, margin_flat), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a1, axis_a2 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
+        a1 = axis_a1 - k.offset_a1
+        a2 = axis_a2 - k.offset_a2
+        pivot_1_x = -0.5 * (a1 + k.tcp_link_distance - a2)  # rod 1: centre about which it swings
+        radicand_y = (k.arm_length + pivot_1_x) * (k.arm_length - pivot_1_x)  # quadratic equation for y: rod 1
+        y = root(radicand_y) * k.assembly_sign
+        slope_2_by_y = 2.0 * y
+        determinant_divisor = select(absolute(slope_2_by_y) > k.machine_scale_times_free_angle, slope_2_by_y, 1.0)
+        pivot_1_x_by_slope_2_by_y = pivot_1_x / determinant_divisor
+        # the mirror that the machine does not have
+        require(status, pivot_1_x >= -k.machine_scale_times_rounding, Status.IMPOSSIBLE)
+        # rod 1 cannot reach
+        require(status, radicand_y >= -k.arm_length_squared_times_rounding, Status.IMPOSSIBLE)
+        # nothing controls the plate
+        require(status, absolute(slope_2_by_y) > k.machine_scale_times_free_angle, Status.IMPOSSIBLE)
+        return ((0.5, 0.5), (pivot_1_x_by_slope_2_by_y, -pivot_1_x_by_slope_2_by_y)), status

@@ -24,7 +24,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.pcc import Constants
 
 
@@ -128,3 +128,33 @@ class ArrayPrograms(Programs):
         # limits of the outer arm relative to the inner arm
         require(status, (value_elbow >= k.lowest_elbow) & (value_elbow <= k.highest_elbow), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a1, axis_a2 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_a2_from_a1 = -sin(a1 - a2)
+        return (sin_a2_from_a1,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a1, axis_a2 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_a2 = sin(a2)
+        cos_a1 = cos(a1)
+        cos_a2 = cos(a2)
+        return (
+            (-k.link_length_1 * sin_a1, -k.link_length_2 * sin_a2),
+            (k.link_length_1 * cos_a1, k.link_length_2 * cos_a2),
+        ), status

@@ -27,7 +27,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Values, Vector
+    from softkin._array import Codes, Matrix, Reals, Rotation, Signs, Turns, Values, Vector
     from softkin.planar_3rrr import Constants
 
 
@@ -393,3 +393,194 @@ class ArrayPrograms(StartedPrograms):
         # limits of A3
         require(status, (axis_a3 >= k.lowest_a3) & (axis_a3 <= k.highest_a3), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a1, axis_a2, axis_a3 = axes
+        k = self.constants
+        status = passed(axes)
+        # pose of the platform, by Newton's method from the home pose
+        found = self.find_platform(
+            (axis_a1, axis_a2, axis_a3, k.cos_home_heading_2, k.sin_home_heading_2, k.home_x, k.home_y), status
+        )
+        x, y, cos_heading, sin_heading, determinant, *_ = found
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        cos_a1 = cos(a1)
+        # rod 1: known part of its vector
+        span_1_x = x + k.platform_1_x * cos_heading - k.base_1_x - k.platform_1_y * sin_heading
+        span_1_y = y + k.platform_1_y * cos_heading + k.platform_1_x * sin_heading - k.base_1_y
+        margin_stretched_1 = (span_1_y * cos_a1 - span_1_x * sin_a1) / k.rod_length_1
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_a2 = sin(a2)
+        cos_a2 = cos(a2)
+        # rod 2: known part of its vector
+        span_2_x = x + k.platform_2_x * cos_heading - k.base_2_x - k.platform_2_y * sin_heading
+        span_2_y = y + k.platform_2_y * cos_heading + k.platform_2_x * sin_heading - k.base_2_y
+        margin_stretched_2 = (span_2_y * cos_a2 - span_2_x * sin_a2) / k.rod_length_2
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        sin_a3 = sin(a3)
+        cos_a3 = cos(a3)
+        # rod 3: known part of its vector
+        span_3_x = x + k.platform_3_x * cos_heading - k.base_3_x - k.platform_3_y * sin_heading
+        span_3_y = y + k.platform_3_y * cos_heading + k.platform_3_x * sin_heading - k.base_3_y
+        margin_stretched_3 = (span_3_y * cos_a3 - span_3_x * sin_a3) / k.rod_length_3
+        return (margin_stretched_1, margin_stretched_2, margin_stretched_3, determinant), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        k = self.constants
+        status = passed(axes)
+        # pose of the platform, by Newton's method from the home pose
+        found = self.find_platform(
+            (axis_a1, axis_a2, axis_a3, k.cos_home_heading_2, k.sin_home_heading_2, k.home_x, k.home_y), status
+        )
+        (
+            _,
+            _,
+            _,
+            _,
+            determinant,
+            along_1_x,
+            along_1_y,
+            moment_1_z,
+            along_2_x,
+            along_2_y,
+            moment_2_z,
+            along_3_x,
+            along_3_y,
+            moment_3_z,
+        ) = found
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_a2 = sin(a2)
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        sin_a3 = sin(a3)
+        cos_a1 = cos(a1)
+        cos_a2 = cos(a2)
+        cos_a3 = cos(a3)
+        # twist of the platform per velocity of each axis
+        (
+            _,
+            column_1_vx,
+            column_2_vx,
+            column_3_vx,
+            column_1_vy,
+            column_2_vy,
+            column_3_vy,
+            column_1_wz,
+            column_2_wz,
+            column_3_wz,
+        ) = solve(
+            (
+                (along_1_x, along_1_y, moment_1_z),
+                (along_2_x, along_2_y, moment_2_z),
+                (along_3_x, along_3_y, moment_3_z),
+            ),
+            (
+                ((along_1_y * cos_a1 - along_1_x * sin_a1) * k.arm_length_1, 0.0, 0.0),
+                (0.0, (along_2_y * cos_a2 - along_2_x * sin_a2) * k.arm_length_2, 0.0),
+                (0.0, 0.0, (along_3_y * cos_a3 - along_3_x * sin_a3) * k.arm_length_3),
+            ),
+        )
+        # nothing controls the plate
+        require(status, absolute(determinant) > 1e-11, Status.IMPOSSIBLE)
+        return (
+            (column_1_vx, column_2_vx, column_3_vx),
+            (column_1_vy, column_2_vy, column_3_vy),
+            (
+                column_1_wz * k.one_by_platform_radius,
+                column_2_wz * k.one_by_platform_radius,
+                column_3_wz * k.one_by_platform_radius,
+            ),
+        ), status
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        k = self.constants
+        status = passed(axes)
+        # pose of the platform, by Newton's method from the home pose
+        found = self.find_platform(
+            (axis_a1, axis_a2, axis_a3, k.cos_home_heading_2, k.sin_home_heading_2, k.home_x, k.home_y), status
+        )
+        (
+            _,
+            _,
+            _,
+            _,
+            determinant,
+            along_1_x,
+            along_1_y,
+            moment_1_z,
+            along_2_x,
+            along_2_y,
+            moment_2_z,
+            along_3_x,
+            along_3_y,
+            moment_3_z,
+        ) = found
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_a2 = sin(a2)
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        sin_a3 = sin(a3)
+        cos_a1 = cos(a1)
+        cos_a2 = cos(a2)
+        cos_a3 = cos(a3)
+        # twist of the platform per velocity of each axis
+        (
+            _,
+            column_1_vx,
+            column_2_vx,
+            column_3_vx,
+            column_1_vy,
+            column_2_vy,
+            column_3_vy,
+            column_1_wz,
+            column_2_wz,
+            column_3_wz,
+        ) = solve(
+            (
+                (along_1_x, along_1_y, moment_1_z),
+                (along_2_x, along_2_y, moment_2_z),
+                (along_3_x, along_3_y, moment_3_z),
+            ),
+            (
+                ((along_1_y * cos_a1 - along_1_x * sin_a1) * k.arm_length_1, 0.0, 0.0),
+                (0.0, (along_2_y * cos_a2 - along_2_x * sin_a2) * k.arm_length_2, 0.0),
+                (0.0, 0.0, (along_3_y * cos_a3 - along_3_x * sin_a3) * k.arm_length_3),
+            ),
+        )
+        # nothing controls the plate
+        require(status, absolute(determinant) > 1e-11, Status.IMPOSSIBLE)
+        return (
+            (column_1_vx, column_2_vx, column_3_vx),
+            (column_1_vy, column_2_vy, column_3_vy),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (
+                column_1_wz * k.one_by_platform_radius,
+                column_2_wz * k.one_by_platform_radius,
+                column_3_wz * k.one_by_platform_radius,
+            ),
+        ), status
+
+    def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
+        """The nearest rotation that the flange can have."""
+        (r11, r12, _), (r21, r22, _), _ = rotation
+        status = passed(rotation)
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
+        heading_across = r21 - r12
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        cos_heading = heading_along / heading_divisor
+        sin_heading = heading_across / heading_divisor
+        # the tool points exactly the opposite way
+        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

@@ -23,7 +23,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.polar import Constants
 
 
@@ -90,3 +90,53 @@ class ArrayPrograms(Programs):
         # limits of R
         require(status, (axis_r >= k.lowest_r) & (axis_r <= k.highest_r), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_c, axis_r = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_c, axis_r), Status.BAD_INPUT)
+        r = axis_r - k.offset_r
+        c = DEGREE * (axis_c - k.offset_c)
+        cos_c = cos(c)
+        x = r * cos_c
+        sin_c = sin(c)
+        y = r * sin_c
+        radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
+        length_free_c = radius_c / k.machine_scale
+        margin_free_c = select(length_free_c > 1e-11, 1.0, 0.0)  # 0 where nothing determines the axis, else 1 or -1
+        # R where the machine has no pose
+        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
+        return (margin_free_c,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_c, axis_r = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_c, axis_r), Status.BAD_INPUT)
+        r = axis_r - k.offset_r
+        c = DEGREE * (axis_c - k.offset_c)
+        sin_c = sin(c)
+        cos_c = cos(c)
+        # R where the machine has no pose
+        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
+        return ((-r * sin_c, cos_c), (r * cos_c, sin_c)), status
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        axis_c, axis_r = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_c, axis_r), Status.BAD_INPUT)
+        r = axis_r - k.offset_r
+        c = DEGREE * (axis_c - k.offset_c)
+        sin_c = sin(c)
+        cos_c = cos(c)
+        # R where the machine has no pose
+        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
+        return ((-r * sin_c, cos_c), (r * cos_c, sin_c), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (1.0, 0.0)), status

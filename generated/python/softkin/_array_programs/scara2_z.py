@@ -24,7 +24,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.scara2_z import Constants
 
 
@@ -123,3 +123,61 @@ class ArrayPrograms(Programs):
         # limits of Z
         require(status, (axis_z >= k.lowest_z) & (axis_z <= k.highest_z), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a1, axis_a2, axis_z = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_z), Status.BAD_INPUT)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_a2 = sin(a2)
+        return (sin_a2,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a1, axis_a2, axis_z = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_z), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        cos_a1 = cos(a1)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        a1_plus_a2 = a1 + a2
+        cos_a12 = cos(a1_plus_a2)
+        arm_length_2_times_cos_a12 = k.arm_length_2 * cos_a12
+        sin_a12 = sin(a1_plus_a2)
+        arm_length_2_times_sin_a12 = k.arm_length_2 * sin_a12
+        return (
+            (-arm_length_2_times_sin_a12 - k.arm_length_1 * sin_a1, -arm_length_2_times_sin_a12, 0.0),
+            (arm_length_2_times_cos_a12 + k.arm_length_1 * cos_a1, arm_length_2_times_cos_a12, 0.0),
+            (0.0, 0.0, 1.0),
+        ), status
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        axis_a1, axis_a2, axis_z = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_z), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        cos_a1 = cos(a1)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        a1_plus_a2 = a1 + a2
+        cos_a12 = cos(a1_plus_a2)
+        arm_length_2_times_cos_a12 = k.arm_length_2 * cos_a12
+        sin_a12 = sin(a1_plus_a2)
+        arm_length_2_times_sin_a12 = k.arm_length_2 * sin_a12
+        return (
+            (-arm_length_2_times_sin_a12 - k.arm_length_1 * sin_a1, -arm_length_2_times_sin_a12, 0.0),
+            (arm_length_2_times_cos_a12 + k.arm_length_1 * cos_a1, arm_length_2_times_cos_a12, 0.0),
+            (0.0, 0.0, 1.0),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (1.0, 1.0, 0.0),
+        ), status

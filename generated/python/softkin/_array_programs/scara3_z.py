@@ -24,7 +24,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.scara3_z import Constants
 
 
@@ -147,3 +147,89 @@ class ArrayPrograms(Programs):
         # limits of Z
         require(status, (axis_z >= k.lowest_z) & (axis_z <= k.highest_z), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a1, axis_a2, axis_a3, axis_z = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_z), Status.BAD_INPUT)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_a2 = sin(a2)
+        return (sin_a2,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_z = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_z), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        cos_a1 = cos(a1)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        a1_plus_a2 = a1 + a2
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        cos_a123 = cos(a1_plus_a2_plus_a3)
+        arm_length_3_times_cos_a123 = k.arm_length_3 * cos_a123
+        sin_a123 = sin(a1_plus_a2_plus_a3)
+        arm_length_3_times_sin_a123 = k.arm_length_3 * sin_a123
+        sin_a12 = sin(a1_plus_a2)
+        shared_sum = arm_length_3_times_sin_a123 + k.arm_length_2 * sin_a12
+        cos_a12 = cos(a1_plus_a2)
+        shared_sum_2 = arm_length_3_times_cos_a123 + k.arm_length_2 * cos_a12
+        return (
+            (-shared_sum - k.arm_length_1 * sin_a1, -shared_sum, -arm_length_3_times_sin_a123, 0.0),
+            (shared_sum_2 + k.arm_length_1 * cos_a1, shared_sum_2, arm_length_3_times_cos_a123, 0.0),
+            (0.0, 0.0, 0.0, 1.0),
+            (1.0, 1.0, 1.0, 0.0),
+        ), status
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_z = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_z), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        cos_a1 = cos(a1)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        a1_plus_a2 = a1 + a2
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        cos_a123 = cos(a1_plus_a2_plus_a3)
+        arm_length_3_times_cos_a123 = k.arm_length_3 * cos_a123
+        sin_a123 = sin(a1_plus_a2_plus_a3)
+        arm_length_3_times_sin_a123 = k.arm_length_3 * sin_a123
+        sin_a12 = sin(a1_plus_a2)
+        shared_sum = arm_length_3_times_sin_a123 + k.arm_length_2 * sin_a12
+        cos_a12 = cos(a1_plus_a2)
+        shared_sum_2 = arm_length_3_times_cos_a123 + k.arm_length_2 * cos_a12
+        return (
+            (-shared_sum - k.arm_length_1 * sin_a1, -shared_sum, -arm_length_3_times_sin_a123, 0.0),
+            (shared_sum_2 + k.arm_length_1 * cos_a1, shared_sum_2, arm_length_3_times_cos_a123, 0.0),
+            (0.0, 0.0, 0.0, 1.0),
+            (0.0, 0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0, 0.0),
+            (1.0, 1.0, 1.0, 0.0),
+        ), status
+
+    def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
+        """The nearest rotation that the flange can have."""
+        (r11, r12, _), (r21, r22, _), _ = rotation
+        status = passed(rotation)
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
+        heading_across = r21 - r12
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        cos_heading = heading_along / heading_divisor
+        sin_heading = heading_across / heading_divisor
+        # the tool points exactly the opposite way
+        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

@@ -24,7 +24,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.scara3_zccc import Constants
 
 
@@ -143,3 +143,89 @@ class ArrayPrograms(Programs):
         # limits of A1
         require(status, (axis_a1 >= k.lowest_a1) & (axis_a1 <= k.highest_a1), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4), Status.BAD_INPUT)
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        sin_a3 = sin(a3)
+        return (sin_a3,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4), Status.BAD_INPUT)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_a2 = sin(a2)
+        cos_a2 = cos(a2)
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        a2_plus_a3 = a2 + a3
+        a4 = DEGREE * (axis_a4 - k.offset_a4)
+        a2_plus_a3_plus_a4 = a2_plus_a3 + a4
+        cos_a234 = cos(a2_plus_a3_plus_a4)
+        cos_a234_times_link_length_3 = k.link_length_3 * cos_a234
+        sin_a234 = sin(a2_plus_a3_plus_a4)
+        link_length_3_times_sin_a234 = k.link_length_3 * sin_a234
+        sin_a23 = sin(a2_plus_a3)
+        shared_sum = link_length_3_times_sin_a234 + k.link_length_2 * sin_a23
+        cos_a23 = cos(a2_plus_a3)
+        shared_sum_2 = cos_a234_times_link_length_3 + k.link_length_2 * cos_a23
+        return (
+            (0.0, -shared_sum - k.link_length_1 * sin_a2, -shared_sum, -link_length_3_times_sin_a234),
+            (0.0, shared_sum_2 + k.link_length_1 * cos_a2, shared_sum_2, cos_a234_times_link_length_3),
+            (1.0, 0.0, 0.0, 0.0),
+            (0.0, 1.0, 1.0, 1.0),
+        ), status
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4), Status.BAD_INPUT)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_a2 = sin(a2)
+        cos_a2 = cos(a2)
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        a2_plus_a3 = a2 + a3
+        a4 = DEGREE * (axis_a4 - k.offset_a4)
+        a2_plus_a3_plus_a4 = a2_plus_a3 + a4
+        cos_a234 = cos(a2_plus_a3_plus_a4)
+        cos_a234_times_link_length_3 = k.link_length_3 * cos_a234
+        sin_a234 = sin(a2_plus_a3_plus_a4)
+        link_length_3_times_sin_a234 = k.link_length_3 * sin_a234
+        sin_a23 = sin(a2_plus_a3)
+        shared_sum = link_length_3_times_sin_a234 + k.link_length_2 * sin_a23
+        cos_a23 = cos(a2_plus_a3)
+        shared_sum_2 = cos_a234_times_link_length_3 + k.link_length_2 * cos_a23
+        return (
+            (0.0, -shared_sum - k.link_length_1 * sin_a2, -shared_sum, -link_length_3_times_sin_a234),
+            (0.0, shared_sum_2 + k.link_length_1 * cos_a2, shared_sum_2, cos_a234_times_link_length_3),
+            (1.0, 0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0, 0.0),
+            (0.0, 1.0, 1.0, 1.0),
+        ), status
+
+    def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
+        """The nearest rotation that the flange can have."""
+        (r11, r12, _), (r21, r22, _), _ = rotation
+        status = passed(rotation)
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
+        heading_across = r21 - r12
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        cos_heading = heading_along / heading_divisor
+        sin_heading = heading_across / heading_divisor
+        # the tool points exactly the opposite way
+        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

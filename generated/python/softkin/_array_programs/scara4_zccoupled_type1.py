@@ -24,7 +24,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.scara4_zccoupled_type1 import Constants
 
 
@@ -141,3 +141,77 @@ class ArrayPrograms(Programs):
         # limits of A3
         require(status, (axis_a3 >= k.lowest_a3) & (axis_a3 <= k.highest_a3), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4), Status.BAD_INPUT)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_a2 = sin(a2)
+        return (sin_a2,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        cos_a1 = cos(a1)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        a1_plus_a2 = a1 + a2
+        cos_a12 = cos(a1_plus_a2)
+        cos_a12_times_link_length_2 = k.link_length_2 * cos_a12
+        sin_a12 = sin(a1_plus_a2)
+        link_length_2_times_sin_a12 = k.link_length_2 * sin_a12
+        return (
+            (-link_length_2_times_sin_a12 - k.link_length_1 * sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
+            (cos_a12_times_link_length_2 + k.link_length_1 * cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
+            (0.0, 0.0, 1.0, -k.quotient_in_z),
+            (1.0, 1.0, 0.0, 1.0),
+        ), status
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        cos_a1 = cos(a1)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        a1_plus_a2 = a1 + a2
+        cos_a12 = cos(a1_plus_a2)
+        cos_a12_times_link_length_2 = k.link_length_2 * cos_a12
+        sin_a12 = sin(a1_plus_a2)
+        link_length_2_times_sin_a12 = k.link_length_2 * sin_a12
+        return (
+            (-link_length_2_times_sin_a12 - k.link_length_1 * sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
+            (cos_a12_times_link_length_2 + k.link_length_1 * cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
+            (0.0, 0.0, 1.0, -k.quotient_in_z),
+            (0.0, 0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0, 0.0),
+            (1.0, 1.0, 0.0, 1.0),
+        ), status
+
+    def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
+        """The nearest rotation that the flange can have."""
+        (r11, r12, _), (r21, r22, _), _ = rotation
+        status = passed(rotation)
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
+        heading_across = r21 - r12
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        cos_heading = heading_along / heading_divisor
+        sin_heading = heading_across / heading_divisor
+        # the tool points exactly the opposite way
+        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

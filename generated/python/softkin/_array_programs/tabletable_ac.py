@@ -22,7 +22,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.tabletable_ac import Constants
 
 
@@ -125,3 +125,85 @@ class ArrayPrograms(Programs):
         # limits of Z
         require(status, (axis_z >= k.lowest_z) & (axis_z <= k.highest_z), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_x, axis_y, axis_z, axis_a, axis_c = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_c, axis_x, axis_y, axis_z), Status.BAD_INPUT)
+        a = DEGREE * (axis_a - k.offset_a)
+        sin_a = sin(a)
+        return (sin_a,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_c = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_c, axis_x, axis_y, axis_z), Status.BAD_INPUT)
+        c = DEGREE * (axis_c - k.offset_c)
+        cos_c = cos(c)
+        sin_c = sin(c)
+        a = DEGREE * (axis_a - k.offset_a)
+        cos_a = cos(a)
+        r12_at_a = cos_a * sin_c
+        sin_a = sin(a)
+        r13_at_a = sin_a * sin_c
+        y_at_a = -k.pivot_y * cos_c
+        r22_at_a = cos_a * cos_c
+        r23_at_a = cos_c * sin_a
+        joint_y = axis_y - k.offset_y
+        joint_z = axis_z - k.offset_z
+        joint_z_minus_tool_length = joint_z - k.tool_length
+        joint_x = axis_x - k.offset_x
+        y = y_at_a + joint_y * r22_at_a + joint_z_minus_tool_length * r23_at_a - joint_x * sin_c
+        x_at_a = -k.pivot_y * sin_c
+        x = x_at_a + joint_x * cos_c + joint_y * r12_at_a + joint_z_minus_tool_length * r13_at_a
+        z = joint_z_minus_tool_length * cos_a - k.pivot_z - joint_y * sin_a
+        pivot_z_plus_z = k.pivot_z + z
+        return (
+            (cos_c, r12_at_a, r13_at_a, pivot_z_plus_z * sin_c, y),
+            (-sin_c, r22_at_a, r23_at_a, pivot_z_plus_z * cos_c, -x),
+            (0.0, -sin_a, cos_a, (y_at_a - y) * cos_c + (x_at_a - x) * sin_c, 0.0),
+            (0.0, 0.0, 0.0, -cos_c * cos_c - sin_c * sin_c, 0.0),
+            (0.0, 0.0, 0.0, r22_at_a * sin_c - r12_at_a * cos_c, sin_a),
+        ), status
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_c = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_c, axis_x, axis_y, axis_z), Status.BAD_INPUT)
+        c = DEGREE * (axis_c - k.offset_c)
+        cos_c = cos(c)
+        sin_c = sin(c)
+        a = DEGREE * (axis_a - k.offset_a)
+        cos_a = cos(a)
+        r12_at_a = cos_a * sin_c
+        sin_a = sin(a)
+        r13_at_a = sin_a * sin_c
+        y_at_a = -k.pivot_y * cos_c
+        r22_at_a = cos_a * cos_c
+        r23_at_a = cos_c * sin_a
+        joint_y = axis_y - k.offset_y
+        joint_z = axis_z - k.offset_z
+        joint_z_minus_tool_length = joint_z - k.tool_length
+        joint_x = axis_x - k.offset_x
+        y = y_at_a + joint_y * r22_at_a + joint_z_minus_tool_length * r23_at_a - joint_x * sin_c
+        x_at_a = -k.pivot_y * sin_c
+        x = x_at_a + joint_x * cos_c + joint_y * r12_at_a + joint_z_minus_tool_length * r13_at_a
+        z = joint_z_minus_tool_length * cos_a - k.pivot_z - joint_y * sin_a
+        pivot_z_plus_z = k.pivot_z + z
+        return (
+            (cos_c, r12_at_a, r13_at_a, pivot_z_plus_z * sin_c, y),
+            (-sin_c, r22_at_a, r23_at_a, pivot_z_plus_z * cos_c, -x),
+            (0.0, -sin_a, cos_a, (y_at_a - y) * cos_c + (x_at_a - x) * sin_c, 0.0),
+            (0.0, 0.0, 0.0, -cos_c, 0.0),
+            (0.0, 0.0, 0.0, sin_c, 0.0),
+            (0.0, 0.0, 0.0, 0.0, -1.0),
+        ), status

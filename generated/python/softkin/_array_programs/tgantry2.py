@@ -9,7 +9,7 @@ from softkin._array import Programs, absolute, passed, reasonable, require
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Reals, Rotation, Signs, Turns, Vector
     from softkin.tgantry2 import Constants
 
 
@@ -66,3 +66,19 @@ class ArrayPrograms(Programs):
         # limits of Y of the carriage
         require(status, (value_y >= k.lowest_y) & (value_y <= k.highest_y), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a, axis_b = axes
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b), Status.BAD_INPUT)
+        return (), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a, axis_b = axes
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b), Status.BAD_INPUT)
+        return ((0.5, 0.5), (-0.5, 0.5)), status

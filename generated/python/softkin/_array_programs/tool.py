@@ -9,7 +9,7 @@ from softkin._array import OrientationPrograms, passed, reasonable, require
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Reals, Rotation, Signs, Turns, Vector
     from softkin.tool import Constants
 
 
@@ -35,6 +35,16 @@ class ArrayPrograms(OrientationPrograms):
         """The test of the limits."""
         status = passed(axes)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        status = passed(axes)
+        return (), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        status = passed(axes)
+        return (), status
 
     def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
         """The vector from a flange that turns to the end point."""

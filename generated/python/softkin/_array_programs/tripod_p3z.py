@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import Programs, passed, reasonable, require, root, select
+from softkin._array import Programs, absolute, passed, reasonable, require, root, select
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Reals, Rotation, Signs, Turns, Vector
     from softkin.tripod_p3z import Constants
 
 
@@ -141,3 +141,166 @@ class ArrayPrograms(Programs):
         # limits of A3
         require(status, (axis_a3 >= k.lowest_a3) & (axis_a3 <= k.highest_a3), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a1, axis_a2, axis_a3 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
+        a1 = axis_a1 - k.offset_a1
+        a2 = axis_a2 - k.offset_a2
+        centre_1_to_2_z = a2 - a1
+        a3 = axis_a3 - k.offset_a3
+        centre_1_to_3_z = a3 - a1
+        # normal to the plane of the centres
+        normal_x = k.centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * k.centre_1_to_3_y
+        normal_y = centre_1_to_2_z * k.centre_1_to_3_x - k.centre_1_to_2_x * centre_1_to_3_z
+        # squared length of the normal
+        normal_square = k.normal_z_squared + normal_x * normal_x + normal_y * normal_y
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = k.sum_in_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = k.sum_in_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
+        one_by_normal_square = 1.0 / normal_divisor
+        # foot of the perpendicular, seen from centre 1
+        foot_x = one_by_normal_square * (
+            (k.centre_1_to_3_y_times_normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - k.centre_1_to_2_y_times_normal_z) * projection_3
+        )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - k.centre_1_to_3_x_times_normal_z) * projection_2
+            + (k.centre_1_to_2_x_times_normal_z - centre_1_to_2_z * normal_x) * projection_3
+        )
+        foot_z = one_by_normal_square * (
+            (k.centre_1_to_3_x * normal_y - k.centre_1_to_3_y * normal_x) * projection_2
+            + (k.centre_1_to_2_y * normal_x - k.centre_1_to_2_x * normal_y) * projection_3
+        )
+        # square of the height over the plane of the centres
+        height_square = k.arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
+        z = a1 + foot_z + height_by_normal * k.normal_z
+        rod_1_z = z - a1
+        margin_level_1 = -k.one_by_arm_length * rod_1_z
+        rod_2_z = z - a2
+        margin_level_2 = -k.one_by_arm_length * rod_2_z
+        rod_3_z = z - a3
+        margin_level_3 = -k.one_by_arm_length * rod_3_z
+        x = foot_x + k.pivot_1_x + height_by_normal * normal_x
+        rod_1_x = x - k.pivot_1_x
+        y = foot_y + k.pivot_1_y + height_by_normal * normal_y
+        rod_1_y = y - k.pivot_1_y
+        rod_2_x = x - k.pivot_2_x
+        rod_2_y = y - k.pivot_2_y
+        rod_3_x = x - k.pivot_3_x
+        rod_3_y = y - k.pivot_3_y
+        margin_rods_coplanar = (
+            rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+            + (rod_1_y * rod_3_x - rod_1_x * rod_3_y) * rod_2_z
+            + (rod_1_x * rod_2_y - rod_1_y * rod_2_x) * rod_3_z
+        ) / k.product_in_margin_rods_coplanar
+        # the centres coincide or lie on a line: nothing holds the plate
+        # the rods do not meet
+        require(
+            status,
+            (normal_square > k.product_in_normal_divisor) & (height_square >= -k.arm_length_squared_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        return (margin_level_1, margin_level_2, margin_level_3, margin_rods_coplanar), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
+        a1 = axis_a1 - k.offset_a1
+        a2 = axis_a2 - k.offset_a2
+        centre_1_to_2_z = a2 - a1
+        a3 = axis_a3 - k.offset_a3
+        centre_1_to_3_z = a3 - a1
+        # normal to the plane of the centres
+        normal_x = k.centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * k.centre_1_to_3_y
+        normal_y = centre_1_to_2_z * k.centre_1_to_3_x - k.centre_1_to_2_x * centre_1_to_3_z
+        # squared length of the normal
+        normal_square = k.normal_z_squared + normal_x * normal_x + normal_y * normal_y
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = k.sum_in_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = k.sum_in_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
+        one_by_normal_square = 1.0 / normal_divisor
+        # foot of the perpendicular, seen from centre 1
+        foot_x = one_by_normal_square * (
+            (k.centre_1_to_3_y_times_normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - k.centre_1_to_2_y_times_normal_z) * projection_3
+        )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - k.centre_1_to_3_x_times_normal_z) * projection_2
+            + (k.centre_1_to_2_x_times_normal_z - centre_1_to_2_z * normal_x) * projection_3
+        )
+        foot_z = one_by_normal_square * (
+            (k.centre_1_to_3_x * normal_y - k.centre_1_to_3_y * normal_x) * projection_2
+            + (k.centre_1_to_2_y * normal_x - k.centre_1_to_2_x * normal_y) * projection_3
+        )
+        # square of the height over the plane of the centres
+        height_square = k.arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
+        x = foot_x + k.pivot_1_x + height_by_normal * normal_x
+        slope_1_by_x = 2.0 * (x - k.product_in_slope_1_by_x)
+        y = foot_y + k.pivot_1_y + height_by_normal * normal_y
+        slope_1_by_y = 2.0 * (y - k.product_in_slope_1_by_y)
+        z = a1 + foot_z + height_by_normal * k.normal_z
+        slope_1_by_z = 2.0 * (z - a1)
+        slope_2_by_y = 2.0 * (y - k.product_in_slope_2_by_y)
+        slope_2_by_z = 2.0 * (z - a2)
+        slope_3_by_y = 2.0 * (y - k.product_in_slope_3_by_y)
+        slope_3_by_z = 2.0 * (z - a3)
+        sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        slope_2_by_x = 2.0 * (x - k.product_in_slope_2_by_x)
+        slope_3_by_x = 2.0 * (x - k.product_in_slope_3_by_x)
+        sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = (
+            slope_1_by_x * sum_in_determinant
+            + slope_1_by_y * sum_in_determinant_2
+            + slope_1_by_z * sum_in_determinant_3
+        )
+        determinant_divisor = select(absolute(determinant) > k.product_in_determinant_divisor, determinant, 1.0)
+        one_by_determinant = 1.0 / determinant_divisor
+        slope_1_by_z_times_one_by_determinant = one_by_determinant * slope_1_by_z
+        slope_2_by_z_times_one_by_determinant = one_by_determinant * slope_2_by_z
+        slope_3_by_z_times_one_by_determinant = one_by_determinant * slope_3_by_z
+        # the centres coincide or lie on a line: nothing holds the plate
+        # the rods do not meet
+        # nothing controls the plate
+        require(
+            status,
+            (normal_square > k.product_in_normal_divisor)
+            & (absolute(determinant) > k.product_in_determinant_divisor)
+            & (height_square >= -k.arm_length_squared_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            (
+                slope_1_by_z_times_one_by_determinant * sum_in_determinant,
+                (slope_1_by_z * slope_3_by_y - slope_1_by_y * slope_3_by_z) * slope_2_by_z_times_one_by_determinant,
+                (slope_1_by_y * slope_2_by_z - slope_1_by_z * slope_2_by_y) * slope_3_by_z_times_one_by_determinant,
+            ),
+            (
+                slope_1_by_z_times_one_by_determinant * sum_in_determinant_2,
+                (slope_1_by_x * slope_3_by_z - slope_1_by_z * slope_3_by_x) * slope_2_by_z_times_one_by_determinant,
+                (slope_1_by_z * slope_2_by_x - slope_1_by_x * slope_2_by_z) * slope_3_by_z_times_one_by_determinant,
+            ),
+            (
+                slope_1_by_z_times_one_by_determinant * sum_in_determinant_3,
+                (slope_1_by_y * slope_3_by_x - slope_1_by_x * slope_3_by_y) * slope_2_by_z_times_one_by_determinant,
+                (slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x) * slope_3_by_z_times_one_by_determinant,
+            ),
+        ), status

@@ -22,7 +22,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.wrist2 import Constants
 
 
@@ -108,6 +108,70 @@ class ArrayPrograms(OrientationPrograms):
         # limits of B
         require(status, (axis_b >= k.lowest_b) & (axis_b <= k.highest_b), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a, axis_b = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b), Status.BAD_INPUT)
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        return (sin_b,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a, axis_b = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b), Status.BAD_INPUT)
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        r31_at_b = -k.tool_side * sin_b
+        a = DEGREE * (axis_a - k.offset_a)
+        sin_a = sin(a)
+        cos_a = cos(a)
+        cos_b = cos(b)
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
+        return (
+            (r31_at_b, k.tool_side * (r21_at_b * cos_a - r11_at_b * sin_a)),
+            (0.0, k.tool_side * (cos_a * cos_a + sin_a * sin_a)),
+        ), status
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        axis_a, axis_b = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b), Status.BAD_INPUT)
+        a = DEGREE * (axis_a - k.offset_a)
+        sin_a = sin(a)
+        cos_a = cos(a)
+        y_at_b = k.roll_axis_offset_y * cos_a + k.roll_axis_offset_x * sin_a
+        sin_a_times_tool_side = k.tool_side * sin_a
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        r23_at_b = sin_a_times_tool_side * sin_b
+        y = y_at_b + r23_at_b * k.tool_length_times_tool_side
+        x_at_b = k.roll_axis_offset_x * cos_a - k.roll_axis_offset_y * sin_a
+        cos_a_times_tool_side = k.tool_side * cos_a
+        r13_at_b = cos_a_times_tool_side * sin_b
+        x = x_at_b + r13_at_b * k.tool_length_times_tool_side
+        cos_b = cos(b)
+        z = k.roll_axis_offset_z + k.tool_length_times_tool_side * cos_b
+        z_minus_roll_axis_offset_z = z - k.roll_axis_offset_z
+        return (
+            (-y, z_minus_roll_axis_offset_z * cos_a_times_tool_side),
+            (x, z_minus_roll_axis_offset_z * sin_a_times_tool_side),
+            (0.0, k.tool_side * ((x_at_b - x) * cos_a + (y_at_b - y) * sin_a)),
+            (0.0, -sin_a_times_tool_side),
+            (0.0, cos_a_times_tool_side),
+            (1.0, 0.0),
+        ), status
 
     def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
         """The vector from a flange that turns to the end point."""

@@ -22,7 +22,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.wrist3 import Constants
 
 
@@ -120,6 +120,72 @@ class ArrayPrograms(OrientationPrograms):
         # limits of C
         require(status, (axis_c >= k.lowest_c) & (axis_c <= k.highest_c), Status.UNREACHABLE)
         return status
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        axis_a, axis_b, axis_c = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b, axis_c), Status.BAD_INPUT)
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        return (sin_b,), status
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        axis_a, axis_b, axis_c = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b, axis_c), Status.BAD_INPUT)
+        a = DEGREE * (axis_a - k.offset_a)
+        sin_a = sin(a)
+        cos_a = cos(a)
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        r13_at_b = -cos_a * sin_b
+        r23_at_b = -sin_a * sin_b
+        cos_b = cos(b)
+        return ((0.0, sin_a, r13_at_b), (0.0, -cos_a, r23_at_b), (1.0, 0.0, cos_b)), status
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        axis_a, axis_b, axis_c = axes
+        k = self.constants
+        status = passed(axes)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b, axis_c), Status.BAD_INPUT)
+        a = DEGREE * (axis_a - k.offset_a)
+        sin_a = sin(a)
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        r23_at_b = -sin_a * sin_b
+        cos_a = cos(a)
+        cos_b = cos(b)
+        r21_at_b = cos_b * sin_a
+        c = DEGREE * (axis_c - k.offset_c)
+        sin_c = sin(c)
+        cos_c = cos(c)
+        r21_at_c = cos_a * sin_c + r21_at_b * cos_c
+        r22_at_c = cos_a * cos_c - r21_at_b * sin_c
+        y = r21_at_c * k.tool_offset_x + r22_at_c * k.tool_offset_y + r23_at_b * k.tool_offset_z
+        r31_at_c = cos_c * sin_b
+        r32_at_c = -sin_b * sin_c
+        z = k.tool_offset_z * cos_b + r31_at_c * k.tool_offset_x + r32_at_c * k.tool_offset_y
+        r13_at_b = -cos_a * sin_b
+        r11_at_b = cos_a * cos_b
+        r11_at_c = r11_at_b * cos_c - sin_a * sin_c
+        r12_at_c = -cos_c * sin_a - r11_at_b * sin_c
+        x = r11_at_c * k.tool_offset_x + r12_at_c * k.tool_offset_y + r13_at_b * k.tool_offset_z
+        return (
+            (-y, -z * cos_a, r23_at_b * z - y * cos_b),
+            (x, -z * sin_a, x * cos_b - r13_at_b * z),
+            (0.0, x * cos_a + y * sin_a, r13_at_b * y - r23_at_b * x),
+            (0.0, sin_a, r13_at_b),
+            (0.0, -cos_a, r23_at_b),
+            (1.0, 0.0, cos_b),
+        ), status
 
     def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
         """The vector from a flange that turns to the end point."""
