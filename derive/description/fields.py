@@ -37,7 +37,7 @@ _ONE: Mapping[str, tuple[tuple[str, ...], str]] = {
     "search": (("Search", "NoneType"), "search(A6, where=OFFSET)"),
     "title": (("str", "NoneType"), '"My machine"'),
     "class_name": (("str", "NoneType"), '"MyMachine"'),
-    "offset_interface": (("bool",), "False"),
+    "offset_interface": (("bool", "NoneType"), "False"),
 }
 """Fields that hold one value: its classes, and an example."""
 _MAY_BE_NONE = ("periods",)

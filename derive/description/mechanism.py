@@ -247,8 +247,9 @@ class Mechanism:
     title: str | None = None
     """The answer of GetKinematicsName; None: the name of the block."""
     class_name: str | None = None
-    offset_interface: bool = True
-    """Whether positions of a point off the flange can be commanded (orientation mode "Axis")."""
+    offset_interface: bool | None = None
+    """Whether positions of a point off the flange can be commanded (orientation mode "Axis"); None: where the machine
+    can do it, True: it is refused where it cannot."""
     notes: tuple[str, ...] = field(default=())
     """Sentences for the user's documentation: definitions of our own, and properties to know."""
 
@@ -324,6 +325,15 @@ class Mechanism:
     def equations(self) -> tuple[sp.Expr, ...]:
         """All stated closure equations."""
         return (*self.closure, *(rod.equation for rod in self.rods))
+
+    @property
+    def offers_points(self) -> bool:
+        """Whether positions of a point off the flange are to be derived, or tried: not behind a pitch, not of a loop
+        that turns its platform; unless they are asked for, not of a machine that follows the direction of the tool.
+        """
+        if self.offset_interface is None:
+            return self.is_position and not self.is_platform
+        return self.offset_interface and not self.followed_turns
 
     @property
     def block_name(self) -> str:

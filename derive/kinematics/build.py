@@ -27,7 +27,14 @@ from derive.ir.program import Let, Output, Program, Statement, shared
 from derive.ir.symbols import BASE_AXIS, FLANGE_AXIS, OFFSET, ROTATION_ENTRIES, START_POSITION, START_ROTATION, real
 from derive.ir.types import Type, output_types
 from derive.ir.verify import BrokenProgram
-from derive.kinematics.assembly import Assembled, assembled, assembly_checks, bound_checks, mirror_checks
+from derive.kinematics.assembly import (
+    Assembled,
+    assembled,
+    assembly_checks,
+    bound_checks,
+    mirror_checks,
+    with_derived_assembly,
+)
 from derive.kinematics.branch_assignment import Assignment, assign, margin_lets, with_branch_signs
 from derive.kinematics.coupling import coupling_programs
 from derive.kinematics.derived_branches import with_derived_branches
@@ -86,6 +93,7 @@ def _built(mechanism: Mechanism) -> Kinematics:
     mechanism = with_search(mechanism)
     if mechanism.search is not None:
         return _scanned(mechanism)
+    mechanism = with_derived_assembly(mechanism)
     closed = assembled(mechanism, pose_at_axes(mechanism))
     forward = closed.forward
     inverse = solve_pose(mechanism)
@@ -137,7 +145,7 @@ def _further_programs(
         programs.append(twist_program(mechanism, closed.forward))
     if mechanism.is_orientation:
         programs += coupling_programs(mechanism)
-    elif mechanism.offset_interface and not mechanism.followed_turns:  # nothing is carried behind a pitch
+    elif mechanism.offers_points:
         programs += _offset_programs(mechanism, closed, inverse.derivation.conditions)
     return programs
 
@@ -289,7 +297,9 @@ def _last(
 
 
 def _offset_programs(mechanism: Mechanism, closed: Assembled, conditions: tuple[sp.Expr, ...]) -> list[Program]:
-    """The programs for a point off the flange; they may not need more of the machine than the pose does."""
+    """The programs for a point off the flange; they may not need more of the machine than the pose does. None where
+    they do, unless the description asks for them: then it is refused.
+    """
     forward = closed.forward
     try:
         inverse = solve_offset(mechanism)
@@ -298,6 +308,8 @@ def _offset_programs(mechanism: Mechanism, closed: Assembled, conditions: tuple[
         if further := [c for c in inverse.derivation.conditions if c not in conditions]:
             raise DescriptionError(f"{further[0]} must not vanish, which the pose does not need")
     except (Unsolved, DescriptionError) as problem:
+        if mechanism.offset_interface is None:
+            return []
         raise type(problem)(
             f"with offset_interface=False it could be built, but for a point off the flange {problem}"
         ) from None

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import sympy as sp
 
 from derive.description.mechanism import (
-    DescriptionError,
     Mechanism,
     Turning,
 )
@@ -94,6 +94,7 @@ def _frame_by_frame(mechanism: Mechanism, checks: tuple[Statement, ...]) -> Forw
     return Forward((*checks, *composed.statements, *pose), names[:3], names[3:])
 
 
+@cache
 def solve_for_position(mechanism: Mechanism) -> Derivation:
     """The stated closure solved for x, y and z by the same solver, with the joints known."""
     closure = position_closure(mechanism)
@@ -106,12 +107,7 @@ def solve_for_position(mechanism: Mechanism) -> Derivation:
         scale=SCALE,
         signs=signs_of(mechanism),
     )
-    derivation = solve(problem, (), lambda angle: ())
-    if len(derivation.determinants) > 1 or bool(derivation.determinants) != (mechanism.assembly is not None):
-        raise DescriptionError(
-            f"forward kinematics has {len(derivation.determinants)} two-root steps: one assembly names one"
-        )
-    return derivation
+    return solve(problem, (), lambda angle: ())
 
 
 def _in_assembly_mode(derivation: Derivation, mechanism: Mechanism) -> tuple[Statement, ...]:
