@@ -61,6 +61,7 @@ from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, marg
 from derive.kinematics.scan.programs import names_of_search
 from derive.kinematics.shared_names import refuse_names, refuse_names_of_joints, refuse_shared_names
 from derive.lowering.lower import lowered
+from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
 from derive.plate.stated_rods import with_stated_rods
 from derive.plate.turning import forward_from_given, joints_at_home
@@ -129,6 +130,8 @@ def _factors(
     """What the determinants of the two Jacobians are products of: a factor for each way of being singular."""
     told: list[Assignment | Conditioning] = [*assignments, *inverse.derivation.conditionings]
     factors = [factor_of(mechanism, found) for found in told]
+    if mechanism.passive:
+        factors.append(Factor(GUIDES, guides_determinant(mechanism)))
     return [*factors, Factor(closed.name, closed.margin)] if closed.margin is not None else factors
 
 
@@ -355,7 +358,7 @@ def _turns_in_a_coupling(mechanism: Mechanism) -> bool:
 
 def _freedom(mechanism: Mechanism) -> Freedom:
     """How the flange turns."""
-    if mechanism.task.turning is Turning.FULL or mechanism.followed_turns:
+    if mechanism.motion.turning is Turning.FULL or mechanism.followed_turns:
         return Freedom.THREE
     if mechanism.chain is None:
         return Freedom.ONE if mechanism.is_turning_loop else Freedom.ZERO

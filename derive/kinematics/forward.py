@@ -57,6 +57,7 @@ from derive.ir.symbols import (
 )
 from derive.kinematics.inverse import Inverse
 from derive.plate.legs import about_z
+from derive.plate.passive import at_the_pose
 from derive.plate.turning import forward_from_home
 from derive.solver.solve import Derivation, solve
 
@@ -189,7 +190,7 @@ def derivation_at_axes(mechanism: Mechanism, inverse: Inverse, forward: Forward)
     lets = tuple(s for n, s in trigonometric.items() if n not in present)
     lets += tuple(Let(s.sigma, Select(sp.Ge(s.value, 0), 1, -1)) for s in inverse.derivation.determinants)
     fixed = tuple(let for let in fixed_lets(mechanism) if let.name not in own)
-    return (*forward.statements, *fixed, *lets, *kept)
+    return (*forward.statements, *fixed, *at_the_pose(mechanism), *lets, *kept)
 
 
 def _angle_values(mechanism: Mechanism, inverse: Inverse) -> dict[sp.Symbol, sp.Expr]:

@@ -170,7 +170,8 @@ def jacobian_of(closure: Closure, samples: Samples) -> Array:
     a, b = closure.by_pose(*state), closure.by_joints(*state)
     sizes = np.linalg.norm(np.concatenate([a, b], axis=2), axis=2, keepdims=True)
     sizes[sizes == 0.0] = 1.0
-    return np.asarray(-np.linalg.pinv(a / sizes) @ (b / sizes) @ closure.gearing(samples.axes, samples.parameters))
+    by_joints = -np.linalg.pinv(a / sizes) @ (b / sizes) @ closure.gearing(samples.axes, samples.parameters)
+    return np.asarray(by_joints[:, : len(closure.task)])
 
 
 def describe(kin: Kinematics, samples: Samples, row: int) -> str:
@@ -292,7 +293,7 @@ def _singular_values(closure: Closure, samples: Samples) -> tuple[Array, Array]:
     """The largest and the least singular value of the Jacobian of the joints that are solved for, with lengths in
     reaches: the least is small near a type 1 singularity, the largest is large near a type 2 singularity.
     """
-    columns, rows = closure.joint_scale(samples.reach), closure.row_scale(samples.reach)
+    columns, rows = closure.joint_scale(samples.reach), closure.row_scale(samples.reach)[:, : len(closure.task)]
     gears = np.diagonal(closure.gearing(samples.axes, samples.parameters), axis1=1, axis2=2)
     columns = columns / np.abs(gears)  # per radian of the joint, however slow a gear makes it
     scaled = np.nan_to_num(samples.jacobian * columns[:, None, :] / rows[:, :, None], posinf=0.0, neginf=0.0)
