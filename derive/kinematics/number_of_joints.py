@@ -32,7 +32,8 @@ def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
     joints, held = mechanism.joints, mechanism.held
     if spare < 0:
         left = f", of which {len(held)} {'is' if len(held) == 1 else 'are'} held" if held else ""
-        remedy = _follow_pitch(mechanism, spare) or "; command less of the pose, or add joints"
+        less = "command less of the pose" + (", and hold the rest by guides=" if mechanism.is_platform else "")
+        remedy = _follow_pitch(mechanism, spare) or f"; {less}, or add joints"
         return f"the task commands {commanded}, and there are only {len(joints)} joints{left}{remedy}"
     number = "one joint" if spare == 1 else f"{spare} joints"
     names = "the one that is" if spare == 1 else "those that are"

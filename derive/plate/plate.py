@@ -150,8 +150,8 @@ def check_home(mechanism: Mechanism) -> None:
     legs = legs_of(mechanism)
     if len(mechanism.fixed_guides) != len(mechanism.passive):
         raise DescriptionError(
-            f"the platform moves {count} quantities, of which the task does not command {_listed(mechanism.passive)}: "
-            f"as many guides without joints must hold these, and there are {len(mechanism.fixed_guides)}"
+            f"the platform moves {count} quantities, and the task commands all{_but(mechanism.passive)}: as many "
+            f"guides without joints must hold the others, and there are {len(mechanism.fixed_guides)}"
         )
     if len(legs) != count or mechanism.closure:
         held = f" and {len(mechanism.guides)} guides" if mechanism.guides else ""
@@ -179,8 +179,8 @@ def check_home(mechanism: Mechanism) -> None:
         )
 
 
-def _listed(words: Sequence[str]) -> str:
-    return ", ".join(words) or "none"
+def _but(words: Sequence[str]) -> str:
+    return f" but {', '.join(words)}" if words else ""
 
 
 def _no_rods(mechanism: Mechanism) -> str:

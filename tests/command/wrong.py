@@ -150,8 +150,16 @@ WRONG: dict[str, str] = {
         PLATFORM,
         (
             "for k, (knee, end) in enumerate(zip(KNEES, ENDS), 1)),",
-            "for k, (knee, end) in enumerate(zip(KNEES[1:], ENDS[1:]), 1)), closure=(KNEES[0][0] - ENDS[0][0],),",
+            "for k, (knee, end) in enumerate(zip(KNEES[1:], ENDS[1:]), 1)), closure=(KNEES[0][0] * ENDS[0][0],),",
         ),
+    ),
+    "the task commands '…', and the loop moves … as well: …guides=…": changed(PLATFORM, ('Task("xy"', 'Task("x"')),
+    "the platform moves … quantities, and the task commands all…: as many guides without joints must hold the others": (
+        changed(
+            PLATFORM,
+            ("rotary\n", "rotary, guide\n"),
+            ("home=(0, 0, 0),", 'home=(0, 0, 0), guides=(guide("1", (0, 1), on_plate(0, 0)),),'),
+        )
     ),
     "with nominal dimensions its home pose is not where the legs reach it: at best rod '…' is …": changed(
         PLATFORM, ("home=(0, 0, 0),", "home=(0, 2000, 0),")

@@ -343,8 +343,8 @@ RPS = GUIDED["3-RPS on a raised base"]
 WRONG = {
     "a guide too few": (
         replace(RPS, guides=RPS.guides[:2]),
-        "the platform moves 6 quantities, of which the task does not command x, y, twist: as many guides without "
-        "joints must hold these, and there are 2",
+        "the platform moves 6 quantities, and the task commands all but x, y, twist: as many guides without joints "
+        "must hold the others, and there are 2",
     ),
     "guides that leave something open": (
         replace(RPS, guides=(*RPS.guides[:2], guide("3", (1, 0, 0), (X, 0, 0)))),
