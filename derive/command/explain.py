@@ -24,6 +24,7 @@ from derive.kinematics.inverse import Inverse, solve_at, solve_pose
 from derive.kinematics.scan.choice import with_search
 from derive.kinematics.scan.derivations import without_search
 from derive.pipeline import GenerationError, reason_of
+from derive.plate.passive import solve_passive
 from derive.solver.solve import Step, Unsolved
 
 _FORMS = {
@@ -82,7 +83,10 @@ def explanation(mechanism: Mechanism) -> Iterator[str]:
     yield "Inverse kinematics"
     yield from _equations(inverse.closure.equations)
     yield from _held(inverse)
-    for number, step in enumerate(inverse.derivation.steps, 1):
+    passive = solve_passive(mechanism).steps if mechanism.passive else ()
+    if passive:
+        yield f"  not commanded: {', '.join(mechanism.passive)}; from the guides, on the side of the home pose"
+    for number, step in enumerate((*passive, *inverse.derivation.steps), 1):
         yield from _step(mechanism, number, step, assignments)
     yield from _branches(whole)
     yield from _forward(mechanism)

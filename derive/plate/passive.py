@@ -136,12 +136,26 @@ def modes_at_home(mechanism: Mechanism, home: dict[sp.Symbol, sp.Expr]) -> tuple
     determinants = solve_passive(mechanism).determinants if mechanism.passive else ()
     if not determinants:
         return ()
-    statements = (*fixed_lets(mechanism), *at_the_pose(mechanism))
-    table = home | {let.name: real(f"passive_{let.name.name}") for let in statements}
-    lets = (renamed(rewritten(s, lambda e: e.xreplace(table)), lambda n: table[n]) for s in statements)
+    turns = "twist" in mechanism.passive
+    level = {cosine(TWIST): sp.Integer(1), sine(TWIST): sp.Integer(0)} if turns else {}
+    commanded_there = {c: home[r] for c, r in zip(_COMMANDED, ROTATION_ENTRIES, strict=True)} if turns else {}
+    own = {let.name: let.value for let in (*fixed_lets(mechanism), *at_the_pose(mechanism))}
+    needed = _needed([step.value for step in determinants], own, {*level, *commanded_there})
+    table = home | commanded_there | level | {name: real(f"passive_{name.name}") for name in needed}
+    lets = (Let(real(f"passive_{name.name}"), own[name].xreplace(table)) for name in own if name in needed)
     values = ((mode_of(step), step.value.xreplace(table)) for step in determinants)
     note = "of two twists the machine has the one of its home pose"
     return (*lets, *(Let(n, Select(sp.Gt(v, 0), sp.Integer(1), sp.Integer(-1)), note) for n, v in values))
+
+
+def _needed(values: Iterable[sp.Expr], own: Mapping[sp.Symbol, sp.Expr], known: set[sp.Symbol]) -> set[sp.Symbol]:
+    """The names that values read, themselves or through others."""
+    found: set[sp.Symbol] = set()
+    left = {s for v in values for s in v.free_symbols}
+    while left := {s for s in left if s in own and s not in known and s not in found}:
+        found |= left
+        left = {s for name in left for s in own[name].free_symbols}
+    return found
 
 
 def mode_constants(mechanism: Mechanism) -> tuple[Output, ...]:

@@ -12,6 +12,7 @@ import sympy as sp
 from numpy.testing import assert_allclose
 from softkin import KinematicsError, Status
 
+from derive.command.explain import explanation
 from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning, X, guide, on_plate
 from derive.description.validate import validate
 from derive.ir.interpret import evaluate
@@ -340,6 +341,15 @@ def test_a_refused_pose_is_told_by_its_twist_or_leg() -> None:
 
 
 RPS = GUIDED["3-RPS on a raised base"]
+
+
+def test_the_steps_for_what_is_not_commanded_are_explained() -> None:
+    told = list(explanation(RPS))
+    first = told.index("  not commanded: x, y, twist; from the guides, on the side of the home pose")
+    assert told[first + 1].startswith("  1. twist <- trigonometric <- ")
+    assert sum(" <- " in line for line in told[first:]) == 6
+
+
 WRONG = {
     "a guide too few": (
         replace(RPS, guides=RPS.guides[:2]),
