@@ -15,7 +15,7 @@ from derive.description.catalogue import load
 from derive.description.mechanism import Mechanism
 from derive.description.places import in_place
 from derive.equations.problem import Equation
-from derive.kinematics.assembly import assembled
+from derive.kinematics.assembly import assembled, with_derived_assembly
 from derive.kinematics.branch_assignment import Assignment, assign
 from derive.kinematics.build import prepared
 from derive.kinematics.derived_branches import in_words, with_derived_branches
@@ -24,6 +24,7 @@ from derive.kinematics.inverse import Inverse, solve_at, solve_pose
 from derive.kinematics.scan.choice import with_search
 from derive.kinematics.scan.derivations import without_search
 from derive.pipeline import GenerationError, reason_of
+from derive.plate.passive import solve_passive
 from derive.solver.solve import Step, Unsolved
 
 _FORMS = {
@@ -60,7 +61,7 @@ def explain(options: argparse.Namespace) -> int:
 
 def explanation(mechanism: Mechanism) -> Iterator[str]:
     """The lines of one machine. Raises `Unsolved` or `DescriptionError` where it cannot be derived."""
-    mechanism = with_search(prepared(mechanism))
+    mechanism = with_derived_assembly(with_search(prepared(mechanism)))
     if mechanism.search is not None:
         joint, parameter = mechanism.search.joint, mechanism.search.where
         if parameter is None:
@@ -82,7 +83,10 @@ def explanation(mechanism: Mechanism) -> Iterator[str]:
     yield "Inverse kinematics"
     yield from _equations(inverse.closure.equations)
     yield from _held(inverse)
-    for number, step in enumerate(inverse.derivation.steps, 1):
+    passive = solve_passive(mechanism).steps if mechanism.passive else ()
+    if passive:
+        yield f"  not commanded: {', '.join(mechanism.passive)}; from the guides, on the side of the home pose"
+    for number, step in enumerate((*passive, *inverse.derivation.steps), 1):
         yield from _step(mechanism, number, step, assignments)
     yield from _branches(whole)
     yield from _forward(mechanism)
@@ -154,7 +158,14 @@ def _forward(mechanism: Mechanism) -> Iterator[str]:
         for number, step in enumerate(derivation.steps, 1):
             yield from _step(mechanism, number, step, ())
         if mechanism.assembly is not None:
-            yield f"  assembly {mechanism.assembly.name}: {mechanism.assembly.parameter} chooses the second mode"
+            way = mechanism.assembly
+            yield f"  assembly {way.name}: {way.parameter} chooses the second mode"
+            if way.meanings[0]:
+                signs = ", ".join(f"{n}={s:+d}" for n, s in zip(way.names, way.signs, strict=True))
+                indicator = in_words(mechanism, way.indicator)
+                yield f'  assembly("{way.name}", {indicator}, margin="{way.margin}", {signs})'
+                first, second = way.meanings
+                yield f"       derived, to be named: {way.names[0]} where {first}; {way.names[1]} where {second}"
 
 
 def _name(mechanism: Mechanism, unknown: sp.Symbol) -> str:

@@ -48,6 +48,8 @@ class Assembly:
     handedness: sp.Expr = sp.Integer(1)
     """An expression of parameters. Where it is negative (legs numbered the other way round) the indicator changes its
     sign."""
+    meanings: tuple[str, str] = ("", "")
+    """What both names mean, of an assembly choice that no description names."""
 
     @property
     def parameter(self) -> str:

@@ -11,6 +11,7 @@ _MANY: Mapping[str, tuple[str, str]] = {
     "joints": ("Joint", "(A1, A2)"),
     "parameters": ("Parameter", "(L1, L2)"),
     "rods": ("Rod", '(rod("1", KNEE, TOOL, LENGTH),)'),
+    "guides": ("Plane", '(guide("1", (0, 1, 0), on_plate(R, 0, 0)),)'),
     "bars": ("Rod", '(rod("1", KNEE, TOOL, LENGTH),)'),
     "bounds": ("Bound", "(bound(…),)"),
     "branches": ("Branch", '(branch("elbow", sin(A2), right=+1, left=-1),)'),
@@ -37,7 +38,7 @@ _ONE: Mapping[str, tuple[tuple[str, ...], str]] = {
     "search": (("Search", "NoneType"), "search(A6, where=OFFSET)"),
     "title": (("str", "NoneType"), '"My machine"'),
     "class_name": (("str", "NoneType"), '"MyMachine"'),
-    "offset_interface": (("bool",), "False"),
+    "offset_interface": (("bool", "NoneType"), "False"),
 }
 """Fields that hold one value: its classes, and an example."""
 _MAY_BE_NONE = ("periods",)

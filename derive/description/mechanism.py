@@ -55,6 +55,7 @@ from derive.ir.symbols import (
 )
 
 TURN = 2 * sp.pi
+COORDINATE_NAMES_OF_A_PLANE = "xy"
 X, Y, Z = (Quantity(real(name)) for name in COORDINATE_NAMES)
 """The commanded position, for closures that are not a chain."""
 ROTATION = sp.ImmutableMatrix(3, 3, ROTATION_ENTRIES)
@@ -77,6 +78,7 @@ __all__ = [
     "Limited",
     "Mechanism",
     "Parameter",
+    "Plane",
     "Rod",
     "Search",
     "Role",
@@ -97,6 +99,7 @@ __all__ = [
     "distance",
     "flag",
     "gear",
+    "guide",
     "helical",
     "length",
     "limited",
@@ -146,9 +149,35 @@ class Rod:
     """The same angle at its joint on the plate."""
 
     @property
+    def key(self) -> str:
+        """What programs call it."""
+        return self.name
+
+    @property
     def equation(self) -> sp.Expr:
         """|plate - base|^2 - length^2."""
         return sp.Add(*[(p - b) ** 2 for p, b in zip(self.plate, self.base, strict=True)]) - self.length**2
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane in which a point of the plate stays: normal . point = offset. Joints may shift it."""
+
+    name: str
+    normal: tuple[sp.Expr, ...]
+    """Made of numbers and parameters; of length one, or as long as tolerances are to be in units of length."""
+    plate: tuple[sp.Expr, ...]
+    offset: sp.Expr
+
+    @property
+    def key(self) -> str:
+        """What programs call it, beside the rods."""
+        return f"guide_{self.name}"
+
+    @property
+    def equation(self) -> sp.Expr:
+        """normal . point - offset."""
+        return sp.Add(*[n * p for n, p in zip(self.normal, self.plate, strict=True)]) - self.offset
 
 
 @dataclass(frozen=True)
@@ -223,6 +252,9 @@ class Mechanism:
     closure: tuple[sp.Expr, ...] = ()
     rods: tuple[Rod, ...] = ()
     """Closure equations that say that a rod is rigid."""
+    guides: tuple[Plane, ...] = ()
+    """Planes in which points of a platform stay: as many without joints as the loop moves coordinates that the task
+    does not command; one with a joint lifts the platform."""
     bars: tuple[Rod, ...] = ()
     """The bars that are drawn, where the rods are not the bodies: each joins two points, and is as long as stated."""
     assembly: Assembly | None = None
@@ -230,8 +262,8 @@ class Mechanism:
     """The turn of the flange about z, a sum of joints, of a loop whose equations hold the position alone: a joint that
     the plate carries turns the tool. Equations of rods may read it as `ROTATION`."""
     home: tuple[sp.Expr, ...] = ()
-    """The start of an iterative forward kinematics: the commanded coordinates, then the heading, or roll, pitch and yaw
-    (Rz Ry Rx), in radians."""
+    """The start of an iterative forward kinematics: the coordinates that the platform moves, then the heading, or roll,
+    pitch and yaw (Rz Ry Rx), in radians."""
     bounds: tuple[Bound, ...] = ()
     branches: tuple[Branch, ...] = ()
     search: Search | None = None
@@ -247,8 +279,9 @@ class Mechanism:
     title: str | None = None
     """The answer of GetKinematicsName; None: the name of the block."""
     class_name: str | None = None
-    offset_interface: bool = True
-    """Whether positions of a point off the flange can be commanded (orientation mode "Axis")."""
+    offset_interface: bool | None = None
+    """Whether positions of a point off the flange can be commanded (orientation mode "Axis"); None: where the machine
+    can do it, True: it is refused where it cannot."""
     notes: tuple[str, ...] = field(default=())
     """Sentences for the user's documentation: definitions of our own, and properties to know."""
 
@@ -299,6 +332,28 @@ class Mechanism:
         return self.is_turning_loop and self.heading is None
 
     @property
+    def fixed_guides(self) -> tuple[Plane, ...]:
+        """The planes that no joint shifts: each holds a coordinate that the task does not command."""
+        joints = {j.symbol for j in self.joints}
+        return tuple(g for g in self.guides if not g.equation.free_symbols & joints)
+
+    @property
+    def motion(self) -> Task:
+        """What the platform of a loop moves: the task, and the coordinates that planes hold."""
+        if not self.fixed_guides:
+            return self.task
+        ends = (*(rod.plate for rod in self.rods), *(plane.plate for plane in self.guides))
+        is_flat = all(len(end) == 2 for end in ends)
+        turning = Turning.ABOUT_Z if self.task.turning is Turning.ABOUT_Z else Turning.FULL
+        return Task(COORDINATE_NAMES_OF_A_PLANE if is_flat else "".join(COORDINATE_NAMES), turning)
+
+    @property
+    def passive(self) -> tuple[str, ...]:
+        """What the loop moves and the task does not command: coordinates, and the twist about the tool."""
+        own = tuple(c for c in self.motion.position if c not in self.task.position)
+        return (*own, "twist") if self.motion.turning is not self.task.turning else own
+
+    @property
     def is_turning_loop(self) -> bool:
         """Whether the flange of a closed loop turns: the loop turns its platform, or a joint on the plate the tool."""
         return self.chain is None and self.task.turning is not Turning.NONE
@@ -323,7 +378,17 @@ class Mechanism:
     @property
     def equations(self) -> tuple[sp.Expr, ...]:
         """All stated closure equations."""
-        return (*self.closure, *(rod.equation for rod in self.rods))
+        planes = (plane.equation for plane in self.guides)
+        return (*self.closure, *planes, *(rod.equation for rod in self.rods))
+
+    @property
+    def offers_points(self) -> bool:
+        """Whether positions of a point off the flange are to be derived, or tried: not behind a pitch, not of a loop
+        that turns its platform; unless they are asked for, not of a machine that follows the direction of the tool.
+        """
+        if self.offset_interface is None:
+            return self.is_position and not self.is_platform
+        return self.offset_interface and not self.followed_turns
 
     @property
     def block_name(self) -> str:
@@ -365,6 +430,18 @@ def rod(
     return Rod(
         name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length), base_cone, plate_cone
     )
+
+
+def guide(name: str, normal: Sequence[object], plate: Sequence[object], offset: object = 0) -> Plane:
+    """A plane in which a point of the plate stays: `guide("1", (0, 1, 0), on_plate(R, 0, 0))`; shifted by joints it
+    lifts the plate: `guide("lift", (0, 0, 1), on_plate(0, 0, 0), S1 + HEIGHT)`.
+    """
+    if len(normal) != len(plate):
+        raise DescriptionError(
+            f"guide {name!r}: its normal and its point have {len(normal)} and {len(plate)} coordinates: give both in "
+            "the plane, or both in space"
+        )
+    return Plane(name, tuple(map(sp.sympify, normal)), tuple(map(sp.sympify, plate)), sp.sympify(offset))
 
 
 def on_plate(x: object, y: object, z: object | None = None) -> tuple[sp.Expr, ...]:

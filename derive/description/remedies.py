@@ -52,7 +52,7 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"its indicator agrees with", f"{_EXPLAIN}, or leave the branch out: it is then derived"),
     (r"no branch names the two", _EXPLAIN),
     (r"name the same two solutions", f"leave one of them out; {_EXPLAIN}"),
-    (r"one assembly names one", 'as in assembly("tcp", cross(ROD_1, ROD_2), margin="aligned", below=-1, above=+1)'),
+    (r"one assembly names one", "state closed loops whose tool has two positions at most for the same axes"),
     (r"a flip must stand at the end", "put it last in the chain"),
     (r"its home pose is not where the legs reach it", "compute home=(…) from the nominal lengths"),
     (r"is not commanded but the joints move it", 'command it too: task=Task("xyz")'),

@@ -288,8 +288,13 @@ def _stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: s
         _equation(mechanism, _label(e, number), sp.sympify(e).xreplace(table))
         for number, e in enumerate(mechanism.closure, 1)
     ]
+    equations += [
+        _equation(mechanism, f"guide {plane.name}", plane.equation)
+        for plane in mechanism.guides
+        if plane not in mechanism.fixed_guides
+    ]
     equations += [_rod_equation(mechanism, rod, table, (known, wanted)) for rod in mechanism.rods]
-    plane = None if "z" in mechanism.task.position else offset.get("z", sp.Integer(0))
+    plane = None if "z" in mechanism.motion.position else offset.get("z", sp.Integer(0))
     return Closure(tuple(equations), _arguments(mechanism.equations), lets, plane)
 
 

@@ -1,5 +1,9 @@
 """Assembly modes: which sign of the determinant of forward kinematics belongs to which mode, and the poses that the
 inverse must refuse.
+
+Let Phi be the equations of a loop and x the position. Its two solutions for x, at given joints, have opposite signs of
+det dPhi/dx: of two rods the cross product, of three rods the triple product, each rod from its base to the tool. So a
+choice that the description does not name is named by this determinant.
 """
 
 from __future__ import annotations
@@ -10,7 +14,8 @@ import numpy as np
 import sympy as sp
 
 from derive.algebra.normal_form import polynomial
-from derive.description.mechanism import Bound, DescriptionError, Mechanism
+from derive.description.branches import assembly
+from derive.description.mechanism import Assembly, Bound, DescriptionError, Mechanism, Rod
 from derive.equations.closure import all_angles, signs_of, with_fixed_names
 from derive.equations.pose_at_axes import (
     Forward,
@@ -34,6 +39,7 @@ from derive.ir.program import (
 from derive.ir.reason import Reason, Unit, Why, about
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
+    COORDINATE_NAMES,
     DETERMINANT,
     HEADING,
     MIN_TYPE2_MARGIN,
@@ -42,12 +48,18 @@ from derive.ir.symbols import (
     real,
     sine,
 )
+from derive.kinematics.forward import solve_for_position
 from derive.kinematics.no_pose import why_no_pose
 from derive.kinematics.sampling import possible_axes, sample_machine
 from derive.plate.legs import MARGIN
 from derive.plate.plate import platform_checks
 
 _SAMPLES = 256
+_NAME = "assembly"
+_MARGINS = {2: "rods_aligned", 3: "rods_coplanar"}
+"""Where the two solutions meet, by the number of rods that hold the tool."""
+_CLOSURE = "loop_singular"
+"""The same of equations that are no rods."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +71,71 @@ class Assembled:
     """The determinant over its scale, in the names of the forward derivation; None where forward has one solution."""
     name: str = ""
     """The name of the margin."""
+
+
+def with_derived_assembly(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with a name for its two positions at the same axes, where it has two and names none. Raises
+    `DescriptionError` where one name does not tell them apart, or where there is one position alone.
+    """
+    if mechanism.chain is not None or mechanism.is_platform:
+        return mechanism
+    choices = len(solve_for_position(mechanism).determinants)
+    if choices > 1:
+        raise DescriptionError(f"forward kinematics has {choices} two-root steps: one assembly names one")
+    if choices == 0 and mechanism.assembly is not None:
+        raise DescriptionError(
+            f"assembly {mechanism.assembly.name!r}: the loop can be assembled in one way alone: leave it out"
+        )
+    if choices == 0 or mechanism.assembly is not None:
+        return mechanism
+    return replace(mechanism, assembly=_derived(mechanism))
+
+
+def _derived(mechanism: Mechanism) -> Assembly:
+    """The assembly choice by the sign of the determinant."""
+    coordinates = [real(c) for c in mechanism.task.position]
+    slopes = sp.Matrix([[sp.diff(e, c) for c in coordinates] for e in mechanism.closure]).reshape(
+        len(mechanism.closure), len(coordinates)
+    )
+    rods = sp.Matrix([_along(rod, coordinates) for rod in mechanism.rods]).reshape(
+        len(mechanism.rods), len(coordinates)
+    )
+    held = _without_held(sp.Matrix.vstack(slopes, rods))
+    is_of_rods = held.rows == len(mechanism.rods)
+    margin = _MARGINS.get(held.rows, _CLOSURE) if is_of_rods else _CLOSURE
+    derived = assembly(_NAME, held.det(), margin=margin, positive=+1, negative=-1)
+    return replace(derived, meanings=_meanings(mechanism, held.rows if is_of_rods else 0))
+
+
+def _along(rod: Rod, coordinates: list[sp.Symbol]) -> list[sp.Expr]:
+    """Half the slopes of the equation of a rod: of an end that the position shifts, the rod itself."""
+    between = [p - b for p, b in zip(rod.plate, rod.base, strict=True)]
+    return [sp.Add(*[v * sp.diff(v, c) for v in between]) for c in coordinates]
+
+
+def _without_held(matrix: sp.Matrix) -> sp.Matrix:
+    """The matrix without the equations that hold one coordinate by itself (z of a quill), and without that one."""
+    for row in range(matrix.rows):
+        own = [column for column in range(matrix.cols) if matrix[row, column] != 0]
+        if len(own) == 1 and matrix[row, own[0]].is_number:
+            rest = matrix.copy()
+            rest.row_del(row)
+            rest.col_del(own[0])
+            return _without_held(rest)
+    return matrix
+
+
+def _meanings(mechanism: Mechanism, rods: int) -> tuple[str, str]:
+    """What both signs mean."""
+    names = [rod.name for rod in mechanism.rods]
+    if rods == 2:
+        text = f"from its base to the tool, rod {names[1]} points to the {{}} of rod {names[0]}"
+        return text.format("left"), text.format("right")
+    if rods == 3:
+        text = f"the rods {', '.join(names)}, from their bases to the tool, are a {{}}-handed frame"
+        return text.format("right"), text.format("left")
+    what = f"the determinant of the closure by {', '.join(c for c in COORDINATE_NAMES if c in mechanism.task.position)}"
+    return f"{what} is positive", f"{what} is negative"
 
 
 def assembled(mechanism: Mechanism, forward: Forward) -> Assembled:

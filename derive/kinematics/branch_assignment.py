@@ -102,9 +102,7 @@ def _assigned(
     signs, indicators = _signs(mechanism, inverse, forward, optional_zero)
     found: list[Assignment] = []
     for branch, indicator in zip(mechanism.branches, indicators, strict=True):
-        steps = [
-            (s, o) for s, row in zip(determinants, signs, strict=True) for o in (1, -1) if np.all(o * row == indicator)
-        ]
+        steps = _told(branch, indicator, determinants, signs)
         if len(steps) != 1:
             raise DescriptionError(
                 f"branch {branch.name!r}: its indicator agrees with {len(steps)} steps, not one: its sign must change "
@@ -116,6 +114,19 @@ def _assigned(
         found.append(Assignment(branch, *steps[0]))
     unnamed = tuple(s for s in determinants if s not in [a.determinant for a in found])
     return tuple(found), unnamed
+
+
+def _told(
+    branch: Branch, indicator: np.ndarray, determinants: Sequence[StepDeterminant], signs: Sequence[np.ndarray]
+) -> list[tuple[StepDeterminant, int]]:
+    """The steps whose determinants have the sign of an indicator, or the opposite one. Where the assembly of a loop
+    makes the signs of several steps one, those count whose unknown the indicator reads.
+    """
+    found = [
+        (s, o) for s, row in zip(determinants, signs, strict=True) for o in (1, -1) if np.all(o * row == indicator)
+    ]
+    own = [(s, o) for s, o in found if s.step in branch.indicator.free_symbols]
+    return own if len(found) > 1 and own else found
 
 
 def _met(determinants: Sequence[StepDeterminant]) -> str:
@@ -149,11 +160,12 @@ def steps_without_branch(mechanism: Mechanism, inverse: Inverse, forward: Forwar
     if not determinants or not mechanism.branches:
         return determinants
     signs, indicators = _signs(mechanism, inverse, forward, False)
-    return tuple(
+    named = [
         step
-        for step, row in zip(determinants, signs, strict=True)
-        if not any(np.all(o * row == indicator) for indicator in indicators for o in (1, -1))
-    )
+        for branch, indicator in zip(mechanism.branches, indicators, strict=True)
+        for step, _ in _told(branch, indicator, determinants, signs)
+    ]
+    return tuple(step for step in determinants if step not in named)
 
 
 def _signs(

@@ -27,7 +27,14 @@ from derive.ir.program import Let, Output, Program, Statement, shared
 from derive.ir.symbols import BASE_AXIS, FLANGE_AXIS, OFFSET, ROTATION_ENTRIES, START_POSITION, START_ROTATION, real
 from derive.ir.types import Type, output_types
 from derive.ir.verify import BrokenProgram
-from derive.kinematics.assembly import Assembled, assembled, assembly_checks, bound_checks, mirror_checks
+from derive.kinematics.assembly import (
+    Assembled,
+    assembled,
+    assembly_checks,
+    bound_checks,
+    mirror_checks,
+    with_derived_assembly,
+)
 from derive.kinematics.branch_assignment import Assignment, assign, margin_lets, with_branch_signs
 from derive.kinematics.coupling import coupling_programs
 from derive.kinematics.derived_branches import with_derived_branches
@@ -55,6 +62,7 @@ from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, marg
 from derive.kinematics.scan.programs import names_of_search
 from derive.kinematics.shared_names import refuse_names, refuse_names_of_joints, refuse_shared_names
 from derive.lowering.lower import lowered
+from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
 from derive.plate.stated_rods import with_stated_rods
 from derive.plate.turning import forward_from_given, joints_at_home
@@ -87,6 +95,7 @@ def _built(mechanism: Mechanism) -> Kinematics:
     mechanism = with_search(mechanism)
     if mechanism.search is not None:
         return _scanned(mechanism)
+    mechanism = with_derived_assembly(mechanism)
     closed = assembled(mechanism, pose_at_axes(mechanism))
     forward = closed.forward
     inverse = solve_pose(mechanism)
@@ -122,6 +131,8 @@ def _factors(
     """What the determinants of the two Jacobians are products of: a factor for each way of being singular."""
     told: list[Assignment | Conditioning] = [*assignments, *inverse.derivation.conditionings]
     factors = [factor_of(mechanism, found) for found in told]
+    if mechanism.passive:
+        factors.append(Factor(GUIDES, guides_determinant(mechanism)))
     return [*factors, Factor(closed.name, closed.margin)] if closed.margin is not None else factors
 
 
@@ -138,7 +149,7 @@ def _further_programs(
         programs.append(twist_program(mechanism, closed.forward))
     if mechanism.is_orientation:
         programs += coupling_programs(mechanism)
-    elif mechanism.offset_interface and not mechanism.followed_turns:  # nothing is carried behind a pitch
+    elif mechanism.offers_points:
         programs += _offset_programs(mechanism, closed, inverse.derivation.conditions)
     return programs
 
@@ -291,7 +302,9 @@ def _last(
 
 
 def _offset_programs(mechanism: Mechanism, closed: Assembled, conditions: tuple[sp.Expr, ...]) -> list[Program]:
-    """The programs for a point off the flange; they may not need more of the machine than the pose does."""
+    """The programs for a point off the flange; they may not need more of the machine than the pose does. None where
+    they do, unless the description asks for them: then it is refused.
+    """
     forward = closed.forward
     try:
         inverse = solve_offset(mechanism)
@@ -300,6 +313,8 @@ def _offset_programs(mechanism: Mechanism, closed: Assembled, conditions: tuple[
         if further := [c for c in inverse.derivation.conditions if c not in conditions]:
             raise DescriptionError(f"{further[0]} must not vanish, which the pose does not need")
     except (Unsolved, DescriptionError) as problem:
+        if mechanism.offset_interface is None:
+            return []
         raise type(problem)(
             f"with offset_interface=False it could be built, but for a point off the flange {problem}"
         ) from None
@@ -345,7 +360,7 @@ def _needs_twist(mechanism: Mechanism) -> bool:
 
 def _freedom(mechanism: Mechanism) -> Freedom:
     """How the flange turns."""
-    if mechanism.task.turning is Turning.FULL or mechanism.followed_turns:
+    if mechanism.motion.turning is Turning.FULL or mechanism.followed_turns:
         return Freedom.THREE
     if mechanism.chain is None:
         return Freedom.ONE if mechanism.is_turning_loop else Freedom.ZERO

@@ -22,7 +22,7 @@ from derive.geometry.frames import Motion
 from derive.ir.constants import DEGREE
 from derive.ir.program import Let
 from derive.ir.symbols import HEADING, POSITION, ROTATION_ENTRIES, cosine, names_in, sine
-from derive.kinematics.branch_assignment import steps_without_branch
+from derive.kinematics.branch_assignment import steps_and_rest, steps_without_branch
 from derive.kinematics.forward import derivation_at_axes
 from derive.kinematics.inverse import Inverse
 from derive.plate.turning import given_pose
@@ -33,18 +33,34 @@ _PARALLEL = 0.999999
 def with_derived_branches(mechanism: Mechanism, inverse: Inverse, forward: Forward) -> Mechanism:
     """The mechanism with a branch for every two-root step that none of its own names, behind its own."""
     unnamed = steps_without_branch(mechanism, inverse, forward)
-    if not unnamed:
-        return mechanism
+    named = _branches_of(mechanism, inverse, forward, unnamed)
+    return replace(mechanism, branches=(*mechanism.branches, *named)) if named else mechanism
+
+
+def with_named_steps(mechanism: Mechanism, trial: Inverse, forward: Forward) -> Mechanism:
+    """The mechanism of a root scan with a branch for every step of a trial: these come first, then the branches that no
+    step decides, and the crossing comes last.
+    """
+    decided, asked, unnamed = steps_and_rest(mechanism, trial, forward)
+    named = _branches_of(mechanism, trial, forward, unnamed)
+    crossings = tuple(b for b in mechanism.branches if b.is_crossing)
+    return replace(mechanism, branches=(*(a.branch for a in decided), *named, *asked, *crossings))
+
+
+def _branches_of(
+    mechanism: Mechanism, inverse: Inverse, forward: Forward, steps: Sequence[StepDeterminant]
+) -> tuple[Branch, ...]:
+    """A branch for each of the steps."""
     taken = {b.name.lower() for b in mechanism.branches}
     found: list[Branch] = []
-    for step in unnamed:
+    for step in steps:
         indicator = _shorter(mechanism, _in_joints(mechanism, inverse, forward, step))
         word = _word(mechanism, step, indicator)
         number = next(n for n in range(1, 99) if f"{word}_{n}" not in taken)
         taken.add(f"{word}_{number}")
         named = branch(f"{word}_{number}", indicator, positive=+1, negative=-1)
         found.append(replace(named, meanings=_meanings(mechanism, indicator)))
-    return replace(mechanism, branches=(*mechanism.branches, *found))
+    return tuple(found)
 
 
 def _in_joints(mechanism: Mechanism, inverse: Inverse, forward: Forward, step: StepDeterminant) -> sp.Expr:

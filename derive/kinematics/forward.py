@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import sympy as sp
 
 from derive.description.mechanism import (
-    DescriptionError,
     Mechanism,
     Turning,
 )
@@ -57,6 +57,7 @@ from derive.ir.symbols import (
 )
 from derive.kinematics.inverse import Inverse
 from derive.plate.legs import about_z
+from derive.plate.passive import at_the_pose
 from derive.plate.turning import forward_from_home
 from derive.solver.solve import Derivation, solve
 
@@ -94,6 +95,7 @@ def _frame_by_frame(mechanism: Mechanism, checks: tuple[Statement, ...]) -> Forw
     return Forward((*checks, *composed.statements, *pose), names[:3], names[3:])
 
 
+@cache
 def solve_for_position(mechanism: Mechanism) -> Derivation:
     """The stated closure solved for x, y and z by the same solver, with the joints known."""
     closure = position_closure(mechanism)
@@ -106,12 +108,7 @@ def solve_for_position(mechanism: Mechanism) -> Derivation:
         scale=SCALE,
         signs=signs_of(mechanism),
     )
-    derivation = solve(problem, (), lambda angle: ())
-    if len(derivation.determinants) > 1 or bool(derivation.determinants) != (mechanism.assembly is not None):
-        raise DescriptionError(
-            f"forward kinematics has {len(derivation.determinants)} two-root steps: one assembly names one"
-        )
-    return derivation
+    return solve(problem, (), lambda angle: ())
 
 
 def _in_assembly_mode(derivation: Derivation, mechanism: Mechanism) -> tuple[Statement, ...]:
@@ -193,7 +190,7 @@ def derivation_at_axes(mechanism: Mechanism, inverse: Inverse, forward: Forward)
     lets = tuple(s for n, s in trigonometric.items() if n not in present)
     lets += tuple(Let(s.sigma, Select(sp.Ge(s.value, 0), 1, -1)) for s in inverse.derivation.determinants)
     fixed = tuple(let for let in fixed_lets(mechanism) if let.name not in own)
-    return (*forward.statements, *fixed, *lets, *kept)
+    return (*forward.statements, *fixed, *at_the_pose(mechanism), *lets, *kept)
 
 
 def _angle_values(mechanism: Mechanism, inverse: Inverse) -> dict[sp.Symbol, sp.Expr]:

@@ -65,6 +65,7 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.optimize.simplify import shorter
+from derive.plate.passive import commanded, passive_statements, spelled
 from derive.solver.solve import Derivation, solve
 
 
@@ -99,7 +100,8 @@ def solve_pose(mechanism: Mechanism) -> Inverse:
         lets, _ = free_heading(mechanism, tuple(step.step for step in derivation.determinants))
         derivation = replace(derivation, statements=(*lets, *with_refusal(derivation.statements)))
     kept = tuple(s for j in held for s in frozen_lets(j))
-    naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *_heading(mechanism), *closure.lets)
+    before = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *_heading(mechanism))
+    naming = (*before, *passive_statements(mechanism), *closure.lets)
     return Inverse(closure, derivation, naming, mechanism.solved_joints, held)
 
 
@@ -237,7 +239,7 @@ def inverse_program(
         if let.name not in resolved
     )
     outputs = [Output(j.axis.name, j.axis) for j in mechanism.joints]
-    body = (*inverse.naming, *in_plane, *statements, *last, *axes)
+    body = spelled((*inverse.naming, *in_plane, *statements, *last, *axes), commanded(mechanism))
     draft = normalise(name, body, outputs)
     groups = (POSITION, OFFSET, tuple(j.reference for j in mechanism.joints))
     checks = tuple(check for group in groups for check in finite([s for s in group if s in draft.inputs]))

@@ -61,7 +61,11 @@ def _open_loop(mechanism: Mechanism, machine: Samples, missed: NDArray[np.float6
         if number < len(mechanism.closure):
             parts.append(f"equation {number + 1} of the closure misses zero by {abs(wrong):.4g}")
             continue
-        rod = mechanism.rods[number - len(mechanism.closure)]
+        if number < len(mechanism.closure) + len(mechanism.guides):
+            held = mechanism.guides[number - len(mechanism.closure)]
+            parts.append(f"guide {held.name!r} is missed by {abs(wrong):.4g}")
+            continue
+        rod = mechanism.rods[number - len(mechanism.closure) - len(mechanism.guides)]
         if {name.name for name in rod.length.free_symbols} <= machine.keys():
             length = float(evaluate(rod.length, machine))
             parts.append(f"rod {rod.name!r} is {length:.4g} long, and should be {length + wrong:.4g}")
@@ -116,7 +120,7 @@ class _Search:
     def __init__(self, mechanism: Mechanism, machine: Samples, at_home: bool) -> None:
         self._mechanism, self._machine = mechanism, machine
         self.size = size_of(mechanism, machine)
-        self._coordinates = tuple(mechanism.task.position)
+        self._coordinates = tuple(mechanism.motion.position)
         self._turns = angles(mechanism) if mechanism.is_platform else ()
         self._pose = [float(evaluate(v, machine)) for v in mechanism.home] if at_home else None
         moved = [1.0 if j.is_angle else self.size for j in mechanism.joints]
@@ -141,7 +145,8 @@ class _Search:
     def residual(self, unknowns: NDArray[np.float64]) -> NDArray[np.float64]:
         """What every equation misses, a column each: a rod its length."""
         known = self.values(unknowns)
-        missed = [evaluate(sp.sympify(e), known) / self.size for e in self._mechanism.closure]
+        stated = (*self._mechanism.closure, *(g.equation for g in self._mechanism.guides))
+        missed = [evaluate(sp.sympify(e), known) / self.size for e in stated]
         for rod in self._mechanism.rods:
             square = sum(evaluate(p - b, known) ** 2 for p, b in zip(rod.plate, rod.base, strict=True))
             missed.append((np.sqrt(square) - evaluate(rod.length, known)) / self.size)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sympy as sp
+
 from derive.description.mechanism import DescriptionError, Mechanism, Turning
 from derive.equations.chain_splits import is_spatial
 from derive.equations.pitch.chain import followed_of
@@ -18,6 +20,9 @@ def check_joints(mechanism: Mechanism) -> None:
     spare = len(mechanism.solved_joints) - len(rows)
     if spare:
         raise DescriptionError(_wrong_number(mechanism, spare, commanded))
+    if mechanism.is_platform:  # those without joints hold what is not commanded: see `check_home`
+        joints = {j.symbol for j in mechanism.joints}
+        equations = sum(bool(sp.sympify(e).free_symbols & joints) for e in mechanism.equations)
     if equations > len(rows):
         raise DescriptionError(f"the closure has {equations} equations, and the task commands only {commanded}")
 
@@ -27,7 +32,8 @@ def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
     joints, held = mechanism.joints, mechanism.held
     if spare < 0:
         left = f", of which {len(held)} {'is' if len(held) == 1 else 'are'} held" if held else ""
-        remedy = _follow_pitch(mechanism, spare) or "; command less of the pose, or add joints"
+        less = "command less of the pose" + (", and hold the rest by guides=" if mechanism.is_platform else "")
+        remedy = _follow_pitch(mechanism, spare) or f"; {less}, or add joints"
         return f"the task commands {commanded}, and there are only {len(joints)} joints{left}{remedy}"
     number = "one joint" if spare == 1 else f"{spare} joints"
     names = "the one that is" if spare == 1 else "those that are"

@@ -16,10 +16,12 @@ import sympy as sp
 from derive.description.mechanism import (
     DescriptionError,
     Mechanism,
+    Plane,
     Rod,
     Turning,
     on_plate,
 )
+from derive.equations.closure import with_fixed_names
 from derive.ir.constants import (
     SHORTEST_LINK,
 )
@@ -45,32 +47,36 @@ MARGIN = "rods_dependent"
 ANGLES = ("roll", "pitch", "yaw")
 
 Vector = tuple[sp.Expr, ...]
+Leg = Rod | Plane
+"""What holds the platform: a rod, or a plane, which is a rod of no end."""
+NORMAL = "normal"
+"""The word for the vector of a plane."""
 
 
 def spins(mechanism: Mechanism) -> tuple[str, ...]:
     """The axes about which the platform turns."""
-    return COORDINATE_NAMES if mechanism.task.turning is Turning.FULL else ("z",)
+    return COORDINATE_NAMES if mechanism.motion.turning is Turning.FULL else ("z",)
 
 
 def angles(mechanism: Mechanism) -> tuple[str, ...]:
     """The angles of its rotation from the start of an iteration."""
-    return ANGLES if mechanism.task.turning is Turning.FULL else ("yaw",)
+    return ANGLES if mechanism.motion.turning is Turning.FULL else ("yaw",)
 
 
 def home_angles(mechanism: Mechanism) -> tuple[str, ...]:
     """The angles of its home pose."""
-    words = ANGLES if mechanism.task.turning is Turning.FULL else (HEADING.name,)
+    words = ANGLES if mechanism.motion.turning is Turning.FULL else (HEADING.name,)
     return tuple(f"home_{word}" for word in words)
 
 
 def position_of(mechanism: Mechanism) -> Vector:
     """The position of the platform: zero where the task commands none."""
-    return tuple(real(c) if c in mechanism.task.position else sp.Integer(0) for c in COORDINATE_NAMES)
+    return tuple(real(c) if c in mechanism.motion.position else sp.Integer(0) for c in COORDINATE_NAMES)
 
 
 def rotation_of(mechanism: Mechanism) -> sp.Matrix:
     """The rotation of the platform, in the names of its entries, or of the cosine and sine of its heading."""
-    if mechanism.task.turning is Turning.FULL:
+    if mechanism.motion.turning is Turning.FULL:
         return sp.Matrix(3, 3, ROTATION_ENTRIES)
     return about_z(cosine(HEADING), sine(HEADING))
 
@@ -80,14 +86,19 @@ def about_z(cos_value: sp.Expr, sin_value: sp.Expr) -> sp.Matrix:
     return sp.Matrix([[cos_value, -sin_value, 0], [sin_value, cos_value, 0], [0, 0, 1]])
 
 
-def names(word: str, rod: Rod) -> tuple[sp.Symbol, ...]:
-    """The names of the components of a rod's vector: `span_1_x` and so on; in a plane it has two."""
-    return tuple(real(f"{word}_{rod.name}_{c}") for c in COORDINATE_NAMES[: len(rod.plate)])
+def legs_of(mechanism: Mechanism) -> tuple[Leg, ...]:
+    """All that holds the platform: the rods, then the planes."""
+    return (*mechanism.rods, *mechanism.guides)
 
 
-def of(word: str, rod: Rod) -> sp.Symbol:
-    """The name of a rod's number: `length_1`."""
-    return real(f"{word}_{rod.name}")
+def names(word: str, leg: Leg) -> tuple[sp.Symbol, ...]:
+    """The names of the components of a leg's vector: `span_1_x` and so on; in a plane it has two."""
+    return tuple(real(f"{word}_{leg.key}_{c}") for c in COORDINATE_NAMES[: len(leg.plate)])
+
+
+def of(word: str, leg: Leg) -> sp.Symbol:
+    """The name of a leg's number: `length_1`."""
+    return real(f"{word}_{leg.key}")
 
 
 def vector_word(mechanism: Mechanism, rod: Rod) -> str:
@@ -101,11 +112,12 @@ def is_driven(mechanism: Mechanism, values: Iterable[sp.Expr]) -> bool:
     return any(v.free_symbols & joints for v in values)
 
 
-def point_of(rod: Rod) -> Vector:
-    """The rod's joint in the frame of the plate."""
-    point = tuple(sp.diff(rod.plate[0], entry) for entry in ROTATION_ENTRIES[: len(rod.plate)])
-    if any(sp.expand(a - b) != 0 for a, b in zip(rod.plate, on_plate(*point), strict=True)):
-        raise DescriptionError(f"rod {rod.name!r}: its end must be a point of the plate")
+def point_of(leg: Leg) -> Vector:
+    """The leg's joint in the frame of the plate."""
+    point = tuple(sp.diff(leg.plate[0], entry) for entry in ROTATION_ENTRIES[: len(leg.plate)])
+    if any(sp.expand(a - b) != 0 for a, b in zip(leg.plate, on_plate(*point), strict=True)):
+        what, end = ("rod", "its end") if isinstance(leg, Rod) else ("guide", "its point")
+        raise DescriptionError(f"{what} {leg.name!r}: {end} must be a point of the plate")
     return point
 
 
@@ -163,14 +175,31 @@ def span_moment(mechanism: Mechanism, rod: Rod, arm: Sequence[sp.Expr], word: st
     )
 
 
-def _moment(mechanism: Mechanism, rod: Rod, arm: Sequence[sp.Expr], vector: Sequence[sp.Expr]) -> tuple[Let, ...]:
+def plane_row(
+    mechanism: Mechanism, plane: Plane, arm: Sequence[sp.Expr], values: Sequence[sp.Expr] | None = None
+) -> tuple[Let, ...]:
+    """A row of A for a plane: its normal, and the moment of this about the origin of the plate.
+
+    values: the normal; None where angles and roots of the machine have names.
+    """
+    normal = names(NORMAL, plane)
+    values = values or tuple(with_fixed_names(mechanism, v) for v in plane.normal)
+    lets = (
+        *(Let(n, v) for n, v in zip(normal, values, strict=True)),
+        *_moment(mechanism, plane, arm, normal),
+    )
+    return with_note(lets, f"guide {plane.name}: its normal, and the moment of this about the platform's origin")
+
+
+def _moment(mechanism: Mechanism, leg: Leg, arm: Sequence[sp.Expr], vector: Sequence[sp.Expr]) -> tuple[Let, ...]:
     padded = [sp.Matrix([*v, *[0] * (3 - len(v))]) for v in (arm, vector)]
     moment = dict(zip(COORDINATE_NAMES, padded[0].cross(padded[1]) / RADIUS, strict=True))
-    return tuple(Let(n, moment[c]) for n, c in zip(_moments(mechanism, rod), spins(mechanism), strict=True))
+    return tuple(Let(n, moment[c]) for n, c in zip(moments(mechanism, leg), spins(mechanism), strict=True))
 
 
-def _moments(mechanism: Mechanism, rod: Rod) -> tuple[sp.Symbol, ...]:
-    return tuple(real(f"moment_{rod.name}_{c}") for c in spins(mechanism))
+def moments(mechanism: Mechanism, leg: Leg) -> tuple[sp.Symbol, ...]:
+    """The names of the moments in a row of A."""
+    return tuple(real(f"moment_{leg.key}_{c}") for c in spins(mechanism))
 
 
 def divisor(rod: Rod, measured: sp.Expr) -> Let:
@@ -184,14 +213,19 @@ def with_note(lets: Iterable[Let], note: str) -> tuple[Let, ...]:
     return (replace(first, note=note), *others)
 
 
-def rows(mechanism: Mechanism, vectors: Sequence[str] | None = None) -> tuple[sp.Symbol, ...]:
+def rows(mechanism: Mechanism, vectors: Sequence[str] | None = None) -> tuple[sp.Expr, ...]:
     """The names of the entries of A, by rows. With the words of the rods' vectors each row is multiplied by the
     length of its leg.
     """
-    width = len(mechanism.task.position)
-    words = vectors or ["along"] * len(mechanism.rods)
+    words = [*(vectors or ["along"] * len(mechanism.rods)), *[NORMAL] * len(mechanism.guides)]
     return tuple(
         entry
-        for rod, word in zip(mechanism.rods, words, strict=True)
-        for entry in (*names(word, rod)[:width], *_moments(mechanism, rod))
+        for leg, word in zip(legs_of(mechanism), words, strict=True)
+        for entry in (*_shifts(mechanism, names(word, leg)), *moments(mechanism, leg))
     )
+
+
+def _shifts(mechanism: Mechanism, vector: Sequence[sp.Symbol]) -> tuple[sp.Expr, ...]:
+    """The components of a vector along the coordinates of the position: a leg in a plane has none along z."""
+    width = len(mechanism.motion.position)
+    return (*vector[:width], *[sp.Integer(0)] * (width - len(vector)))

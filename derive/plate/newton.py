@@ -61,14 +61,17 @@ from derive.ir.symbols import (
 )
 from derive.plate.legs import (
     ANGLES,
+    NORMAL,
     RADIUS,
     about_z,
     angles,
     by_angles,
     home_angles,
+    legs_of,
     length,
     names,
     of,
+    plane_row,
     point_of,
     position_of,
     rotation_of,
@@ -103,14 +106,14 @@ class Start:
 def at_home(mechanism: Mechanism) -> Start:
     """Start at the machine's home pose."""
     rotation = HOME_ROTATION if _is_free(mechanism) else tuple(by_angles(home_angles(mechanism))[:2, 0])
-    return Start((), mechanism.home[: len(mechanism.task.position)], rotation, "the home pose")
+    return Start((), mechanism.home[: len(mechanism.motion.position)], rotation, "the home pose")
 
 
 def at_given(mechanism: Mechanism) -> Start:
     """Start at a given pose, which is an input of the program: of its rotation the nearest one about z where the
     platform turns about z alone.
     """
-    position = START_POSITION[: len(mechanism.task.position)]
+    position = START_POSITION[: len(mechanism.motion.position)]
     if _is_free(mechanism):
         return Start(finite(position), position, START_ROTATION, "the given start")
     along, across, size = (real(f"start_{word}") for word in ("along", "across", "length"))
@@ -132,13 +135,13 @@ def at_given(mechanism: Mechanism) -> Start:
 
 def _is_free(mechanism: Mechanism) -> bool:
     """Whether the platform turns about every axis."""
-    return mechanism.task.turning is Turning.FULL
+    return mechanism.motion.turning is Turning.FULL
 
 
 def _start_arguments(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
     """The pose at which the shared program starts: position, then the rotation or cosine and sine of the heading."""
     rotation = START_ROTATION if _is_free(mechanism) else _START_HEADING
-    return (*START_POSITION[: len(mechanism.task.position)], *rotation)
+    return (*START_POSITION[: len(mechanism.motion.position)], *rotation)
 
 
 def _start_rotation(mechanism: Mechanism) -> sp.Matrix:
@@ -147,7 +150,7 @@ def _start_rotation(mechanism: Mechanism) -> sp.Matrix:
 
 def _position(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
     """The part of the position that the iteration finds."""
-    return tuple(map(real, mechanism.task.position))
+    return tuple(map(real, mechanism.motion.position))
 
 
 def _rotation_names(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
@@ -172,7 +175,8 @@ def search_program(mechanism: Mechanism) -> Program:
     A there, and det A.
     """
     found = (*_position(mechanism), *_rotation_names(mechanism))
-    outputs = [Output(n.name, n) for n in (*found, DETERMINANT, *rows(mechanism))]
+    entries = [e for e in rows(mechanism) if isinstance(e, sp.Symbol)]
+    outputs = [Output(n.name, n) for n in (*found, DETERMINANT, *entries)]
     joints = {j.symbol for j in mechanism.joints}
     positive = [sp.Gt(v, 0) for v in mechanism.positive if v.free_symbols <= joints]
     mirror = Require(sp.And(*positive), Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_MIRROR))
@@ -192,12 +196,12 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
     pose = (*_position(mechanism), *map(real, angles(mechanism)))
     within = real("within")
     bases = _bases(mechanism)
-    fits = sp.And(*[sp.Le(sp.Abs(of("error", rod)), within) for rod in mechanism.rods])
+    fits = sp.And(*[sp.Le(sp.Abs(of("error", leg)), within) for leg in legs_of(mechanism)])
     fit, fitted = flag("fit"), flag("fitted")
     loop = Iterate(
         state=(*pose, fitted),
         start=(
-            *START_POSITION[: len(mechanism.task.position)],
+            *START_POSITION[: len(mechanism.motion.position)],
             *[sp.Integer(0)] * len(angles(mechanism)),
             sp.false,
         ),
@@ -214,7 +218,7 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
         reason=about_machine(Why.NOT_CONVERGED),
     )
     start = _start_rotation(mechanism)
-    arms = (let for rod in mechanism.rods for let in turned(start, point_of(rod), names("start_arm", rod)))
+    arms = (let for leg in legs_of(mechanism) for let in turned(start, point_of(leg), names("start_arm", leg)))
     return (
         *with_note(arms, "joints of the platform, seen from its origin, in the orientation of the start"),
         *bases[0],
@@ -249,7 +253,8 @@ def _turn(mechanism: Mechanism) -> sp.Matrix:
 
 def _bases(mechanism: Mechanism) -> tuple[tuple[Let, ...], list[sp.Expr]]:
     """The base joints of the rods and their lengths, every sine and cosine by its name."""
-    values = [with_fixed_names(mechanism, v) for rod in mechanism.rods for v in (*rod.base, rod.length)]
+    ends = (v for rod in mechanism.rods for v in (*rod.base, rod.length))
+    values = [with_fixed_names(mechanism, v) for v in (*ends, *(plane.offset for plane in mechanism.guides))]
     lets, named = named_trigonometry(mechanism, values)
     return (*fixed_lets(mechanism), *lets), named
 
@@ -269,18 +274,25 @@ def _pass(mechanism: Mechanism, bases: tuple[tuple[Let, ...], list[sp.Expr]]) ->
         lets += [*span(rod, position_of(mechanism), arm, base, word), length(rod, word)]
         lets += row(mechanism, rod, arm, of("length", rod), word)
         lets.append(Let(of("error", rod), of("length", rod) - wanted, f"length error of leg {rod.name}"))
+    for plane in mechanism.guides:
+        arm, normal = names("arm", plane), names(NORMAL, plane)
+        lets += turned(_turn(mechanism), names("start_arm", plane), arm)
+        lets += plane_row(mechanism, plane, arm)
+        point = (p + a for p, a in zip(position_of(mechanism), arm, strict=False))
+        ahead = sp.Add(*[n * p for n, p in zip(normal, point, strict=True)])
+        lets.append(Let(of("error", plane), ahead - next(values), f"distance of guide {plane.name} from its plane"))
     return tuple(lets)
 
 
 def _step(mechanism: Mechanism) -> tuple[Let | Solve, ...]:
     """The step of the state that cancels every error to first order, and the divisor that keeps it within bounds."""
     about = spins(mechanism)
-    twist = tuple(real(f"{c}_rate") for c in mechanism.task.position), tuple(real(f"swing_{c}") for c in about)
+    twist = tuple(real(f"{c}_rate") for c in mechanism.motion.position), tuple(real(f"swing_{c}") for c in about)
     spin = tuple(real(f"spin_{c}") for c in about)
     size = real("size")
     too_large = sp.Gt(size, sp.Rational(1, 2))
     shares = [*(v / SCALE for v in twist[0]), *(real(f"{a}_rate") for a in angles(mechanism))]
-    errors = tuple(-of("error", rod) for rod in mechanism.rods)
+    errors = tuple(-of("error", leg) for leg in legs_of(mechanism))
     return (
         Solve(
             (*twist[0], *twist[1]),

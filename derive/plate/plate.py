@@ -15,6 +15,7 @@ from derive.description.mechanism import (
     Branch,
     DescriptionError,
     Mechanism,
+    Plane,
     Rod,
     Turning,
 )
@@ -45,6 +46,7 @@ from derive.ir.symbols import (
     DETERMINANT,
     HOME_ROTATION,
     MIN_TYPE2_MARGIN,
+    ROTATION_ENTRIES,
     SCALE,
     cosine,
     real,
@@ -54,13 +56,16 @@ from derive.plate.cones import cone_axes, cone_checks, cone_constants
 from derive.plate.legs import (
     MARGIN,
     RADIUS,
+    Leg,
     by_angles,
     divisor,
     home_angles,
     is_driven,
+    legs_of,
     length,
     names,
     of,
+    plane_row,
     point_of,
     position_of,
     rotation_of,
@@ -72,8 +77,10 @@ from derive.plate.legs import (
     turned,
     vector_word,
 )
+from derive.plate.passive import guides_determinant, mode_constants, modes_at_home, solve_passive
 
 _APART = "legs that have a length at the home pose, and joints that are apart"
+_GUIDED = "a home pose at which the guides hold what the task does not command"
 _HELD = "a home pose at which the legs hold the platform"
 
 
@@ -89,12 +96,19 @@ def machine_statements(mechanism: Mechanism, at_home: Sequence[Statement] = ()) 
         *at_home,
         *(let for rod in later for let in _span_at_home(mechanism, rod)),
         *_mode_at_home(mechanism),
+        *modes_at_home(mechanism, pose_at_home(mechanism)),
     )
+
+
+def pose_at_home(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
+    """The names of the platform's pose, with the home pose for each."""
+    position = dict(zip(map(real, COORDINATE_NAMES), home_position(mechanism), strict=True))
+    return position | dict(zip(ROTATION_ENTRIES, home_rotation(mechanism), strict=True))
 
 
 def platform_size(mechanism: Mechanism) -> tuple[Statement, ...]:
     """The home pose, the arms there, and the scales of the machine. Lengths that are joints are those at home."""
-    turns = tuple(zip(home_angles(mechanism), mechanism.home[len(mechanism.task.position) :], strict=True))
+    turns = tuple(zip(home_angles(mechanism), mechanism.home[len(mechanism.motion.position) :], strict=True))
     trigonometric = (Let(real(f"{w}_{n}"), f(v)) for n, v in turns for w, f in (("cos", sp.cos), ("sin", sp.sin)))
     rotation = by_angles([n for n, _ in turns])
     entries = zip(HOME_ROTATION, rotation, strict=True) if len(turns) > 1 else ()
@@ -102,7 +116,7 @@ def platform_size(mechanism: Mechanism) -> tuple[Statement, ...]:
     return (
         *trigonometric,
         *(Let(n, v) for n, v in entries),
-        *(let for rod in mechanism.rods for let in turned(home, point_of(rod), names("home_arm", rod))),
+        *(let for leg in legs_of(mechanism) for let in turned(home, point_of(leg), names("home_arm", leg))),
         *_platform_radius(mechanism),
         *_lengths_at_home(mechanism),
     )
@@ -121,30 +135,52 @@ def home_branches(mechanism: Mechanism) -> tuple[Branch, ...]:
 
 def check_home(mechanism: Mechanism) -> None:
     """Refuse a loop that is not stated as these programs need it."""
-    if mechanism.task.turning is Turning.DIRECTION:
-        raise DescriptionError("a loop may turn its platform about z, or about every axis: it commands no direction")
+    if mechanism.motion.turning is Turning.DIRECTION:
+        raise DescriptionError(
+            "a loop may turn its platform about z, or about every axis: it commands a direction only where guides hold "
+            "what is not commanded"
+        )
     if mechanism.offset_interface:
         raise DescriptionError(
             "a loop that turns its platform needs offset_interface=False: a position alone leaves its joints open"
         )
     if mechanism.assembly is not None:
         raise DescriptionError("a loop that turns its platform needs no assembly: its home pose tells the mode")
-    count = len(mechanism.task.position) + len(spins(mechanism))
-    rods = len(mechanism.rods)
-    if rods != count or mechanism.closure:
+    count = len(mechanism.motion.position) + len(spins(mechanism))
+    legs = legs_of(mechanism)
+    if len(mechanism.fixed_guides) != len(mechanism.passive):
         raise DescriptionError(
-            f"a platform that a loop turns needs a rod for each of the {count} quantities of the task: "
-            f"it has {rods} rods{_no_rods(mechanism)}"
+            f"the platform moves {count} quantities, and the task commands all{_but(mechanism.passive)}: as many "
+            f"guides without joints must hold the others, and there are {len(mechanism.fixed_guides)}"
         )
-    for rod in mechanism.rods:
-        if is_driven(mechanism, point_of(rod)):
+    if len(legs) != count or mechanism.closure:
+        held = f" and {len(mechanism.guides)} guides" if mechanism.guides else ""
+        of_what = "that it moves" if mechanism.passive else "of the task"
+        raise DescriptionError(
+            f"a platform that a loop turns needs a rod for each of the {count} quantities {of_what}: "
+            f"it has {len(mechanism.rods)} rods{held}{_no_rods(mechanism)}"
+        )
+    for leg in legs:
+        if is_driven(mechanism, point_of(leg)):
+            what, end = ("rod", "its end") if isinstance(leg, Rod) else ("guide", "its point")
             raise DescriptionError(
-                f"rod {rod.name!r}: its end must be a point of the plate, which no joint moves on it"
+                f"{what} {leg.name!r}: {end} must be a point of the plate, which no joint moves on it"
             )
+    for plane in mechanism.guides:
+        if strange := {s for v in plane.normal for s in v.free_symbols} - {p.symbol for p in mechanism.parameters}:
+            raise DescriptionError(
+                f"guide {plane.name!r}: its normal reads {min(map(str, strange))!r}, and is made of parameters alone"
+            )
+    if mechanism.passive:
+        solve_passive(mechanism)
     if len(mechanism.home) != count:
         raise DescriptionError(
             f"a platform that a loop turns needs a home pose of {count} coordinates, and has {len(mechanism.home)}"
         )
+
+
+def _but(words: Sequence[str]) -> str:
+    return f" but {', '.join(words)}" if words else ""
 
 
 def _no_rods(mechanism: Mechanism) -> str:
@@ -170,7 +206,7 @@ def home_rotation(mechanism: Mechanism) -> sp.Matrix:
 
 def home_position(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
     """The position of the home pose: zero where the task commands none."""
-    given = dict(zip(mechanism.task.position, mechanism.home, strict=False))
+    given = dict(zip(mechanism.motion.position, mechanism.home, strict=False))
     return tuple(given.get(c, sp.Integer(0)) for c in COORDINATE_NAMES)
 
 
@@ -222,8 +258,9 @@ def _mode_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
         row(mechanism, rod, names("home_arm", rod), of("length", rod), vector_word(mechanism, rod))
         for rod in mechanism.rods
     )
+    planes = (plane_row(mechanism, plane, names("home_arm", plane), plane.normal) for plane in mechanism.guides)
     return (
-        *(let for lets in lines for let in lets),
+        *(let for lets in (*lines, *planes) for let in lets),
         *cone_axes(mechanism, home_rotation(mechanism)),
         Solve(
             (),
@@ -233,10 +270,20 @@ def _mode_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
             "determinant at the home pose: zero where the legs do not hold the platform",
         ),
         Require(sp.Gt(sp.Abs(DETERMINANT), SINGULAR), Status.NOT_INITIALIZED, reason=about_parameters(_HELD)),
+        *_guided_at_home(mechanism),
         Let(
             ASSEMBLY_SIGN, Select(sp.Gt(DETERMINANT, 0), sp.Integer(1), sp.Integer(-1)), "assembly mode of this machine"
         ),
     )
+
+
+def _guided_at_home(mechanism: Mechanism) -> tuple[Require, ...]:
+    """The condition that planes hold what the task does not command at the home pose."""
+    if not mechanism.passive:
+        return ()
+    pose = pose_at_home(mechanism)
+    held = sp.Abs(guides_determinant(mechanism).xreplace(pose))
+    return (Require(sp.Gt(held, SINGULAR), Status.NOT_INITIALIZED, reason=about_parameters(_GUIDED)),)
 
 
 def machine_constants(mechanism: Mechanism) -> tuple[Output, ...]:
@@ -244,7 +291,7 @@ def machine_constants(mechanism: Mechanism) -> tuple[Output, ...]:
     words = home_angles(mechanism)
     rotation = HOME_ROTATION if len(words) > 1 else tuple(real(f"{w}_{words[0]}") for w in ("cos", "sin"))
     own = (Output(n.name, n) for n in (*rotation, RADIUS, SCALE, ASSEMBLY_SIGN))
-    return (*own, *cone_constants(mechanism))
+    return (*own, *mode_constants(mechanism), *cone_constants(mechanism))
 
 
 def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[Statement, ...]:
@@ -268,6 +315,10 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
         )
         lets += [let for let in vectors if let.name not in bound]
         lets += [divisor(rod, rod.length)] if is_driven(mechanism, [rod.length]) else []
+    for plane in mechanism.guides:
+        arm = names("arm", plane)
+        vectors = (*turned(rotation_of(mechanism), point_of(plane), arm), *plane_row(mechanism, plane, arm))
+        lets += [let for let in vectors if let.name not in bound]
     margin, least = ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN)
     lengths = sp.Mul(*[of("divisor", r) if is_driven(mechanism, [r.length]) else r.length for r in mechanism.rods])
     of_spans = real("determinant_of_spans")
@@ -295,21 +346,37 @@ def _long_enough(rod: Rod) -> Require:
 def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
     """The Jacobian A^-1 (-B) at a pose that forward kinematics has found."""
     joints = [j.symbol for j in mechanism.joints]
-    driven = sp.Matrix([_driven(mechanism, rod).jacobian(joints) for rod in mechanism.rods]) * motors
+    driven = sp.Matrix([_driven(mechanism, leg).jacobian(joints) for leg in legs_of(mechanism)]) * motors
     lets, named = named_trigonometry(mechanism, list(driven))
-    width, shifts = len(joints), len(mechanism.task.position)
-    words = (*(f"v{c}" for c in mechanism.task.position), *(f"w{c}" for c in spins(mechanism)))
+    width, shifts = len(joints), len(mechanism.motion.position)
+    words = (*(f"v{c}" for c in mechanism.motion.position), *(f"w{c}" for c in spins(mechanism)))
     entries = [real(f"column_{column}_{word}") for word in words for column in range(1, width + 1)]
     held = Require(sp.Gt(sp.Abs(DETERMINANT), FREE_ANGLE), Status.IMPOSSIBLE, reason=about_machine(Why.UNCONTROLLED))
     system = Solve(
         tuple(entries), rows(mechanism), tuple(named), None, "twist of the platform per velocity of each axis"
     )
-    return (held, *fixed_lets(mechanism), *lets, system), [
-        e if k // width < shifts else e / RADIUS for k, e in enumerate(entries)
-    ]
+    values = [e if k // width < shifts else e / RADIUS for k, e in enumerate(entries)]
+    return (held, *fixed_lets(mechanism), *lets, system), _of_the_task(mechanism, values)
 
 
-def _driven(mechanism: Mechanism, rod: Rod) -> sp.Matrix:
-    """The negative of a rod's residual as a function of the joints, at a constant direction: along . base + length."""
-    ahead = sum((a * b for a, b in zip(names("along", rod), rod.base, strict=True)), rod.length)
+def _of_the_task(mechanism: Mechanism, twists: list[sp.Expr]) -> list[sp.Expr]:
+    """The rows of the task among those of the platform: commanded coordinates, and tilts about the axes of the tool."""
+    if not mechanism.passive:
+        return twists
+    width, position = len(mechanism.joints), mechanism.motion.position
+    matrix = sp.Matrix(len(twists) // width, width, twists)
+    spin = matrix[len(position) :, :]
+    if mechanism.task.turning is Turning.DIRECTION:
+        spin = (rotation_of(mechanism).T * spin)[:2, :]
+    kept = [position.index(c) for c in mechanism.task.position]
+    return list(sp.Matrix.vstack(matrix.extract(kept, list(range(width))), spin))
+
+
+def _driven(mechanism: Mechanism, leg: Leg) -> sp.Matrix:
+    """The negative of a leg's residual as a function of the joints, at a constant direction: along . base + length; of
+    a plane its offset.
+    """
+    if isinstance(leg, Plane):
+        return sp.Matrix([with_fixed_names(mechanism, leg.offset)])
+    ahead = sum((a * b for a, b in zip(names("along", leg), leg.base, strict=True)), leg.length)
     return sp.Matrix([with_fixed_names(mechanism, ahead)])

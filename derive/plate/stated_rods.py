@@ -1,9 +1,10 @@
-"""Equations of a turning loop that are rods: each says that two points keep their distance, however it is written.
+"""Equations of a turning loop that are rods, or planes: each says that two points keep their distance, or that a point
+stays in a plane, however it is written.
 
 Let p = x + R t be a point of the platform and b one that joints move. |p - b|^2 - L^2, times a constant, has as
 coefficients: of x^2 that constant c, of x_i alone -2 c b_i, and of x_1 times the first row of R, 2 c t. What is left at
-R = 1, x = 0 is the square of L. The rod that is read in this way must have the equation that was stated: that is
-compared at random poses.
+R = 1, x = 0 is the square of L. In n . p - d the coefficients of x are n, and those of a column of R are n times a
+coordinate of t. What is read in this way must have the equation that was stated: that is compared at random poses.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 import sympy as sp
 
-from derive.description.mechanism import Mechanism, Rod, Turning, on_plate, rod
+from derive.description.mechanism import Mechanism, Plane, Rod, Turning, guide, on_plate, rod
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import evaluate
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, real
@@ -28,23 +29,60 @@ def with_stated_rods(mechanism: Mechanism) -> Mechanism:
     """The mechanism with every closure equation of a turning platform that is a rod among its rods."""
     if not mechanism.is_platform:
         return mechanism
-    taken = {own.name for own in mechanism.rods}
-    found: list[Rod] = []
+    taken = {rod.key for rod in mechanism.rods} | {plane.key for plane in mechanism.guides}
+    found: list[Rod | Plane] = []
     left: list[sp.Expr] = []
     for number, equation in enumerate(mechanism.closure, 1):
-        name = str(number) if str(number) not in taken else f"closure_{number}"
-        read = _rod_of(mechanism, name, sp.sympify(equation))
+        name = str(number) if not {str(number), f"guide_{number}"} & taken else f"closure_{number}"
+        read = _rod_of(mechanism, name, sp.sympify(equation)) or _plane_of(mechanism, name, sp.sympify(equation))
         if read is None:
             left.append(equation)
         else:
             found.append(read)
-    return replace(mechanism, rods=(*found, *mechanism.rods), closure=tuple(left)) if found else mechanism
+    rods = tuple(one for one in found if isinstance(one, Rod))
+    guides = tuple(one for one in found if isinstance(one, Plane))
+    if not found:
+        return mechanism
+    own = replace(mechanism, rods=(*rods, *mechanism.rods), guides=(*guides, *mechanism.guides))
+    return replace(own, closure=tuple(left))
+
+
+def _plane_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Plane | None:
+    """The plane whose equation this is; None where there is none."""
+    size = 2 if _is_flat(mechanism, equation) else 3
+    coordinates = [real(c) for c in COORDINATE_NAMES[:size]]
+    entries = sp.Matrix(3, 3, ROTATION_ENTRIES)[:size, :size]
+    is_about_z = mechanism.task.turning is Turning.ABOUT_Z
+    expanded = sp.expand(equation.xreplace(_about_z() if is_about_z else {}))
+    try:
+        form = sp.Poly(expanded, *coordinates, *entries)
+    except sp.PolynomialError:
+        return None
+    normal = sp.Matrix([form.coeff_monomial(c) for c in coordinates])
+    if form.total_degree() != 1 or not any(normal) or normal.free_symbols & {j.symbol for j in mechanism.joints}:
+        return None
+    if is_about_z:
+        square = normal[0] ** 2 + normal[1] ** 2
+        first, second = (form.coeff_monomial(e) for e in (entries[0, 0], entries[1, 0]))
+        flat = [normal[0] * first + normal[1] * second, normal[1] * first - normal[0] * second]
+        point = [sp.simplify(v / square) if square != 0 else sp.Integer(0) for v in flat] + [sp.Integer(0)] * (size - 2)
+    else:
+        square = normal.dot(normal)
+        columns = (entries[:, k] for k in range(size))
+        ahead = (sum(n * form.coeff_monomial(e) for n, e in zip(normal, column, strict=True)) for column in columns)
+        point = [sp.simplify(v / square) for v in ahead]
+    read = guide(name, list(normal), on_plate(*point), -form.coeff_monomial(1))
+    return read if _is_same(mechanism, read.equation, equation) else None
+
+
+def _is_flat(mechanism: Mechanism, equation: sp.Expr) -> bool:
+    """Whether an equation is one in the plane."""
+    return mechanism.task.turning is Turning.ABOUT_Z and real("z") not in equation.free_symbols
 
 
 def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
     """The rod whose equation this is, but for a constant factor; None where there is none."""
-    is_flat = mechanism.task.turning is Turning.ABOUT_Z and "z" not in mechanism.task.position
-    size = 2 if is_flat else 3
+    size = 2 if _is_flat(mechanism, equation) else 3
     coordinates = [real(c) for c in COORDINATE_NAMES[:size]]
     names = [real(f"r{i + 1}{j + 1}") for i in range(size) for j in range(size)]
     is_about_z = mechanism.task.turning is Turning.ABOUT_Z
@@ -102,7 +140,7 @@ def _is_same(mechanism: Mechanism, one: sp.Expr, other: sp.Expr) -> bool:
     rng = np.random.default_rng(7)
     words = [f"{f}_{a}" for a in ("roll", "pitch", "yaw") for f in ("cos", "sin")]
     angles = dict.fromkeys(("roll", "pitch", "yaw"), np.zeros(_POSES))
-    turning = angles if mechanism.task.turning is Turning.FULL else ("yaw",)
+    turning = angles if mechanism.task.turning is not Turning.ABOUT_Z else ("yaw",)
     angles |= {a: rng.uniform(-3.0, 3.0, _POSES) for a in turning}
     turned = {w: (np.cos if w[:3] == "cos" else np.sin)(angles[w[4:]]) for w in words}
     values = {n.name: evaluate(v, turned) for n, v in zip(ROTATION_ENTRIES, by_angles(), strict=True)}

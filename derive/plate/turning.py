@@ -24,7 +24,8 @@ from derive.ir.reason import about_parameters
 from derive.ir.symbols import HEADING, POSITION, ROTATION_ENTRIES, SCALE, Flag, cosine, is_count, real, sine
 from derive.plate.legs import angles, by_angles, is_driven, position_of, rotation_of
 from derive.plate.newton import at_given, at_home, found_from, search_program
-from derive.plate.plate import home_flag, platform_size
+from derive.plate.passive import mode_constants, modes_at_home
+from derive.plate.plate import home_flag, platform_size, pose_at_home
 
 Samples = dict[str, NDArray[np.float64]]
 
@@ -66,9 +67,9 @@ def joints_at_home(mechanism: Mechanism, statements: Sequence[Statement]) -> tup
     wanted = [s for j in mechanism.joints for s in ((cosine(j.symbol), sine(j.symbol)) if j.is_angle else (j.symbol,))]
     program = normalise("home", (*signs, *fixed_lets(mechanism), *own), [Output(s.name, s) for s in wanted])
     bound = {s: real(f"home_{s.name}") for s in program.bound()}
-    pose = dict(zip(map(real, mechanism.task.position), mechanism.home, strict=False))
+    pose = dict(zip(map(real, mechanism.motion.position), mechanism.home, strict=False))
     pose |= {reference_value(j): sp.Integer(0) for j in mechanism.joints}
-    if mechanism.task.turning is Turning.FULL:
+    if mechanism.motion.turning is Turning.FULL:
         pose |= {r: real(f"home_{r.name}") for r in ROTATION_ENTRIES}
     else:
         pose |= {cosine(HEADING): real("cos_home_heading"), sine(HEADING): real("sin_home_heading")}
@@ -92,16 +93,21 @@ def samples_near_home(
 
     signs: those of its steps. Raises `NoPoseAtHome` where none of the poses is possible.
     """
-    size = normalise("size", platform_size(mechanism), [Output(SCALE.name, SCALE)])
-    machine = {**machine, SCALE.name: run(size, machine)[0][SCALE.name]}
+    known = (*platform_size(mechanism), *modes_at_home(mechanism, pose_at_home(mechanism)))
+    told = [Output(SCALE.name, SCALE), *mode_constants(mechanism)]
+    machine = {**machine, **run(normalise("size", known, told), machine)[0]}
     rng = np.random.default_rng(seed)
     poses = _poses(mechanism, machine, rng)
     axes = [Let(let.name, let.value) for j in mechanism.joints for let in axis_lets(j)]
     own = {s.name for s in derivation if isinstance(s, Let)}
     statements = (*derivation, *(let for let in axes if let.name not in own))
-    program = normalise("joints", statements, [Output(j.axis.name, j.axis) for j in mechanism.joints])
+    passive = [real(c) for c in mechanism.passive if c != "twist"]
+    passive += ROTATION_ENTRIES if "twist" in mechanism.passive else []
+    wanted = [*(j.axis for j in mechanism.joints), *passive]
+    program = normalise("joints", statements, [Output(s.name, s) for s in wanted])
     values = {**machine, **poses}
     values |= {sign.name: rng.choice([-1.0, 1.0], _SAMPLES) for sign in signs}
+    values |= {f"commanded_{r.name}": poses[r.name] for r in ROTATION_ENTRIES if mechanism.passive}
     rest = {s.name: _nothing(s) for s in program.inputs if s.name not in values}
     found, status = run(program, values | rest)
     good = np.broadcast_to(status == Status.OK, (_SAMPLES,))
@@ -113,12 +119,12 @@ def samples_near_home(
 
 def _poses(mechanism: Mechanism, machine: Samples, rng: np.random.Generator) -> Samples:
     """Poses around home, by the names that programs read."""
-    width, reach = len(mechanism.task.position), float(machine[SCALE.name])
+    width, reach = len(mechanism.motion.position), float(machine[SCALE.name])
     home = [float(evaluate(v, machine)) for v in mechanism.home]
     sizes = np.array([_AROUND * reach if k < width else _TURNED for k in range(len(home))])
     drawn = np.array(home) + sizes * rng.uniform(-1.0, 1.0, (_SAMPLES, len(home)))
     values: Samples = {c.name: np.zeros(_SAMPLES) for c in POSITION}
-    values |= {c: drawn[:, k] for k, c in enumerate(mechanism.task.position)}
+    values |= {c: drawn[:, k] for k, c in enumerate(mechanism.motion.position)}
     turns = dict(zip(angles(mechanism), drawn[:, width:].T, strict=True))
     named = {f"{w}_{a}": f(v) for a, v in turns.items() for w, f in (("cos", np.cos), ("sin", np.sin))}
     matrix = by_angles(angles(mechanism))

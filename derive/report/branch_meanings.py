@@ -1,4 +1,6 @@
-"""What the branches mean that no description names: in words, and at one frame of the nominal machine."""
+"""What the branches and the assembly choice mean that no description names: in words, and at one frame of the nominal
+machine, or at one set of axis values.
+"""
 
 from __future__ import annotations
 
@@ -20,17 +22,47 @@ _REGULAR = (1, 2)
 
 
 def with_meanings(kinematics: Kinematics) -> Kinematics:
-    """The kinematics with a note for every branch that its description does not name."""
+    """The kinematics with a note for every branch that its description does not name, and for its assembly choice."""
     notes = tuple(
         f"The description does not name the branch {branch.name}. In {branch.names[0]} {branch.meanings[0]}; in "
         f"{branch.names[1]} {branch.meanings[1]}{_example(kinematics, index)}."
         for index, branch in enumerate(kinematics.branches)
         if branch.meanings[0]
     )
+    notes += tuple(_assembly(kinematics))
     if not notes:
         return kinematics
     mechanism = kinematics.mechanism
     return replace(kinematics, mechanism=replace(mechanism, notes=(*mechanism.notes, *notes)))
+
+
+def _assembly(kinematics: Kinematics) -> Iterator[str]:
+    """What both positions of a loop are that the description does not name."""
+    way = kinematics.mechanism.assembly
+    if way is None or not way.meanings[0]:
+        return
+    first, second = way.meanings
+    yield (
+        f"The description does not name the two positions of the tool at the same axes: {way.parameter} chooses the "
+        f"second. In {way.names[0]} {first}; in {way.names[1]} {second}{_positions(kinematics, way.parameter)}."
+    )
+
+
+def _positions(kinematics: Kinematics, parameter: str) -> str:
+    """Both positions of the nominal machine at the same axes; empty where no such axes were found."""
+    nominal = {p.name: p.nominal for p in kinematics.parameters}
+    machines = [machine_with(kinematics, nominal | {parameter: second}) for second in (0.0, 1.0)]
+    for axes in _candidates(machines[0]):
+        found = [forward(machine, axes) for machine in machines]
+        if all(status is Status.OK for status, _, _ in found):
+            joints = zip(kinematics.mechanism.joints, axes, strict=True)
+            at = ", ".join(f"{joint.name} {value:.1f}" for joint, value in joints)
+            shown = [
+                ", ".join(f"{c.upper()} {frame['xyz'.index(c)]:.1f}" for c in kinematics.mechanism.task.position)
+                for _, frame, _ in found
+            ]
+            return f". At {at} of the nominal machine the first is at {shown[0]}, the second at {shown[1]}"
+    return ""
 
 
 def _example(kinematics: Kinematics, index: int) -> str:

@@ -5,6 +5,7 @@
   (`lossy_differences`) are tried last;
 * elimination: an unknown length that is linear in one equation, with a number as its coefficient, is put into the
   others;
+* free of lengths: of more equations than they hold unknown lengths, the sum in which all of these cancel;
 * squares: the sum of the squares of two equations, known parts on the right side, is free of the angle that
   turns both (this is the law of cosines). After them the squares that hold an unknown length are tried: of a boom
   beside the axis that turns it. As a last resort three are squared: free of every angle that turns all of them.
@@ -70,6 +71,38 @@ def eliminations(problem: Problem) -> tuple[Equation, ...]:
                 label = f"{target.label} (through {source.label})"
                 found.append(replace(target, label=label, expression=expression, lets=source.lets + target.lets))
     return tuple(found)
+
+
+def free_of_lengths(problem: Problem) -> tuple[Equation, ...]:
+    """Of more equations than they hold unknown lengths, the sum that is free of all: the coefficients of the lengths
+    are known, and the factors of the equations are the minors of their matrix.
+    """
+    found: list[Equation] = []
+    for count in (3, 4):
+        for some in combinations(problem.equations, count):
+            equation = _free_of_lengths(problem, some)
+            found += [] if equation is None else [equation]
+    return tuple(found)
+
+
+def _free_of_lengths(problem: Problem, equations: Sequence[Equation]) -> Equation | None:
+    present = {s for e in equations for s in e.expression.free_symbols}
+    lengths = tuple(u for u in problem.lengths if u in present)
+    read = [linear_coefficients(e.expression, lengths) for e in equations]
+    if len(lengths) != len(equations) - 1 or any(r is None for r in read):
+        return None
+    rows = [r[0] for r in read if r is not None]
+    if any(problem.unknowns_of(c) for row in rows for c in row):
+        return None
+    others = ([row for i, row in enumerate(rows) if i != k] for k in range(len(rows)))
+    minors = [problem.tidy((-1) ** k * sp.Matrix(left).det()) for k, left in enumerate(others)]
+    if not problem.determines(problem.reduce(sp.Add(*[m**2 for m in minors]))):
+        return None
+    total = sp.Add(*[m * e.expression for m, e in zip(minors, equations, strict=True)])
+    label = " and ".join(e.label for e in equations)
+    factors = sp.Mul.make_args(sp.factor_terms(reduce_units(total, problem.units, problem.signs)))
+    short = sp.expand(sp.Mul(*[f for f in factors if not f.is_positive]))  # a factor of the machine tells nothing
+    return Equation(label, short, tuple(let for e in equations for let in e.lets), is_length=False)
 
 
 def squares(problem: Problem, count: int = 2) -> tuple[Equation, ...]:

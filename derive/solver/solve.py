@@ -18,6 +18,7 @@ from derive.solver.derivation_record import DerivationRecord
 from derive.solver.eliminations import (
     differences,
     eliminations,
+    free_of_lengths,
     lossy_differences,
     squares,
     squares_of_three,
@@ -72,6 +73,7 @@ TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (
     squares_with_lengths,
     _squares_of_positions,
     lossy_differences,
+    free_of_lengths,
 )
 Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 

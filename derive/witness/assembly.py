@@ -15,7 +15,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.plate.plate import home_branches, home_flag
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
-from derive.witness.home_samples import joints_at, measured_legs, poses_at_home
+from derive.witness.home_samples import joints_at, measured_legs, on_guides, poses_at_home
 from derive.witness.roots import STARTS
 from derive.witness.samples import SEED, Samples, describe
 
@@ -56,7 +56,7 @@ def _sides(closure: Closure, joints: Array, pose: Array, parameters: Array) -> A
 def _home_side(kin: Kinematics, closure: Closure, samples: Samples, row: int) -> float:
     """The sign of det A at the home pose of the machine of a sample."""
     part = samples.take(np.full(starts_for(kin.mechanism) if kin.branches else _WITHOUT_BRANCHES, row))
-    pose = poses_at_home(kin.mechanism, part.values, part.reach)
+    pose = on_guides(kin.mechanism, closure, poses_at_home(kin.mechanism, part.values, part.reach), part.parameters)
     joints = joints_at(kin.mechanism, closure, pose, part.parameters, part.reach, np.random.default_rng(SEED + 5))
     state = (joints, pose, part.parameters)
     closed = np.abs(closure.residual(*state)[:, :, 0]).max(axis=1) < _CLOSED * part.reach**2

@@ -85,7 +85,7 @@ def check_forward(kin: Kinematics, closure: Closure, samples: Samples) -> float:
         frame[:, 3:] = _nearest_rotations(samples.pose[:, 3:])
     position = (samples.pose[:, :3] - frame[:, :3]) / samples.reach[:, None]
     if kin.mechanism.chain is None:  # stated equations hold the position alone: `displacement` measures it
-        position[:, : len(kin.mechanism.task.position)] = 0.0
+        position[:, ["xyz".index(c) for c in kin.mechanism.motion.position]] = 0.0
     outputs = run_regular(kin, kin.orientation, samples)
     rotation = np.stack([outputs[name] for name in POSE[3:]], axis=1)
     parts = (

@@ -40,6 +40,8 @@ LEAST_MARGIN = 1e-6
 """A solution of a closed loop nearer to a type 2 singularity than this is not counted."""
 POSE = ("x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123"))
 """The columns of a pose: position, then rotation by rows."""
+_PASSIVE = {"twist": "tilt z"}
+"""The rows of a twist for what the task does not command: the turn about the tool."""
 _TOGETHER = 64
 """Rows that a CasADi function takes at a time."""
 
@@ -93,7 +95,7 @@ class Closure:
     residual: Rows
     """joints, pose, parameters → Φ; the first `equations` rows are lengths or the like, the others rotation entries"""
     by_pose: Rows
-    """joints, pose, parameters → A = ∂Φ/∂pose along twists, one column per row of the task"""
+    """joints, pose, parameters → A = ∂Φ/∂pose along twists, one column for each of `moved`"""
     by_joints: Rows
     """joints, pose, parameters → B = ∂Φ/∂q"""
     frame: Rows
@@ -105,6 +107,8 @@ class Closure:
     equations: int
     task: tuple[str, ...]
     """The rows of the task, as the Jacobian names them."""
+    moved: tuple[str, ...]
+    """The columns of `by_pose`: the task, then what the loop moves besides."""
     parameters: tuple[str, ...]
     """The columns of the parameters: those of the description, then the offsets."""
     angles: NDArray[np.bool_]
@@ -114,7 +118,7 @@ class Closure:
 
     def row_scale(self, reach: Array) -> Array:
         """The unit of each row of the task, where lengths are measured in reaches."""
-        return np.where([row not in COORDINATE_NAMES for row in self.task], 1.0, reach[:, None])
+        return np.where([row not in COORDINATE_NAMES for row in self.moved], 1.0, reach[:, None])
 
     def joint_scale(self, reach: Array) -> Array:
         """The unit of each joint, in radians and lengths."""
@@ -135,12 +139,13 @@ def closure_of(mechanism: Mechanism) -> Closure:
     known = {symbol: p[i] for i, symbol in enumerate(constants)}
     known |= {joint.symbol: q[i] for i, joint in enumerate(mechanism.joints)}
     task = task_rows(mechanism)
-    twist = ca.SX.sym("twist", len(task))
-    moved = _moved(pose, task, twist, _followed_axes(mechanism, known))
+    rows = (*task, *(_PASSIVE.get(row, row) for row in mechanism.passive))
+    twist = ca.SX.sym("twist", len(rows))
+    moved = _moved(pose, rows, twist, _followed_axes(mechanism, known))
     joints = _joint_values(mechanism, axes, known)
     residual, equations = _residual(mechanism, known, moved)
     units = ca.vertcat(*(float(j.unit.subs(DEGREE, sp.pi / 180)) for j in mechanism.joints))
-    at_rest = ca.substitute([residual, ca.jacobian(residual, twist)], [twist], [ca.SX.zeros(len(task))])
+    at_rest = ca.substitute([residual, ca.jacobian(residual, twist)], [twist], [ca.SX.zeros(len(rows))])
     named = known | _position_symbols(pose)
     state = (q, pose, p)
     return Closure(
@@ -154,6 +159,7 @@ def closure_of(mechanism: Mechanism) -> Closure:
         indicators=Rows("indicators", state, _column([_indicator(b, named) for b in mechanism.branches])),
         equations=equations,
         task=task,
+        moved=rows,
         parameters=tuple(s.name for s in constants),
         angles=np.array([j.is_angle for j in mechanism.joints]),
         solved=np.array([j not in mechanism.held_joints for j in mechanism.joints]),

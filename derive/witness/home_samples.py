@@ -25,22 +25,46 @@ def axes_near_home(
     home = poses_at_home(mechanism, values, reach)
     position = home[:, :3].copy()
     width = len(mechanism.task.position)
-    position[:, :width] += _SHIFT * reach[:, None] * rng.uniform(-1.0, 1.0, (len(reach), width))
+    own = ["xyz".index(c) for c in mechanism.task.position]
+    position[:, own] += _SHIFT * reach[:, None] * rng.uniform(-1.0, 1.0, (len(reach), width))
     rotation = home[:, 3:].reshape(-1, 3, 3)
     for row in closure.task[width:]:
         rotation = _turn("xyz".index(row[-1]), _TURN * rng.uniform(-1.0, 1.0, len(reach))) @ rotation
-    pose = np.concatenate([position, rotation.reshape(-1, 9)], axis=1)
+    pose = on_guides(mechanism, closure, np.concatenate([position, rotation.reshape(-1, 9)], axis=1), parameters)
     units = closure.joint_scale(reach) / closure.axis_scale(reach)
     offsets = np.stack([values[j.offset.name] for j in mechanism.joints], axis=1)
     return np.asarray(joints_at(mechanism, closure, pose, parameters, reach, rng) / units + offsets)
 
 
+def on_guides(mechanism: Mechanism, closure: Closure, pose: Array, parameters: Array) -> Array:
+    """The poses with passive coordinates at which the guides hold the platform, by Newton's method."""
+    first = len(mechanism.closure)
+    rows = [first + k for k, plane in enumerate(mechanism.guides) if plane in mechanism.fixed_guides]
+    passive, columns = closure.moved[len(closure.task) :], slice(len(closure.task), None)
+    joints = np.zeros((len(pose), len(mechanism.joints)))  # no fixed guide reads them
+    for _ in range(_ITERATIONS if passive else 0):
+        slopes = closure.by_pose(joints, pose, parameters)[:, rows, columns]
+        step = -(np.linalg.pinv(slopes) @ closure.residual(joints, pose, parameters)[:, rows])[:, :, 0]
+        step = np.clip(step, -1.0, 1.0) if "tilt z" in passive and len(passive) == 1 else step
+        rotation = pose[:, 3:].reshape(-1, 3, 3)
+        position = pose[:, :3].copy()
+        for k, row in enumerate(passive):
+            if row == "tilt z":
+                rotation = rotation @ _turn(2, step[:, k])
+            else:
+                position[:, "xyz".index(row)] += step[:, k]
+        pose = np.concatenate([position, rotation.reshape(-1, 9)], axis=1)
+        if np.abs(step).max() <= _STILL * (1.0 + np.abs(pose).max()):
+            break
+    return pose
+
+
 def poses_at_home(mechanism: Mechanism, values: dict[str, Array], reach: Array) -> Array:
     """The home pose of every machine: position, then rotation by rows."""
     home = np.stack([np.broadcast_to(evaluate(v, values), reach.shape) for v in mechanism.home], axis=1)
-    width = len(mechanism.task.position)
+    width = len(mechanism.motion.position)
     position = np.zeros((len(reach), 3))
-    position[:, :width] = home[:, :width]
+    position[:, ["xyz".index(c) for c in mechanism.motion.position]] = home[:, :width]
     turns = dict(zip((2,) if home.shape[1] - width == 1 else (0, 1, 2), home[:, width:].T, strict=True))
     rotation = np.tile(np.eye(3), (len(reach), 1, 1))
     for axis, angle in turns.items():

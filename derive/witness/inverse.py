@@ -162,7 +162,20 @@ def _commands(kin: Kinematics, samples: Samples) -> dict[str, Array]:
         if joint.multi_turn:
             count = np.floor((axis * turns + 180.0) / 360.0)
             commands[joint.turn.name] = np.where(explicit, np.where(count >= 0, count + 1, count), 0.0)
-    return commands
+    return commands | _beside(kin, samples, rng)
+
+
+def _beside(kin: Kinematics, samples: Samples, rng: np.random.Generator) -> dict[str, Array]:
+    """Other values of what the task does not command: no answer may depend on them."""
+    passive = kin.mechanism.passive
+    moved = {c: rng.uniform(-1.0, 1.0, len(samples)) * samples.reach for c in passive if c != "twist"}
+    if "twist" in passive:
+        angle, rotation = rng.uniform(-np.pi, np.pi, len(samples)), samples.pose[:, 3:].reshape(-1, 3, 3)
+        first, second = rotation[:, :, 0], rotation[:, :, 1]
+        cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
+        columns = (cosine * first + sine * second, cosine * second - sine * first)
+        moved |= {f"r{i + 1}{k + 1}": columns[k][:, i] for k in (0, 1) for i in range(3)}
+    return moved
 
 
 def _round_trip(

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role
 from derive.ir.interpret import Array, evaluate, run
-from derive.ir.program import Status
+from derive.ir.program import Program, Require, Status
 from derive.ir.symbols import (
     MIN_TYPE2_MARGIN,
     SCALE,
@@ -43,6 +43,9 @@ _NEAR_CANDIDATES = 400
 """Poses near home to try where branches have assembly modes of their own."""
 _LOOP_CANDIDATES = 2500
 """Random axis values to try: few of them close a loop."""
+_LARGER = (1.0, 4.0, 16.0)
+"""The ranges of slides that are tried in turn, in reaches, until a loop closes: cords are longer than their share of
+the base."""
 _SHIFT = 50.0
 """The largest random value of a length whose nominal value is zero, as far as the machine is that large."""
 _SPREAD = {Role.PITCH: 20.0, Role.GEAR: 0.1, Role.COUPLING: 0.5, Role.ANGLE: 200.0}
@@ -87,44 +90,43 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
     rng = np.random.default_rng(SEED)
     machines = random_machines(kin, rng)
     count = len(next(iter(machines.values())))
-    machine = np.repeat(np.arange(count), _tried(kin.mechanism))
-    values = {name: column[machine] for name, column in machines.items()}
-    reach = _reach(kin.mechanism, values)
-    parameters = np.stack([values[name] for name in closure.parameters], axis=1)
-    if kin.mechanism.is_platform:
-        axes = axes_near_home(kin.mechanism, closure, values, parameters, reach, rng)
-    else:
-        axes = _axes(kin.mechanism, values, reach, rng)
-    values |= {j.axis.name: axes[:, i] for i, j in enumerate(kin.mechanism.joints)}
-    joints = closure.joints(axes, parameters)[:, :, 0]
-    outputs, status = run(kin.forward, values)
-    values |= outputs
-    pose = np.stack([outputs[name] for name in POSE], axis=1)
-    samples = Samples(
-        values,
-        machine,
-        parameters,
-        axes,
-        joints,
-        pose,
-        reach,
-        np.empty((len(axes), 0)),
-        np.ones(len(axes)),
-        np.ones(len(axes)),
-    )
-    inside = _inside(kin.mechanism, closure, samples)
+    for larger in _LARGER:
+        samples, status = _drawn(kin, closure, machines, larger, rng)
+        inside = _inside(kin.mechanism, closure, samples)
+        if not kin.mechanism.rods or (inside & (status == Status.OK))[samples.machine == 0].any():
+            break
     if refused := np.flatnonzero(inside & (status != Status.OK) & (kin.mechanism.chain is not None)).tolist():
         raise Disagreement(f"forward kinematics refuses a possible pose: {describe(kin, samples, refused[0])}")
     if not inside.any():
         raise Disagreement(why_no_pose(kin.mechanism))
     samples = samples.take(inside & np.asarray(status == Status.OK, dtype=bool))
     chosen = _first_regular(closure, samples)
-    possible = len(
-        np.unique(chosen.machine)
-    )  # random dimensions may form a loop that never closes, the nominal ones not
-    if possible < (min(2, count) if kin.mechanism.rods else count) or chosen.machine[0] != 0:
+    possible = len(np.unique(chosen.machine))  # random dimensions may form a loop that never closes, or is singular
+    if possible < min(2 if kin.mechanism.rods else 3, count) or chosen.machine[0] != 0:
         raise Disagreement("a machine has no regular pose: is the mechanism always singular?")
     return chosen
+
+
+def _drawn(
+    kin: Kinematics, closure: Closure, machines: dict[str, Array], larger: float, rng: Generator
+) -> tuple[Samples, NDArray[np.object_]]:
+    """Candidates of every machine, and what forward kinematics answers. larger: the range of slides, in reaches."""
+    machine = np.repeat(np.arange(len(next(iter(machines.values())))), _tried(kin.mechanism))
+    values = {name: column[machine] for name, column in machines.items()}
+    reach = _reach(kin.mechanism, values)
+    parameters = np.stack([values[name] for name in closure.parameters], axis=1)
+    if kin.mechanism.is_platform:
+        axes = axes_near_home(kin.mechanism, closure, values, parameters, reach, rng)
+    else:
+        axes = _axes(kin.mechanism, values, larger * reach, rng)
+    values |= {j.axis.name: axes[:, i] for i, j in enumerate(kin.mechanism.joints)}
+    joints = closure.joints(axes, parameters)[:, :, 0]
+    outputs, status = run(kin.forward, values)
+    values |= outputs
+    pose = np.stack([outputs[name] for name in POSE], axis=1)
+    nothing, easy = np.empty((len(axes), 0)), np.ones(len(axes))
+    found = Samples(values, machine, parameters, axes, joints, pose, reach, nothing, easy, easy)
+    return found, np.asarray(np.broadcast_to(status, (len(axes),)), dtype=object)
 
 
 def _first_regular(closure: Closure, samples: Samples) -> Samples:
@@ -168,7 +170,8 @@ def jacobian_of(closure: Closure, samples: Samples) -> Array:
     a, b = closure.by_pose(*state), closure.by_joints(*state)
     sizes = np.linalg.norm(np.concatenate([a, b], axis=2), axis=2, keepdims=True)
     sizes[sizes == 0.0] = 1.0
-    return np.asarray(-np.linalg.pinv(a / sizes) @ (b / sizes) @ closure.gearing(samples.axes, samples.parameters))
+    by_joints = -np.linalg.pinv(a / sizes) @ (b / sizes) @ closure.gearing(samples.axes, samples.parameters)
+    return np.asarray(by_joints[:, : len(closure.task)])
 
 
 def describe(kin: Kinematics, samples: Samples, row: int) -> str:
@@ -199,9 +202,20 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
     values.setdefault("", np.zeros(count))  # a machine without parameters still has rows
     constants, status = run(kin.setup, values)
     if status[0] != Status.OK:
-        raise Disagreement("Initialize refuses the nominal parameters")
+        nominal = {name: column[:1] for name, column in values.items()}
+        raise Disagreement(f"Initialize refuses the nominal parameters{_refused(kin.setup, nominal)}")
     accepted = np.flatnonzero(status == Status.OK)[:MACHINES]
     return {name: column[accepted] for name, column in (values | constants).items()}
+
+
+def _refused(setup: Program, values: dict[str, Array]) -> str:
+    """What the first condition wants that they do not meet; empty where it gives no reason."""
+    for place, statement in enumerate(setup.body):
+        if isinstance(statement, Require) and statement.reason is not None:
+            _, status = run(replace(setup, body=setup.body[: place + 1], outputs=()), values)
+            if status[0] != Status.OK:
+                return f": it wants {statement.reason.words}"
+    return ""
 
 
 def _nominal(kin: Kinematics) -> dict[str, Array]:
@@ -279,7 +293,7 @@ def _singular_values(closure: Closure, samples: Samples) -> tuple[Array, Array]:
     """The largest and the least singular value of the Jacobian of the joints that are solved for, with lengths in
     reaches: the least is small near a type 1 singularity, the largest is large near a type 2 singularity.
     """
-    columns, rows = closure.joint_scale(samples.reach), closure.row_scale(samples.reach)
+    columns, rows = closure.joint_scale(samples.reach), closure.row_scale(samples.reach)[:, : len(closure.task)]
     gears = np.diagonal(closure.gearing(samples.axes, samples.parameters), axis1=1, axis2=2)
     columns = columns / np.abs(gears)  # per radian of the joint, however slow a gear makes it
     scaled = np.nan_to_num(samples.jacobian * columns[:, None, :] / rows[:, :, None], posinf=0.0, neginf=0.0)

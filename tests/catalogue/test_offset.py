@@ -23,7 +23,7 @@ WITHOUT = ("Kin_Polar", "Kin_Polar_Z", "Kin_Scara3_Z", "Softkin_Planar_3RRR")
 
 def offered(machines: tuple[Machine, ...]) -> tuple[Machine, ...]:
     """The machines, if the mechanism answers for a point off the flange."""
-    return machines if machines[0].mechanism.offset_interface else ()
+    return machines if machines[0].mechanism.offers_points else ()
 
 
 def points(machine: Machine, axes: Array, offsets: Array) -> Array:

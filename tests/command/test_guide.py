@@ -65,7 +65,7 @@ LINES = {
     "the closure does not determine …": "MECHANISM = Mechanism(name=",
     "branch '…' needs two names with the signs +1 and -1": "    branches=",
     "SyntaxError: …": "MECHANISM = Mechanism((",
-    "forward kinematics has 1 two-root steps: one assembly names one; as in assembly(": "    rods=(",
+    "assembly '…': the loop can be assembled in one way alone: leave it out": "    assembly=",
 }
 
 

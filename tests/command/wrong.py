@@ -124,15 +124,16 @@ WRONG: dict[str, str] = {
         ('branches=(branch("elbow", sin(A2), right=+1, left=-1),),', ""),
     ),
     "with offset_interface=False it could be built, but for a point off the flange …": changed(
-        MILL, ("    offset_interface=False,\n", "")
+        MILL, ("    task=", "    offset_interface=True,\n    task=")
     ),
     "branch '…': its indicator agrees with 0 steps, not one: …softkin explain…": changed(ARM, ("sin(A2)", "sin(A1)")),
     "branches '…' and '…' name the same two solutions; leave one of them out": changed(
         ARM, (f"branches=({ELBOW},)", f'branches=({ELBOW}, branch("bend", -sin(A2), inward=+1, outward=-1))')
     ),
-    "forward kinematics has 1 two-root steps: one assembly names one; as in assembly(": changed(
+    "assembly '…': the loop can be assembled in one way alone: leave it out": changed(
         FIVE_BAR,
-        ('    assembly=assembly("tool", cross(BAR_1, BAR_2), margin="rods_aligned", above=+1, below=-1),\n', ""),
+        ('rod("1", KNEE_1, TOOL, ROD_1), rod("2", KNEE_2, TOOL, ROD_2)', ""),
+        ("rods=(),", "closure=(X - ARM_1 * cos(A1), Y - ARM_2 * sin(A2)),"),
     ),
     "assembly '…': its indicator does not tell the two solutions apart": changed(
         FIVE_BAR, ("cross(BAR_1, BAR_2), margin", "cross(REACH_1, REACH_2), margin")
@@ -141,7 +142,7 @@ WRONG: dict[str, str] = {
         ARM, ("held=(E1,),", "held=(E1,), positive=(sin(A2) - 2,),")
     ),
     "a loop that turns its platform needs offset_interface=False": changed(
-        PLATFORM, ("    offset_interface=False,\n", "")
+        PLATFORM, ("    task=", "    offset_interface=True,\n    task=")
     ),
     "a loop that turns its platform needs no assembly: its home pose tells the mode": changed(
         PLATFORM,
@@ -152,8 +153,16 @@ WRONG: dict[str, str] = {
         PLATFORM,
         (
             "for k, (knee, end) in enumerate(zip(KNEES, ENDS), 1)),",
-            "for k, (knee, end) in enumerate(zip(KNEES[1:], ENDS[1:]), 1)), closure=(KNEES[0][0] - ENDS[0][0],),",
+            "for k, (knee, end) in enumerate(zip(KNEES[1:], ENDS[1:]), 1)), closure=(KNEES[0][0] * ENDS[0][0],),",
         ),
+    ),
+    "the task commands '…', and the loop moves … as well: …guides=…": changed(PLATFORM, ('Task("xy"', 'Task("x"')),
+    "the platform moves … quantities, and the task commands all…: as many guides without joints must hold the others": (
+        changed(
+            PLATFORM,
+            ("rotary\n", "rotary, guide\n"),
+            ("home=(0, 0, 0),", 'home=(0, 0, 0), guides=(guide("1", (0, 1), on_plate(0, 0)),),'),
+        )
     ),
     "with nominal dimensions its home pose is not where the legs reach it: at best rod '…' is …": changed(
         PLATFORM, ("home=(0, 0, 0),", "home=(0, 2000, 0),")

@@ -9,20 +9,20 @@ fewest operations.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.description.mechanism import Branch, Joint, Mechanism, Search, Turning, crossing
+from derive.description.mechanism import Joint, Mechanism, Search, Turning, crossing
 from derive.equations.closure import closure_at
 from derive.equations.conditions import with_conditions
 from derive.ir.program import Let
 from derive.ir.symbols import cosine, names_in, sine
+from derive.kinematics.derived_branches import with_named_steps
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, solve_at, solve_pose
 from derive.kinematics.scan.guards import guards_of
-from derive.kinematics.scan.named_steps import with_named_steps
 from derive.kinematics.shared_names import refuse_shared_names
 from derive.solver.solve import Undetermined, Unsolved
 from derive.solver.unsolved import searched_in_vain
@@ -96,19 +96,16 @@ def _searched(mechanism: Mechanism, found: _Candidate) -> Mechanism:
     last = own or (crossing("crossing", rising=+1, falling=-1),)
     chosen = replace(mechanism, branches=(*others, *last), search=Search(found.joint))
     named = with_named_steps(chosen, trial, forward)
-    noted = replace(named, notes=(*mechanism.notes, *_notes(named, found.joint, others)))
+    noted = replace(named, notes=(*mechanism.notes, _note(named, found.joint)))
     return with_conditions(noted, trial.derivation.conditions)
 
 
-def _notes(mechanism: Mechanism, joint: Joint, stated: Collection[Branch]) -> Iterator[str]:
-    """What to know about the search, and about the branches that the description does not state."""
+def _note(mechanism: Mechanism, joint: Joint) -> str:
+    """What to know about the search."""
     (last,) = (b for b in mechanism.branches if b.is_crossing)
-    yield (
+    return (
         f"No closed form is known: with {joint.name} known the other joints are solved, and one equation is left. The "
         f"inverse looks for its roots along {joint.name}, all around the circle. The byte {last.name} tells whether "
         f"the residual rises or falls with {joint.name} at the root; of the roots of one branch the answer is the one "
         f"whose {joint.name} is nearest to the reference."
     )
-    for b in mechanism.branches:
-        if b not in stated and not b.is_crossing:
-            yield f"The byte {b.name} is the sign of {b.indicator}: 1 where it is {b.names[0]}, 2 where {b.names[1]}."

@@ -84,7 +84,7 @@ DESCRIPTIONS = {
         replace(
             HEXAPOD, task=Task("xyz", Turning.DIRECTION), joints=HEXAPOD.joints[:5], rods=HEXAPOD.rods[:5], positive=()
         ),
-        "a loop may turn its platform about z, or about every axis: it commands no direction",
+        "a loop may turn its platform about z, or about every axis: it commands a direction only where guides hold",
     ),
     "a platform with the offset interface": (
         replace(PLANAR, offset_interface=True),

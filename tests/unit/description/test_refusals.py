@@ -92,7 +92,14 @@ REFUSED = {
         "one joint too many",
     ),
     "a telescope with a point beside it": (
-        described(parameters=(L1,), joints=(A1, P1), chain=Rz(A1) * Tx(P1), task=Task("xy"), positive=(P1,)),
+        described(
+            parameters=(L1,),
+            joints=(A1, P1),
+            chain=Rz(A1) * Tx(P1),
+            task=Task("xy"),
+            positive=(P1,),
+            offset_interface=True,
+        ),
         "with offset_interface=False it could be built, but for a point off the flange no branch names the two "
         "solutions for p1",
     ),
@@ -188,9 +195,10 @@ def test_a_root_scan_needs_names() -> None:
 
 
 def test_what_the_offset_interface_spoils_can_be_built_without() -> None:
-    """A mechanism that only the offset interface leaves unsolved is built without this interface."""
+    """A mechanism that only the offset interface leaves unsolved is built without it, unless it is asked for."""
     telescope = REFUSED["a telescope with a point beside it"][0]
-    assert build(replace(telescope, offset_interface=False)).offset_branch is None
+    for said in (False, None):
+        assert build(replace(telescope, offset_interface=said)).offset_branch is None
 
 
 def test_an_unknown_joint_is_named() -> None:

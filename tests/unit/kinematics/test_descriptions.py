@@ -134,7 +134,7 @@ def test_the_margins_multiply_to_the_determinant(name: str) -> None:
     assert all(np.abs(margins[m.name]).max() > 0.1 for m in own.kinematics.margins)
 
 
-OFFERED = [n for n, i in INVENTIONS.items() if i.mechanism.offset_interface]
+OFFERED = [n for n, i in INVENTIONS.items() if i.mechanism.offers_points]
 
 
 @pytest.mark.parametrize("name", OFFERED)

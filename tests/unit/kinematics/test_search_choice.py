@@ -56,10 +56,10 @@ def test_the_joint(chain: Chain, joint: str | None) -> None:
 def test_steps_that_no_branch_names_get_one() -> None:
     """Their indicators are those of the arm: how far the wrist is in front of A1, and which way the elbow bends."""
     shoulder, elbow, last = with_search(arm(SIDEWAYS)).branches
-    assert (shoulder.name, elbow.name, last.name) == ("side_q1", "side_q3", "crossing")
+    assert (shoulder.name, elbow.name, last.name) == ("shoulder_1", "elbow_1", "crossing")
     q2, q3, l1, l2 = A2.symbol, A3.symbol, L[1].symbol, L[2].symbol
     assert (shoulder.indicator - l1 * sin(q2) - l2 * cos(q2 + q3)).expand(trig=True) == 0
-    assert elbow.indicator == -cos(q3)
+    assert elbow.indicator == cos(q3)
     assert last.is_crossing
 
 
@@ -67,7 +67,7 @@ def test_branches_that_are_stated_stay() -> None:
     """Those of a step stand first; one that no step decides is read off the root; the crossing comes last."""
     wrist, elbow = branch("wrist", sin(A5), up=+1, down=-1), branch("elbow", cos(A3), up=+1, down=-1)
     found = with_search(arm(SIDEWAYS, wrist, elbow))
-    assert [b.name for b in found.branches] == ["elbow", "side_q1", "wrist", "crossing"]
+    assert [b.name for b in found.branches] == ["elbow", "shoulder_1", "wrist", "crossing"]
     assert found.branches[0] == elbow
     assert any("looks for its roots along A6" in note for note in found.notes)
 

@@ -87,8 +87,8 @@ REFUSED = {
     ),
     "a platform that moves where it is not commanded": (
         lambda: replace(named("Kin_Hexapod"), task=Task("z", Turning.DIRECTION)),
-        "the task commands 'z', and the loop moves x, y as well: coordinates that are not commanded would be unknowns "
-        "in both directions, which no rule solves for",
+        "the task commands 'z', and the loop moves x, y as well: coordinates that are not commanded must be held by "
+        "guides=",
     ),
     "a task without x": (
         lambda: replace(three_rpr(), task=Task("yz", Turning.ABOUT_Z), closure=(Z - 1,)),

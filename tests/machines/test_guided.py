@@ -1,0 +1,392 @@
+"""Platforms that planes hold: what the task does not command follows from the planes, in both languages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+import pytest
+import softkin
+import sympy as sp
+from numpy.testing import assert_allclose
+from softkin import KinematicsError, Status
+
+from derive.command.explain import explanation
+from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning, X, guide, on_plate
+from derive.description.validate import validate
+from derive.ir.interpret import evaluate
+from derive.ir.symbols import ROTATION_ENTRIES
+from derive.kinematics.build import build
+from derive.pipeline import Built, derive_one
+from tests.machines.guided import GUIDED
+from tests.machines.made import Array, imported_class
+from tests.text.controller import OK, UNREACHABLE, Controller
+from tests.text.units import compiled_text
+
+EVERY = pytest.mark.parametrize("name", GUIDED)
+TILTING = [name for name, m in GUIDED.items() if m.task.turning is Turning.DIRECTION]
+SOLUTIONS = {
+    "3-RPS on a raised base": 1,
+    "Z3 head with slides": 4,
+    "head in metres whose planes form a T, stated as equations": 4,
+    "3-RRR on a lift": 5,
+    "plate on two cylinders along a skewed guide": 1,
+}
+"""The most solutions in the assembly mode of the machine, at the poses where the witness counts them."""
+_CLOSED, _SAME, _FEW = 1e-9, 1e-8, 10
+
+
+@dataclass(frozen=True)
+class Guided:
+    """One machine, derived, in both languages, with offsets that are not zero."""
+
+    mechanism: Mechanism
+    built: Built
+    robot: softkin.Mechanism
+    controller: Controller
+    size: float
+
+
+@cache
+def guided(name: str) -> Guided:
+    mechanism = validate(GUIDED[name])
+    built = derive_one(mechanism)
+    size = max(abs(p.nominal) for p in mechanism.parameters)
+    offsets = {j.offset.name: (7.0 if j.is_angle else 0.01 * size) * k for k, j in enumerate(mechanism.joints, 1)}
+    robot = imported_class(mechanism, built)(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
+    controller = Controller(compiled_text(f"{mechanism.name}.st", built.parts["st"]["text"]), mechanism)
+    assert controller.initialise(robot.parameters) == OK
+    return Guided(mechanism, built, robot, controller, size)
+
+
+def rotation(*turns: tuple[int, float]) -> Array:
+    """The product of turns about axes, in radians."""
+    found = np.eye(3)
+    for axis, angle in turns:
+        first, second = (axis + 1) % 3, (axis + 2) % 3
+        turn = np.eye(3)
+        turn[first, first] = turn[second, second] = np.cos(angle)
+        turn[second, first], turn[first, second] = np.sin(angle), -np.sin(angle)
+        found = found @ turn
+    return found
+
+
+def home_of(one: Guided) -> tuple[Array, Array]:
+    """The home pose, as its words say: position, and Rz(yaw) Ry(pitch) Rx(roll)."""
+    stated = [float(v) for v in one.mechanism.home]
+    width = 2 if len(stated) == 3 else 3
+    position = np.array([*stated[:width], *[0.0] * (3 - width)])
+    turns = (0.0, 0.0, *stated[width:]) if len(stated) - width == 1 else tuple(stated[width:])
+    return position, rotation((2, turns[2]), (1, turns[1]), (0, turns[0]))
+
+
+def commands(one: Guided, count: int, seed: int = 7, size: float = 1.0) -> list[softkin.Frame]:
+    """Frames around home, with values of their own of what is not commanded."""
+    rng, (position, turned) = np.random.default_rng(seed), home_of(one)
+    found = []
+    for _ in range(count):
+        shift = rng.uniform(-1.0, 1.0, 3) * 0.12 * one.size * size
+        if "z" not in one.mechanism.motion.position:
+            shift[2] = 0.0
+        aside = np.where([c in one.mechanism.task.position for c in "xyz"], 0.0, rng.uniform(-2.0, 2.0, 3) * one.size)
+        aside[2] = 0.0
+        tilt = rng.uniform(-0.5, 0.5, 3) * size
+        if one.mechanism.task.turning is Turning.DIRECTION:
+            turns = ((0, tilt[0]), (1, tilt[1]), (2, rng.uniform(-np.pi, np.pi)))
+        else:
+            turns = ((2, tilt[2]),)
+        rows = turned @ rotation(*turns)
+        found.append(softkin.Frame(tuple(position + shift + aside), tuple(map(tuple, rows.tolist()))))
+    return found
+
+
+def residual(one: Guided, axes: Array, frame: softkin.Frame) -> float:
+    """The largest residual of the description at a pose: rods in lengths, planes in lengths, over the size."""
+    values = {p.name: np.asarray(p.nominal) for p in one.mechanism.parameters}
+    for joint, value in zip(one.mechanism.joints, axes, strict=True):
+        own = value - one.robot.parameters[joint.offset.name]
+        values[joint.symbol.name] = np.asarray(np.radians(own) if joint.is_angle else own)
+    values |= {c: np.asarray(p) for c, p in zip("xyz", frame.position, strict=True)}
+    values |= {r.name: np.asarray(v) for r, v in zip(ROTATION_ENTRIES, np.ravel(frame.rotation), strict=True)}
+    rods = [
+        np.sqrt(sum(evaluate(p - b, values) ** 2 for p, b in zip(r.plate, r.base, strict=True)))
+        - evaluate(r.length, values)
+        for r in one.mechanism.rods
+    ]
+    planes = [evaluate(sp.sympify(e), values) for e in one.mechanism.equations[: -len(rods)]]
+    return float(np.abs([*rods, *planes]).max()) / one.size
+
+
+@EVERY
+def test_the_witness_counts_the_solutions(name: str) -> None:
+    """Its search knows the description alone, and commands other values of what is not commanded."""
+    evidence = guided(name).built.evidence
+    assert evidence is not None and evidence.inverted is not None
+    assert evidence.inverted.solutions == SOLUTIONS[name]
+
+
+@EVERY
+def test_every_solution_closes_at_what_is_commanded(name: str) -> None:
+    """Forward kinematics from near the command finds the pose of a solution: there every equation of the description
+    holds, and what is commanded is met; what is not commanded is as the planes leave it.
+    """
+    one, answered, most = guided(name), 0, 0
+    task = one.mechanism.task
+    for frame in commands(one, 16):
+        solutions = [s.axes for s in one.robot.inverse_all(frame, [0.0] * len(one.mechanism.joints)) if s.axes]
+        most, answered = max(most, len(solutions)), answered + bool(solutions)
+        for axes in solutions:
+            place = tuple(
+                home_of(one)[0][k] if c not in task.position else frame.position[k] for k, c in enumerate("xyz")
+            )
+            start = softkin.Frame(place, _untwisted(one, frame))
+            reached, _ = one.robot.forward(axes, start)  # type: ignore[call-arg]
+            assert residual(one, np.array(axes), reached) < _CLOSED
+            wanted = [c in task.position for c in "xyz"]
+            assert_allclose(np.array(reached.position)[wanted], np.array(frame.position)[wanted], atol=_SAME * one.size)
+            columns = [2] if task.turning is Turning.DIRECTION else [0, 1, 2]
+            assert_allclose(np.array(reached.rotation)[:, columns], np.array(frame.rotation)[:, columns], atol=_SAME)
+            back = [s.axes for s in one.robot.inverse_all(reached, axes) if s.axes]
+            assert min(np.abs(np.subtract(b, axes)).max() for b in back) < _SAME * max(one.size, 180.0)
+    assert answered > 8 and most >= min(2, SOLUTIONS[name])
+
+
+def _untwisted(one: Guided, frame: softkin.Frame) -> softkin.Rotation:
+    """The rotation with the tool direction of a frame and the least turn from home: a start for Newton's method."""
+    if one.mechanism.task.turning is not Turning.DIRECTION:
+        return frame.rotation
+    x, y, z = np.array(frame.rotation)[:, 2]
+    swung = [[1 - x * x / (1 + z), -x * y / (1 + z), x], [-x * y / (1 + z), 1 - y * y / (1 + z), y], [-x, -y, z]]
+    return tuple(map(tuple, swung))  # type: ignore[return-value]
+
+
+@EVERY
+def test_nothing_depends_on_what_is_not_commanded(name: str) -> None:
+    """The answer for the reached frame is the same with other passive coordinates and another twist."""
+    one, rng = guided(name), np.random.default_rng(9)
+    passive = [k for k, c in enumerate("xyz") if c in one.mechanism.passive]
+    for frame in commands(one, 12, seed=11):
+        first = [s.axes for s in one.robot.inverse_all(frame, [0.0] * len(one.mechanism.joints))]
+        position = np.array(frame.position)
+        position[passive] = rng.uniform(-3.0, 3.0, len(passive)) * one.size
+        twist = rng.uniform(-np.pi, np.pi) if "twist" in one.mechanism.passive else 0.0
+        other = softkin.Frame(tuple(position), tuple(map(tuple, np.array(frame.rotation) @ rotation((2, twist)))))
+        second = [s.axes for s in one.robot.inverse_all(other, [0.0] * len(one.mechanism.joints))]
+        assert [a is None for a in first] == [a is None for a in second]
+        for one_axes, other_axes in zip(first, second, strict=True):
+            if one_axes is not None and other_axes is not None:
+                assert_allclose(one_axes, other_axes, rtol=0.0, atol=_SAME * max(one.size, 180.0))
+
+
+@pytest.mark.parametrize("name", ["3-RPS on a raised base", "Z3 head with slides"])
+def test_the_parasitic_motion_is_the_published_one(name: str) -> None:
+    """Planes through the axis at 0, 120 and 240 degrees: r21 = r12, x = r (r11 - r22) / 2 and y = -r r21."""
+    one = guided(name)
+    for frame in commands(one, 12, seed=3):
+        for solution in one.robot.inverse_all(frame, [0.0] * 3):
+            if solution.axes is None:
+                continue
+            start = softkin.Frame((0.0, 0.0, frame.position[2]), _untwisted(one, frame))
+            (x, y, _), r = one.robot.forward(solution.axes, start)[0]  # type: ignore[call-arg]
+            radius = one.robot.parameters["plate_radius"]
+            assert r[1][0] == pytest.approx(r[0][1], abs=1e-9)
+            assert x == pytest.approx(radius * (r[0][0] - r[1][1]) / 2, abs=1e-7)
+            assert y == pytest.approx(-radius * r[1][0], abs=1e-7)
+
+
+@EVERY
+def test_the_jacobian_is_the_slope_of_forward_kinematics(name: str) -> None:
+    """Central differences of the pose by the axes; tilts are about the x and y axes of the tool."""
+    one, measured = guided(name), 0
+    position, turned = home_of(one)
+    for frame in commands(one, 12, seed=5, size=0.5):
+        for solution in one.robot.inverse_all(frame, [0.0] * len(one.mechanism.joints)):
+            try:
+                here, _ = one.robot.forward(solution.axes or [np.nan] * len(one.mechanism.joints))
+            except KinematicsError:
+                continue
+            assert solution.axes is not None
+            found = np.array(one.robot.jacobian(solution.axes))
+            if np.abs(found).max() > 1e3 * one.size or min(_margins(one, solution.axes)) < 0.02:
+                continue
+            expected = np.stack([_slope(one, np.array(solution.axes), k, here) for k in range(found.shape[1])], axis=1)
+            assert_allclose(found, expected, rtol=2e-5, atol=2e-5 * np.abs(expected).max())
+            measured += 1
+    assert measured > 2
+
+
+def _margins(one: Guided, axes: object) -> list[float]:
+    return [abs(v) for v in one.robot.singularity(axes).margins.values()]  # type: ignore[arg-type]
+
+
+def _slope(one: Guided, axes: Array, column: int, here: softkin.Frame) -> Array:
+    """The twist of the task per unit of one axis (per radian of an angle)."""
+    joint = one.mechanism.joints[column]
+    step = 1e-3 if joint.is_angle else 1e-6 * one.size
+    ends = []
+    for side in (1.0, -1.0):
+        moved = axes.copy()
+        moved[column] += side * step
+        ends.append(one.robot.forward(moved, here)[0])  # type: ignore[call-arg]
+    unit = 2.0 * (np.radians(step) if joint.is_angle else step)
+    shift = np.subtract(ends[0].position, ends[1].position) / unit
+    middle = np.array(here.rotation)
+    spin = (np.array(ends[0].rotation) - np.array(ends[1].rotation)) @ middle.T / unit
+    turn = np.array([spin[2, 1], spin[0, 2], spin[1, 0]])
+    rows = [shift["xyz".index(c)] for c in one.mechanism.task.position]
+    if one.mechanism.task.turning is Turning.DIRECTION:
+        return np.array([*rows, *(middle.T @ turn)[:2]])
+    return np.array([*rows, turn[2]])
+
+
+@EVERY
+def test_both_languages_say_the_same(name: str) -> None:
+    """At poses far beyond reach as well, and with far references."""
+    one, answered = guided(name), 0
+    for number, frame in enumerate([*commands(one, _FEW), *commands(one, 4, size=3.0)]):
+        reference = [(-1.0) ** k * (900.0 if number % 2 else 0.0) for k in range(len(one.mechanism.joints))]
+        for solution in one.robot.inverse_all(frame, reference):
+            asked = frame.position, frame.rotation, solution.configuration, reference
+            status, found = one.controller.inverse(*asked)
+            assert (status == OK) == (solution.axes is not None)
+            if solution.axes is None:
+                continue
+            answered += 1
+            axes = solution.axes
+            assert_allclose(found[: len(axes)], axes, rtol=0.0, atol=_SAME * max(one.size, 180.0))
+            status, answer = one.controller.forward(axes)
+            try:
+                (position, rows), configuration = one.robot.forward(axes)
+            except KinematicsError:
+                assert status != OK
+                continue
+            assert status == OK
+            assert_allclose(answer[0], position, rtol=0.0, atol=_SAME * one.size)
+            assert_allclose(answer[1], rows, rtol=0.0, atol=_SAME)
+            assert answer[2][: len(configuration)] == tuple(byte % 256 for byte in configuration)
+            assert one.controller.is_singular(axes) == one.robot.singularity(axes).is_singular
+    assert answered > 5
+
+
+@EVERY
+def test_batches_are_the_same(name: str) -> None:
+    one = guided(name)
+    frames = commands(one, 30, seed=13, size=1.5)
+    configuration = tuple(1 for _ in range(one.robot.BRANCHES)) + (0,) * len(one.robot.PERIOD_AXES)
+    zero = [0.0] * len(one.mechanism.joints)
+    positions, rotations = np.array([f.position for f in frames]), np.array([f.rotation for f in frames])
+    axes, statuses = one.robot.inverse_batch(positions, rotations, configuration, zero)
+    for frame, row, status in zip(frames, axes, statuses, strict=True):
+        try:
+            found = one.robot.inverse(frame, configuration, zero)
+        except KinematicsError as refused:
+            assert refused.status is Status(status)
+            continue
+        assert status == Status.OK
+        assert_allclose(row, found, rtol=0.0, atol=_SAME * max(one.size, 180.0))
+
+
+@pytest.mark.parametrize("name", TILTING)
+def test_singular_poses_are_answered_or_refused(name: str) -> None:
+    """Level, tilted by quarter turns, and upside down, where the planes leave the twist open: both languages agree, and
+    what is answered closes.
+    """
+    one, reached = guided(name), 0
+    position, _ = home_of(one)
+    for about in (0, 1):
+        for quarter in (0, 1, 2, 3):
+            for twist in (0.0, 1.0, np.pi):
+                rows = rotation((about, quarter * np.pi / 2), (2, twist))
+                frame = softkin.Frame(tuple(position), tuple(map(tuple, rows)))
+                for solution in one.robot.inverse_all(frame, [0.0] * 3):
+                    status, found = one.controller.inverse(
+                        frame.position, frame.rotation, solution.configuration, [0.0] * 3
+                    )
+                    assert (status == OK) == (solution.axes is not None)
+                    if solution.axes is None:
+                        continue
+                    reached += 1
+                    assert_allclose(found[:3], solution.axes, rtol=0.0, atol=1e-6 * one.size)
+                    if quarter == 0:
+                        assert residual(one, np.array(solution.axes), one.robot.forward(solution.axes)[0]) < _CLOSED
+                    assert quarter != 2 or "T" in name, "upside down radial planes do not hold the twist"
+    assert reached >= 6
+
+
+def test_near_the_other_twist_the_margin_tells_it() -> None:
+    """The margin of radial guides is a multiple of 1 + r33: it goes to zero where the tool turns upside down."""
+    one = guided("3-RPS on a raised base")
+    assert "guides_dependent" in one.robot.singularity([450.0, 450.0, 450.0]).margins
+    last, first = np.inf, abs(one.robot.singularity([452.0, 454.0, 456.0]).margins["guides_dependent"]) / 2
+    for degrees in (0.0, 15.0, 30.0, 45.0):
+        frame = softkin.Frame((0.0, 0.0, 450.0), tuple(map(tuple, rotation((0, np.radians(degrees))))))
+        axes = one.robot.inverse(frame, (), [0.0] * 3)
+        start = softkin.Frame((0.0, 0.0, 450.0), frame.rotation)
+        assert residual(one, np.array(axes), one.robot.forward(axes, start)[0]) < _CLOSED  # type: ignore[call-arg]
+        margin = abs(one.robot.singularity(axes).margins["guides_dependent"])
+        assert margin < last
+        assert margin == pytest.approx(first * (1 + np.cos(np.radians(degrees))), rel=1e-9)
+        last = margin
+
+
+def test_a_refused_pose_is_told_by_its_twist_or_leg() -> None:
+    one = guided("Z3 head with slides")
+    upside_down = softkin.Frame((0.0, 0.0, 0.0), tuple(map(tuple, rotation((0, np.pi)))))
+    with pytest.raises(KinematicsError) as refused:
+        one.robot.inverse(upside_down, (1, 1, 1), [0.0] * 3)
+    assert refused.value.status is Status.UNREACHABLE
+    status, _ = one.controller.inverse(upside_down.position, upside_down.rotation, (1, 1, 1), [0.0] * 3)
+    assert status == UNREACHABLE
+
+
+RPS = GUIDED["3-RPS on a raised base"]
+
+
+def test_the_steps_for_what_is_not_commanded_are_explained() -> None:
+    told = list(explanation(RPS))
+    first = told.index("  not commanded: x, y, twist; from the guides, on the side of the home pose")
+    assert told[first + 1].startswith("  1. twist <- trigonometric <- ")
+    assert sum(" <- " in line for line in told[first:]) == 6
+
+
+WRONG = {
+    "a guide too few": (
+        replace(RPS, guides=RPS.guides[:2]),
+        "the platform moves 6 quantities, and the task commands all but x, y, twist: as many guides without joints "
+        "must hold the others, and there are 2",
+    ),
+    "guides that leave something open": (
+        replace(RPS, guides=(*RPS.guides[:2], guide("3", (1, 0, 0), (X, 0, 0)))),
+        "guide '3': its point must be a point of the plate",
+    ),
+    "parallel guides in one place": (
+        replace(RPS, guides=tuple(guide(str(k), (0, 1, 0), on_plate(0, 0, 0)) for k in range(3))),
+        "the task commands 'z', and the loop moves x, y, twist as well: its guides do not hold that",
+    ),
+    "a guide that a joint turns": (
+        replace(RPS, guides=(*RPS.guides[:2], guide("3", (sp.sin(RPS.joints[0].symbol), 1, 0), on_plate(0, 0, 0)))),
+        "the closure has 4 equations, and the task commands only 3 quantities (z, tilt x, tilt y)",
+    ),
+    "a guide with two coordinates and three": (
+        None,
+        "guide '1': its normal and its point have 3 and 2 coordinates",
+    ),
+    "a home pose of the task alone": (replace(RPS, home=(450, 0, 0)), "needs a home pose of 6 coordinates, and has 3"),
+    "no guides": (replace(RPS, guides=()), "must be held by guides=, planes in which points of a platform that turns"),
+    "a whole rotation": (
+        replace(RPS, task=Task("z", Turning.FULL)),
+        "the task commands 4 quantities (z, turn x, turn y, turn z), and there are only 3 joints",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_what_guides_do_not_hold_is_refused(what: str) -> None:
+    wrong, sentence = WRONG[what]
+    with pytest.raises(DescriptionError) as refused:
+        if wrong is None:
+            guide("1", (0, 0, 1), on_plate(1, 2))
+        else:
+            build(validate(wrong))
+    assert sentence in str(refused.value)

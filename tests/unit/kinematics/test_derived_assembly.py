@@ -1,0 +1,164 @@
+"""Loops whose description names neither branches nor their assembly: both are derived, and mean what they say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sympy import cos, pi, sin
+
+from derive.description.mechanism import (
+    DescriptionError,
+    Mechanism,
+    Task,
+    X,
+    Y,
+    Z,
+    assembly,
+    length,
+    linear,
+    rod,
+    rotary,
+)
+from derive.ir.interpret import evaluate
+from derive.ir.program import Status
+from derive.kinematics.kinematics import Kinematics
+from derive.pipeline import derive_and_measure
+from derive.report.reference_calls import Machine, forward, machine_with
+
+R, F, ARM = (length(n, n, nominal=v) for n, v in (("rod", 400.0), ("base", 300.0), ("arm", 180.0)))
+S1, S2, S3 = (linear(f"S{k}", "slide") for k in (1, 2, 3))
+J1, J2 = (rotary(f"J{k}", "arm") for k in (1, 2))
+C1, C2, C3 = (linear(f"C{k}", "cylinder", domain=(0.0, 1e9)) for k in (1, 2, 3))
+
+
+def _feet(k: int) -> tuple[object, object, int]:
+    return F * cos(2 * pi * k / 3), F * sin(2 * pi * k / 3), 0
+
+
+LOOPS: dict[str, tuple[Callable[[], Mechanism], str, int]] = {
+    "orthoglide": (
+        lambda: Mechanism(
+            name="Orthoglide",
+            joints=(S1, S2, S3),
+            parameters=(R,),
+            task=Task("xyz"),
+            rods=(
+                rod("1", (S1, 0, 0), (X, Y, Z), R),
+                rod("2", (0, S2, 0), (X, Y, Z), R),
+                rod("3", (0, 0, S3), (X, Y, Z), R),
+            ),
+        ),
+        "rods_coplanar",
+        8,
+    ),
+    "three cylinders": (
+        lambda: Mechanism(
+            name="Cylinders",
+            joints=(C1, C2, C3),
+            parameters=(F,),
+            task=Task("xyz"),
+            rods=tuple(rod(str(k + 1), _feet(k), (X, Y, Z), c) for k, c in enumerate((C1, C2, C3))),
+            positive=(C1, C2, C3),
+        ),
+        "rods_coplanar",
+        1,
+    ),
+    "two cords": (
+        lambda: Mechanism(
+            name="Cords",
+            joints=(C1, C2),
+            parameters=(F,),
+            task=Task("xy"),
+            rods=(rod("1", (-F, 0), (X, Y), C1), rod("2", (F, 0), (X, Y), C2)),
+            positive=(C1, C2),
+        ),
+        "rods_aligned",
+        1,
+    ),
+    "slides in one line": (
+        lambda: Mechanism(
+            name="OneLine",
+            joints=(S1, S2),
+            parameters=(R,),
+            task=Task("xy"),
+            rods=(rod("1", (S1, 0), (X, Y), R), rod("2", (S2, 0), (X, Y), R)),
+        ),
+        "rods_aligned",
+        1,
+    ),
+    "motors in one axis": (
+        lambda: Mechanism(
+            name="OneAxis",
+            joints=(J1, J2),
+            parameters=(ARM, R),
+            task=Task("xy"),
+            rods=tuple(rod(str(k), (ARM * cos(j), ARM * sin(j)), (X, Y), R) for k, j in ((1, J1), (2, J2))),
+        ),
+        "rods_aligned",
+        1,
+    ),
+    "a crank and a slide on a quill": (
+        lambda: Mechanism(
+            name="Quill",
+            joints=(J1, S1, S3),
+            parameters=(ARM, R),
+            task=Task("xyz"),
+            closure=(Z - S3,),
+            rods=(rod("1", (ARM * cos(J1), ARM * sin(J1)), (X, Y), R), rod("2", (S1, 0), (X, Y), R)),
+        ),
+        "rods_aligned",
+        4,
+    ),
+}
+"""The description, where its two positions meet, and the most solutions that a pose has: of slides in one line, and of
+motors in one axis, equal rods lean to opposite sides."""
+
+
+def _machines(kin: Kinematics) -> tuple[Machine, Machine]:
+    """The nominal machine in both of its assemblies."""
+    nominal = {p.name: p.nominal for p in kin.parameters}
+    first, second = (machine_with(kin, nominal | {"assembly_negative": v}) for v in (0.0, 1.0))
+    return first, second
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_both_assemblies_are_derived_and_measured(name: str) -> None:
+    """The witness finds as many solutions as the loop has. At the same axes both machines have a position, and the
+    indicator has the stated sign.
+    """
+    described, margin, solutions = LOOPS[name]
+    kin = derive_and_measure(described())
+    way = kin.mechanism.assembly
+    assert way is not None and way.margin == margin and (way.names, way.signs) == (("positive", "negative"), (1, -1))
+    assert kin.evidence is not None and kin.evidence.inverted is not None
+    assert kin.evidence.inverted.solutions == solutions
+    assert any("assembly_negative chooses" in note for note in kin.mechanism.notes)
+    pair, found = _machines(kin), 0
+    for axes in np.random.default_rng(5).uniform(-90.0, 700.0, (300, len(kin.mechanism.joints))).tolist():
+        poses = [forward(machine, tuple(axes)) for machine in pair]
+        assert poses[0][0] is poses[1][0], "one is as possible as the other"
+        if poses[0][0] is not Status.OK:
+            continue
+        units = [np.pi / 180 if j.is_angle else 1.0 for j in kin.mechanism.joints]
+        known = {p.name: np.asarray(p.nominal) for p in kin.parameters}
+        known |= {j.symbol.name: np.asarray(v * u) for j, v, u in zip(kin.mechanism.joints, axes, units, strict=True)}
+        signs = [
+            float(evaluate(way.indicator, known | {c: np.asarray(p[k]) for k, c in enumerate("xyz")}))
+            for _, p, _ in poses
+        ]
+        assert signs[0] >= 0 >= signs[1] and np.isclose(signs[0], -signs[1], rtol=1e-6, atol=1e-3 * abs(signs[0]))
+        found += 1
+    assert found > 5
+
+
+def test_a_loop_with_one_assembly_needs_no_name() -> None:
+    """Two equations, linear in the position."""
+    slides = Mechanism(name="Slides", joints=(S1, S2), task=Task("xy"), closure=(X - S1 - S2, Y - S1 + S2))
+    kin = derive_and_measure(slides)
+    assert kin.mechanism.assembly is None
+    named = replace(slides, assembly=assembly("tool", Y - S1, margin="aligned", up=+1, down=-1))
+    with pytest.raises(DescriptionError, match="assembly 'tool': the loop can be assembled in one way alone"):
+        derive_and_measure(named)
