@@ -123,8 +123,21 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
         np.unique(chosen.machine)
     )  # random dimensions may form a loop that never closes, the nominal ones not
     if possible < (min(2, count) if kin.mechanism.rods else count) or chosen.machine[0] != 0:
-        raise Disagreement("a machine has no regular pose: is the mechanism always singular?")
+        raise Disagreement(_always_singular(kin.mechanism, values, machine == _first_missing(chosen, count)))
     return chosen
+
+
+def _first_missing(chosen: Samples, count: int) -> int:
+    """The number of the first machine without a sample."""
+    return next(k for k in range(count) if k not in chosen.machine)
+
+
+def _always_singular(mechanism: Mechanism, values: dict[str, Array], own: NDArray[np.bool_]) -> str:
+    """What to say of a machine without a regular pose, whose rows are `own`: which of its dimensions is zero."""
+    zero = [f"{p.name} = 0" for p in mechanism.parameters if p.nominal and not values[p.name][own].any()]
+    if zero:
+        return f"with {' and '.join(zero)} the machine has no regular pose: state what is never zero as a length"
+    return "a machine has no regular pose: is the mechanism always singular?"
 
 
 def _first_regular(closure: Closure, samples: Samples) -> Samples:

@@ -24,6 +24,7 @@ from derive.mechanism import (
     rotary,
 )
 from tests.machines.angle_machines import NUMBERS
+from tests.machines.chain_machines import CHAINS
 from tests.machines.searched_machines import SEARCHED
 from tests.machines.task_machines import TASK_MACHINES
 
@@ -413,6 +414,7 @@ MACHINES: Mapping[str, Mechanism] = {
     **ONE_ROOT,
     **OTHERS,
     **SEARCHED,
+    **CHAINS,
     **NUMBERS,
     **TASK_MACHINES,
 }

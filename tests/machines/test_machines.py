@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from softkin import KinematicsError, Status
 
 from tests.machines import angle_machines
+from tests.machines.chain_machines import CHAIN_SOLUTIONS
 from tests.machines.collection import HELD, MACHINES, PARAMETERS_DECIDE
 from tests.machines.made import Array, Made, made
 from tests.machines.task_machines import TASK_SOLUTIONS
@@ -57,6 +58,7 @@ EXPECTED = {
     "arm in metres with a bent wrist and a shoulder beside its axis": 8,
     **angle_machines.EXPECTED,
     **TASK_SOLUTIONS,
+    **CHAIN_SOLUTIONS,
 }
 """The largest number of solutions, as a search of the closure from many starts finds them."""
 MOST = 300
