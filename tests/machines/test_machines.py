@@ -143,6 +143,23 @@ def test_every_solution_closes_and_no_pose_is_lost(name: str) -> None:
 
 
 @EVERY
+def test_an_answer_closes_from_any_reference(name: str) -> None:
+    """A joint that is free where the machine is singular keeps its reference, and the others follow it."""
+    machine = made(name)
+    axes = grid(machine)
+    axes = axes[is_own(machine, axes)]
+    positions, rotations = machine.closure.poses(axes)
+    held = [j in machine.mechanism.held_joints for j in machine.mechanism.joints]
+    turned = np.random.default_rng(6).uniform(-1.0, 1.0, axes.shape) * np.where(machine.closure.angles, 170.0, 0.5)
+    references = np.where(held, axes, axes + turned * np.where(machine.closure.angles, 1.0, machine.reach))
+    slots, statuses = machine.robot.inverse_all_batch(positions, rotations, references)
+    assert (statuses == Status.OK).any()
+    for slot in range(slots.shape[1]):
+        rows = statuses[:, slot] == Status.OK
+        assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= _CLOSED
+
+
+@EVERY
 def test_the_way_back(name: str) -> None:
     """Away from singular poses the configuration that forward kinematics names leads to the same axes."""
     machine = made(name)

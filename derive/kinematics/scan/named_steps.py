@@ -14,7 +14,7 @@ from sympy.simplify.fu import TR10i
 
 from derive.algebra.normal_form import cancelled, polynomial
 from derive.description.mechanism import Branch, Mechanism, branch
-from derive.equations.closure import all_angles, signs_of
+from derive.equations.closure import all_angles, fixed_angles, signs_of
 from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import StepDeterminant
 from derive.ir.constants import DEGREE
@@ -46,7 +46,8 @@ def _indicators(
     """The determinants of the steps, in the joints and the dimensions."""
     lets = {s.name: s.value for s in derivation_at_axes(mechanism, trial, forward) if isinstance(s, Let)}
     angles, signs = all_angles(mechanism), signs_of(mechanism)
-    functions = {f(a): g(a) for a in angles for f, g in _FUNCTIONS}
+    fixed_ones = fixed_angles(mechanism)  # these are in degrees
+    functions = {f(a): g(a * DEGREE if a in fixed_ones else a) for a in angles for f, g in _FUNCTIONS}
     opened = {n: v for n, v in lets.items() if n not in functions and n not in angles}
     found = []
     for step in steps:

@@ -87,7 +87,9 @@ def _rows(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[tuple[E
 
 def _is_commanded(problem: Problem, equation: Equation, coefficient: sp.Expr) -> bool:
     """Whether a coefficient changes with the commanded position."""
-    written_out = coefficient.xreplace({let.name: let.value for let in equation.lets})
+    written_out = coefficient
+    for let in reversed(equation.lets):  # names in the value of a later one are bound by earlier ones
+        written_out = written_out.xreplace({let.name: let.value})
     return bool(problem.reduce(written_out).free_symbols & {real(c) for c in ("x", "y", "z")})
 
 
@@ -118,7 +120,8 @@ def _amplitude(
 ) -> _Amplitude:
     naming = Naming(problem, equation.lets)
     determinant = a * sine(angle) - b * cosine(angle)
-    common = sp.Mul(*[f for f in sp.Mul.make_args(sp.gcd(a, b)) if f.is_positive])  # it divides, and keeps every sign
+    shared = sp.Mul.make_args(sp.factor(sp.gcd(a, b)))
+    common = sp.Mul(*[f for f in shared if f.is_positive])  # it divides, and keeps every sign
     along, across = cancelled(a / common), cancelled(b / common)
     if along.is_number and across.is_number:
         size = sp.sqrt(along**2 + across**2)
@@ -149,7 +152,8 @@ def _amplitude(
 
 def _is_moved(problem: Problem, square: sp.Expr) -> bool:
     """Whether joints of a chain that are known already change the effective length of the arm."""
-    return bool(problem.links) and any(square.free_symbols & {joint, cosine(joint), sine(joint)} for joint in problem.references)
+    read = square.free_symbols
+    return bool(problem.links) and any(read & {joint, cosine(joint), sine(joint)} for joint in problem.references)
 
 
 def _has_no_unit(problem: Problem, square: sp.Expr) -> bool:
