@@ -31,6 +31,7 @@ _FORMS = {
     "affine": "linear in it",
     "affine pair": "two equations, linear in both",
     "affine along": "two or three equations of a length along a known direction",
+    "affine along or free": "linear in it in several of them, along the direction of its slide, where it has one",
     "affine across": "linear in it, where its slide does not point across",
     "affine triple": "three equations, linear in all",
     "pair": "its cosine and its sine are linear in two equations: a rotation that takes one vector to another",

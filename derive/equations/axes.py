@@ -21,7 +21,6 @@ from derive.ir.primitives import (
 from derive.ir.program import (
     Let,
     Require,
-    Statement,
     Status,
 )
 from derive.ir.reason import Why, about_input
@@ -148,14 +147,21 @@ def plain_angle(joint: Joint) -> Let:
     return Let(joint.symbol, value, f"{joint.name}: joint value with its whole turns")
 
 
-def frozen_lets(joint: Joint) -> tuple[Statement, ...]:
+def frozen_lets(joint: Joint) -> tuple[Let, ...]:
     """A joint kept at its reference: its value, sine and cosine, and its axis value."""
     axis = joint.reference if joint.coupling == 0 else _axis_of(joint, reference_value(joint) / joint.unit)
-    lets: list[Statement] = [
-        Let(joint.symbol, reference_value(joint), f"{joint.name}: held at the reference"),
-        Let(joint.axis, axis),
-        Let(joint.motor, (joint.axis - joint.offset) * joint.unit),
-    ]
-    if joint.is_angle:
-        lets += [Let(cosine(joint.symbol), sp.cos(joint.symbol)), Let(sine(joint.symbol), sp.sin(joint.symbol))]
-    return tuple(lets)
+    value, *functions = held_lets(joint)
+    motor = Let(joint.motor, (joint.axis - joint.offset) * joint.unit)
+    return (value, Let(joint.axis, axis), motor, *functions)
+
+
+def held_lets(joint: Joint) -> tuple[Let, ...]:
+    """The value of a joint that is kept at its reference, and its sine and cosine."""
+    value = Let(joint.symbol, reference_value(joint), f"{joint.name}: held at the reference")
+    if not joint.is_angle:
+        return (value,)
+    return (
+        value,
+        Let(cosine(joint.symbol), sp.cos(joint.symbol)),
+        Let(sine(joint.symbol), sp.sin(joint.symbol)),
+    )

@@ -77,6 +77,8 @@ class Split:
     equations: tuple[Equation, ...]
     links: tuple[Factor, ...] = ()
     target: Target = Target(())
+    back: tuple[tuple[Factor, ...], Target] | None = None
+    """The chain from its flange to the point in which its first joints intersect, and this point seen from there."""
 
 
 def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> Split:
@@ -93,17 +95,24 @@ def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> S
         return Split(found, factors, target)
     turned, seen = _before_the_shoulder(chain, sp.Matrix(point), commanded, unknowns)
     from_flange = _split(turned, seen, unknowns)
-    return Split(from_flange, turned, seen) if _alone(from_flange, unknowns) else Split(found, factors, target)
+    if _alone(from_flange, unknowns):
+        return Split(from_flange, turned, seen)
+    return Split(found, factors, target, (turned, seen))
 
 
 def _split(factors: Sequence[Factor], target: Target, unknowns: Unknowns) -> tuple[Equation, ...]:
     """The equations seen from behind the first joints, up to the first that turns, if more of them have one unknown
     than those seen from the base.
     """
+    seen = views(factors, target, unknowns)
+    return max(seen, key=lambda equations: _alone(equations, unknowns))  # max keeps the first of equals
+
+
+def views(factors: Sequence[Factor], target: Target, unknowns: Unknowns) -> list[tuple[Equation, ...]]:
+    """The equations seen from the base, and from behind every joint up to the first that turns."""
     moving = [i for i, f in enumerate(factors) if f.amount.free_symbols & {*unknowns.angles, *unknowns.lengths}]
     turning = next((k for k, i in enumerate(moving) if factors[i].motion is Motion.TURN), 0)
-    seen = [_equations(factors, first, target, unknowns) for first in (-1, *moving[: turning + 1])]
-    return max(seen, key=lambda equations: _alone(equations, unknowns))  # max keeps the first of equals
+    return [_equations(factors, first, target, unknowns) for first in (-1, *moving[: turning + 1])]
 
 
 def _alone(equations: Sequence[Equation], unknowns: Unknowns) -> int:

@@ -62,6 +62,8 @@ class Closure:
     links: tuple[Factor, ...] = ()
     """The chain for which the position equations are written, which ends in `target`."""
     target: Target = Target(())
+    back: tuple[tuple[Factor, ...], Target] | None = None
+    """The same from the flange to the point in which the first joints intersect."""
 
 
 def signs_of(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
@@ -187,7 +189,7 @@ def _with_heading(mechanism: Mechanism, closure: Closure, argument: sp.Expr | No
 def closure_at(mechanism: Mechanism, known: Joint) -> Closure:
     """The closure of a commanded pose with one joint known."""
     assert mechanism.chain is not None
-    moving = tuple(j for j in mechanism.joints if j != known)
+    moving = tuple(j for j in mechanism.solved_joints if j != known)
     return _spatial_closure(mechanism, mechanism.chain, moving, mechanism.task.turning)
 
 
@@ -207,7 +209,13 @@ def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ..
     arguments = dict.fromkeys((*_arguments(pose.position), *(t.amount for t in pose.turns)))
     turns = pose.turns if follows else ()
     return Closure(
-        split.equations, tuple(arguments), turns=turns, columns=columns, links=split.links, target=split.target
+        split.equations,
+        tuple(arguments),
+        turns=turns,
+        columns=columns,
+        links=split.links,
+        target=split.target,
+        back=split.back,
     )
 
 

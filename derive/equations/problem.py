@@ -163,6 +163,9 @@ class Problem:
     """The commanded point at the end of `links`."""
     point_lets: tuple[Let, ...] = ()
     """The statements that bind the names in it."""
+    back: tuple[tuple[Factor, ...], tuple[sp.Expr, ...], tuple[Let, ...]] | None = None
+    """The chain from its flange to the point in which its first joints intersect, this point seen from the flange, and
+    the statements that bind the names in it."""
     squares: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     """The squares of lengths that are roots of parameters."""
     parameters: tuple[sp.Symbol, ...] = ()

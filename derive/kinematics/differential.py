@@ -117,6 +117,25 @@ def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[
     return (*naming, *lets), values
 
 
+def solved_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
+    """The same without the columns of the joints that are held."""
+    lets, entries = jacobian_entries(mechanism)
+    width = len(mechanism.joints)
+    solved = [k for k, j in enumerate(mechanism.joints) if j in mechanism.solved_joints]
+    return lets, [entries[row + k] for row in range(0, len(entries), width) for k in solved]
+
+
+def scaled_entries(mechanism: Mechanism, entries: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
+    """The entries for the joints that are solved, with positions and slides in lengths of the machine."""
+    joints = mechanism.solved_joints
+    found = []
+    for k, value in enumerate(entries):
+        is_place, is_slide = k // len(joints) < len(mechanism.task.position), not joints[k % len(joints)].is_angle
+        power = int(is_slide) - int(is_place)
+        found.append(value * SCALE**power)
+    return tuple(found)
+
+
 def _per_motor(mechanism: Mechanism, matrix: sp.Matrix) -> tuple[tuple[Let, ...], list[sp.Expr]]:
     """The entries per velocity of a motor; their sines and cosines by names."""
     coupled = matrix * _motor_matrix(mechanism)

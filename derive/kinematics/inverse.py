@@ -107,10 +107,11 @@ def solve_pose(mechanism: Mechanism) -> Inverse:
 
 def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:
     """Solve the closure of a commanded pose for all joints but one that is known. The equations need not agree."""
-    closure = closure_at(mechanism, known)
-    moving = tuple(j for j in mechanism.joints if j != known)
-    naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *closure.lets)
-    return Inverse(closure, _solve(mechanism, closure, moving, is_overdetermined=True), naming, moving)
+    closure, held = closure_at(mechanism, known), mechanism.held_joints
+    moving = tuple(j for j in mechanism.solved_joints if j != known)
+    kept = tuple(s for j in held for s in frozen_lets(j))
+    naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *closure.lets)
+    return Inverse(closure, _solve(mechanism, closure, moving, is_overdetermined=True), naming, moving, held)
 
 
 def solve_offset(mechanism: Mechanism) -> Inverse:
@@ -158,6 +159,7 @@ def _solve(
         links=closure.links,
         point=closure.target.point,
         point_lets=closure.target.lets,
+        back=None if closure.back is None else (closure.back[0], closure.back[1].point, closure.back[1].lets),
         squares=fixed_squares(mechanism),
         positive=tuple(
             polynomial(with_fixed_names(mechanism, p), all_angles(mechanism), signs_of(mechanism))

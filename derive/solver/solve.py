@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.equations.positions import positions
+from derive.equations.positions import positions, positions_and_distance, positions_from_flange
 from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
 from derive.equations.rotations import conditions, rotations
 from derive.ir.program import Statement
@@ -29,8 +29,14 @@ from derive.solver.folds import beyond_folds
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from derive.solver.positive_steps import known_signs, where_roots_meet, with_known_signs
 from derive.solver.subproblems.affine import affine
-from derive.solver.subproblems.affine_system import affine_across, affine_along, affine_pair, affine_triple
-from derive.solver.subproblems.pair import pair
+from derive.solver.subproblems.affine_system import (
+    affine_across,
+    affine_along,
+    affine_along_or_free,
+    affine_pair,
+    affine_triple,
+)
+from derive.solver.subproblems.pair import pair, scaled_pair
 from derive.solver.subproblems.polar import polar
 from derive.solver.subproblems.quadratic import quadratic
 from derive.solver.subproblems.spheres import spheres
@@ -74,6 +80,7 @@ TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (
     _squares_of_positions,
     lossy_differences,
     free_of_lengths,
+    positions_from_flange,
 )
 Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 
@@ -145,6 +152,8 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         for angle in _read_plainly(problem, binding.unknowns):
             record.append(resolve_angle(angle))
         problem = _without(problem, binding, record)
+    if problem.is_overdetermined and not problem.turns:
+        left = [residual / problem.scale**2 for residual in record.residuals[:1]]  # it implies those that follow
     statements = record.statements
     if not problem.is_overdetermined:
         unfolded = beyond_folds(statements, record.determinants, record.conditionings, problem.scale)
@@ -194,7 +203,9 @@ def _next(
         binding = resolve(problem, total) if total.replaced in problem.pending else None
         if binding is not None:
             return problem, binding, sums
-    found = _best(candidate for tier in TIERS for candidate in [_candidates(problem, tier(problem))])
+    found = _of_a_trial(problem)
+    if found is None:
+        found = _best(candidate for tier in TIERS for candidate in [_candidates(problem, tier(problem))])
     if found is not None and not found.yields_to_a_sum:
         return problem, _with_one_root(problem, found), sums
     for total in candidate_sums(problem, arguments):
@@ -210,6 +221,13 @@ def _next(
     if found is not None:
         return problem, _with_one_root(problem, found), sums
     raise Unsolved(unsolved(problem))
+
+
+def _of_a_trial(problem: Problem) -> Binding | None:
+    """The step of a trial for a point alone that leaves a residual without any two-root step."""
+    if not problem.is_overdetermined or problem.turns:
+        return None
+    return _best([list(scaled_pair(problem, positions_and_distance(problem)))])
 
 
 def _with_one_root(problem: Problem, found: Binding) -> Binding:
@@ -241,6 +259,10 @@ def _lengths(problem: Problem, equations: tuple[Equation, ...]) -> list[Binding]
     return [b for rule in (affine, affine_pair, affine_triple) for b in rule(problem, equations)]
 
 
+def _along_or_free(problem: Problem) -> list[Binding]:
+    return list(affine_along_or_free(problem, _stated(problem)))
+
+
 def _across(problem: Problem) -> list[Binding]:
     return [b for equations in (_stated, positions) for b in affine_across(problem, equations(problem))]
 
@@ -249,7 +271,7 @@ def _three_squares(problem: Problem) -> list[Binding]:
     return _candidates(problem, squares_of_three(problem))
 
 
-_LAST = (_along_a_direction, _three_lengths, _by_condition, _three_squares, _across)
+_LAST = (_along_a_direction, _three_lengths, _by_condition, _three_squares, _along_or_free, _across)
 
 
 def _candidates(problem: Problem, equations: tuple[Equation, ...], wanted: sp.Symbol | None = None) -> list[Binding]:

@@ -24,6 +24,7 @@ from derive.mechanism import (
     rotary,
 )
 from tests.machines.angle_machines import NUMBERS
+from tests.machines.chain_machines import CHAINS, FROM_FLANGE
 from tests.machines.searched_machines import SEARCHED
 from tests.machines.task_machines import TASK_MACHINES
 
@@ -156,6 +157,7 @@ PARAMETERS_DECIDE = {
 }
 
 HELD = {
+    **FROM_FLANGE,
     "rail and arm with two links": _machine(
         "RailArm",
         (X, A1, A2),
@@ -206,6 +208,7 @@ HELD = {
 }
 
 FIRST_HELD = {
+    **FROM_FLANGE,
     "seven axes beside each other, the first held": _machine(
         "SevenBeside",
         (E1, A1, A2, A3, A4, A5, A6),
@@ -413,6 +416,7 @@ MACHINES: Mapping[str, Mechanism] = {
     **ONE_ROOT,
     **OTHERS,
     **SEARCHED,
+    **CHAINS,
     **NUMBERS,
     **TASK_MACHINES,
 }

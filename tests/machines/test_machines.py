@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from softkin import KinematicsError, Status
 
 from tests.machines import angle_machines
+from tests.machines.chain_machines import CHAIN_SOLUTIONS
 from tests.machines.collection import HELD, MACHINES, PARAMETERS_DECIDE
 from tests.machines.made import Array, Made, made
 from tests.machines.task_machines import TASK_SOLUTIONS
@@ -57,6 +58,7 @@ EXPECTED = {
     "arm in metres with a bent wrist and a shoulder beside its axis": 8,
     **angle_machines.EXPECTED,
     **TASK_SOLUTIONS,
+    **CHAIN_SOLUTIONS,
 }
 """The largest number of solutions, as a search of the closure from many starts finds them."""
 MOST = 300
@@ -137,6 +139,23 @@ def test_every_solution_closes_and_no_pose_is_lost(name: str) -> None:
     assert found.any(axis=1).all(), "a pose at which the machine stands is refused in every slot"
     for slot in range(slots.shape[1]):
         rows = found[:, slot]
+        assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= _CLOSED
+
+
+@EVERY
+def test_an_answer_closes_from_any_reference(name: str) -> None:
+    """A joint that is free where the machine is singular keeps its reference, and the others follow it."""
+    machine = made(name)
+    axes = grid(machine)
+    axes = axes[is_own(machine, axes)]
+    positions, rotations = machine.closure.poses(axes)
+    held = [j in machine.mechanism.held_joints for j in machine.mechanism.joints]
+    turned = np.random.default_rng(6).uniform(-1.0, 1.0, axes.shape) * np.where(machine.closure.angles, 170.0, 0.5)
+    references = np.where(held, axes, axes + turned * np.where(machine.closure.angles, 1.0, machine.reach))
+    slots, statuses = machine.robot.inverse_all_batch(positions, rotations, references)
+    assert (statuses == Status.OK).any()
+    for slot in range(slots.shape[1]):
+        rows = statuses[:, slot] == Status.OK
         assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= _CLOSED
 
 

@@ -1,10 +1,10 @@
 """The choice of the joint that is searched, where no subproblem solves a chain.
 
-With one joint known the others are solved, and one equation is left: the residual of a trial along this joint. Every
-rotary joint is tried in turn. The positions are solved before the rotation, so the equations of the positions may hold
-no more unknown joints than there are equations: where they do, nothing is derived. Of several joints that would do,
-the one is taken whose trial has the fewest branches, then the fewest places where it may be out of reach, then the
-fewest operations.
+With one joint known the others are solved, and one equation is left: the residual of a trial along this joint. Of a
+commanded point the third coordinate is left; joints that are held are known anyway. Every rotary joint is tried in
+turn. The positions are solved before the rotation, so the equations of the positions may hold no more unknown joints
+than there are equations: where they do, nothing is derived. Of several joints that would do, the one is taken whose
+trial has the fewest branches, then the fewest places where it may be out of reach, then the fewest operations.
 """
 
 from __future__ import annotations
@@ -60,13 +60,13 @@ def with_search(mechanism: Mechanism) -> Mechanism:
 
 
 def _may_be_searched(mechanism: Mechanism) -> bool:
-    """Whether the pose of the whole flange is commanded, and no joint is held."""
-    full = mechanism.task.turning is Turning.FULL and mechanism.task.position == "xyz"
-    return mechanism.chain is not None and full and not mechanism.held
+    """Whether the pose of the whole flange is commanded, or a point."""
+    is_known = mechanism.task.turning in (Turning.FULL, Turning.NONE) and mechanism.task.position == "xyz"
+    return mechanism.chain is not None and is_known
 
 
 def _candidates(mechanism: Mechanism) -> Iterator[_Candidate]:
-    for joint in mechanism.joints:
+    for joint in mechanism.solved_joints:
         if not joint.is_angle or not _may_be_solved(mechanism, joint):
             continue
         try:
@@ -81,7 +81,7 @@ def _may_be_solved(mechanism: Mechanism, known: Joint) -> bool:
     """Whether, with one joint known, the equations of the positions hold no more unknown joints than there are
     equations.
     """
-    unknown = [j for j in mechanism.joints if j != known]
+    unknown = [j for j in mechanism.solved_joints if j != known]
     read = [names_in(e.expression) for e in closure_at(mechanism, known).equations]
     present = [j for j in unknown if any(names & {j.symbol, cosine(j.symbol), sine(j.symbol)} for names in read)]
     return len(present) <= len(read)

@@ -17,7 +17,7 @@ from derive.description.mechanism import (
     DescriptionError,
     Mechanism,
 )
-from derive.equations.axes import axis_lets, reference_value
+from derive.equations.axes import axis_lets, frozen_lets, held_lets, reference_lets, reference_value
 from derive.equations.closure import fixed_lets
 from derive.equations.pose_at_axes import (
     Forward,
@@ -129,7 +129,9 @@ def naming_of(both: Scanned) -> tuple[Statement, ...]:
 def from_joints(mechanism: Mechanism) -> Program:
     """The axis values of known joints."""
     known = {j.symbol for j in mechanism.joints}
-    lets = [of_angle(let, j, known) for j in mechanism.joints for let in axis_lets(j)]
+    solved = [of_angle(let, j, known) for j in mechanism.solved_joints for let in axis_lets(j)]
+    kept = [s for j in mechanism.held_joints for s in (*reference_lets(mechanism), *frozen_lets(j))]
+    lets = [s for s in (*kept, *solved) if s.name not in known]
     return normalise("from_joints", lets, [Output(j.axis.name, j.axis) for j in mechanism.joints])
 
 
@@ -142,7 +144,8 @@ def trial_on_branch(both: Scanned) -> Trial:
     solved = with_branch_signs(both.trial.derivation.statements, both.trial_branches)
     residual = real("residual")
     left = Let(residual, both.trial.derivation.residuals[0])
-    first, signs = _sides(both, (*fixed_lets(mechanism), *own, *both.trial.closure.lets), solved)
+    held = (let for j in mechanism.held_joints for let in held_lets(j))
+    first, signs = _sides(both, (*fixed_lets(mechanism), *own, *held, *both.trial.closure.lets), solved)
     statements = with_goal(named_apart((*first, *solved, left), "tried"))
     statements = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
     angles = _turning_fast(both.trial.derivation)

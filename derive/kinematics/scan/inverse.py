@@ -115,7 +115,7 @@ def search_of(both: Scanned) -> Program:
 
 def _chosen(both: Scanned) -> Iterable[Let]:
     """The angle of every joint, from the scan or in closed form."""
-    for joint in both.mechanism.joints:
+    for joint in both.mechanism.solved_joints:
         name = joint.symbol.name
         if both.closed is None:
             yield Let(joint.symbol, real(f"found_{name}"))

@@ -46,7 +46,7 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.kinematics.branch_assignment import Assignment
-from derive.kinematics.differential import jacobian_entries
+from derive.kinematics.differential import scaled_entries, solved_entries
 from derive.kinematics.forward import (
     derivation_at_axes,
 )
@@ -121,12 +121,9 @@ def determinant_margin(both: Scanned) -> tuple[tuple[Statement, ...], sp.Expr]:
     of the closed steps.
     """
     mechanism = both.mechanism
-    lets, entries = jacobian_entries(mechanism)
-    width = len(mechanism.joints)
-    scaled = [v / (SCALE if k // width < len(mechanism.task.position) else 1) for k, v in enumerate(entries)]
-    system = Solve(
-        (), tuple(scaled), (), DETERMINANT, "determinant of the Jacobian, positions in characteristic lengths"
-    )
+    lets, entries = solved_entries(mechanism)
+    note = "determinant of the Jacobian, positions in characteristic lengths"
+    system = Solve((), scaled_entries(mechanism, entries), (), DETERMINANT, note)
     return (*lets, system), DETERMINANT * _determinant_scale(both)
 
 
@@ -189,7 +186,7 @@ def _measured_slope(both: Scanned, samples: dict[str, NDArray[np.float64]]) -> N
     assert mechanism.search is not None
     joint = mechanism.search.joint
     names = [*(real(c) for c in "xyz"), *both.forward.rotation]
-    outputs = [Output(n.name, n) for n in names]
+    outputs = [Output(n.name, n) for n in (*names, *(j.symbol for j in mechanism.held_joints))]
     outputs += [Output(f"margin_{a.branch.name}", a.margin(mechanism)) for a in both.trial_branches]
     values, _ = run(normalise("pose", derivation_at_axes(mechanism, both.trial, both.forward), outputs), samples)
     trial = trial_on_branch(both)
@@ -197,8 +194,9 @@ def _measured_slope(both: Scanned, samples: dict[str, NDArray[np.float64]]) -> N
     known = {**samples, **{GOAL[real(n)].name: v for n, v in values.items() if real(n) in GOAL}}
     for a in both.trial_branches:
         known[wanted(a.branch).name] = np.where(values[f"margin_{a.branch.name}"] >= 0, 1.0, -1.0)
+    held = mechanism.held_joints
     for j in mechanism.joints:
-        known[reference_value(j).name] = np.zeros(_SAMPLES)
+        known[reference_value(j).name] = values[j.symbol.name] if j in held else np.zeros(_SAMPLES)
     known |= {SIDE.name: np.ones(_SAMPLES), FREED.name: -np.ones(_SAMPLES), FREED_ANGLE.name: np.zeros(_SAMPLES)}
     ends = []
     for shift in (1e-6, -1e-6):

@@ -7,12 +7,13 @@ whether they lie on the wanted branch. `find_root` finds the root that is neares
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.description.mechanism import Mechanism
+from derive.description.mechanism import Mechanism, Turning
+from derive.equations.axes import reference_value
 from derive.equations.named_pose import named_pose
 from derive.ir.constants import BOUNDARY, DAMPED, IMPROVEMENTS, MET, NEARLY
 from derive.ir.passes import normalise
@@ -32,7 +33,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
-from derive.kinematics.differential import jacobian_entries
+from derive.kinematics.differential import scaled_entries, solved_entries
 from derive.kinematics.scan.guards import conditions_of, least, room_of
 from derive.kinematics.scan.slopes import slope_name, with_slopes
 
@@ -97,19 +98,26 @@ def find_program(mechanism: Mechanism, trial: Program, finish: Program, argument
 
 def finish_program(mechanism: Mechanism, trial: Trial, wanted: Sequence[sp.Expr], determinant: sp.Symbol) -> Program:
     """The program that computes the joints at a root, and whether they fit: no value in `wanted` may be negative."""
-    joints = [j.symbol for j in mechanism.joints]
-    pairs = zip(joints, (real(f"{j.name}_tried") for j in joints), strict=True)
-    solved = {j: Atan2(real(f"{sine(j).name}_tried"), real(f"{cosine(j).name}_tried")) for j, _ in pairs}
+    joints = [j.symbol for j in mechanism.solved_joints]
+    held = [Let(j.symbol, reference_value(j)) for j in mechanism.held_joints]
+    solved = {j: _solved_value(mechanism, j) for j in joints}
     error = real("error")
     conditions = [sp.Le(error, MET), *(sp.Ge(w, -NEARLY) for w in wanted)]
     loop, jacobian = _newton(mechanism, [solved[j] for j in joints])
     last = Solve((), jacobian, (), determinant, "determinant of the Jacobian, positions in characteristic lengths")
     fits = Let(flag(FITS), sp.And(*conditions))
-    outputs = [Output(FITS, fits.name), *(Output(f"found_{j.name}", j) for j in joints)]
-    program = normalise("finish_root", (*trial.statements, loop, last, fits), outputs)
+    outputs = [Output(FITS, fits.name), *(Output(f"found_{j.symbol.name}", j.symbol) for j in mechanism.joints)]
+    program = normalise("finish_root", (*trial.statements, *held, loop, last, fits), outputs)
     return replace(
         program, summary="The joints at a root, improved by Newton's method, and whether they are on the branch"
     )
+
+
+def _solved_value(mechanism: Mechanism, joint: sp.Symbol) -> sp.Expr:
+    """The value of a joint in a trial."""
+    if any(j.symbol == joint and not j.is_angle for j in mechanism.joints):
+        return real(f"{joint.name}_tried")
+    return Atan2(real(f"{sine(joint).name}_tried"), real(f"{cosine(joint).name}_tried"))
 
 
 def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tuple[sp.Expr, ...]]:
@@ -119,14 +127,15 @@ def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tu
     that only a long step could remove: there a root is known to a few digits, and the long step would lead away from
     it.
     """
-    joints = [j.symbol for j in mechanism.joints]
-    composed, (lets, entries) = named_pose(mechanism), jacobian_entries(mechanism)
-    places = len(mechanism.task.position)
+    joints = [j.symbol for j in mechanism.solved_joints]
+    lengths = {j.symbol for j in mechanism.solved_joints if not j.is_angle}
+    composed, (lets, entries) = named_pose(mechanism), solved_entries(mechanism)
     pose = [Let(n, v) for n, v in zip(GOAL, (*composed.position, *composed.rotation), strict=True)]
-    scaled = [v / (SCALE if k // len(joints) < places else 1) for k, v in enumerate(entries)]
-    errors = [Let(real(f"error_{k}"), v) for k, v in enumerate(_errors(), 1)]
+    scaled = list(scaled_entries(mechanism, entries))
+    errors = [Let(real(f"error_{k}"), v) for k, v in enumerate(_errors(mechanism), 1)]
     names = [let.name for let in errors]
     steps = tuple(real(f"step_{j.name}") for j in joints)
+    pairs = list(zip(joints, steps, strict=True))
     error, passes, taken = real("error"), count("passes"), flag("taken")
     rates, jacobian = _named_entries(scaled, len(joints))
     body = (
@@ -143,13 +152,18 @@ def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tu
         state=(*joints, passes),
         start=(*start, _ZERO),
         step=tuple(s for s in body if isinstance(s, Let | Solve)),
-        following=(*(j + Select(taken, s, _ZERO) for j, s in zip(joints, steps, strict=True)), passes + 1),
+        following=(*(j + Select(taken, _way(j, s, lengths), _ZERO) for j, s in pairs), passes + 1),
         done=sp.Or(sp.Le(error, BOUNDARY / 100), sp.Ge(passes, IMPROVEMENTS), sp.Not(taken)),
         limit=IMPROVEMENTS + 1,
         otherwise=Status.UNREACHABLE,
         note="Newton's method on the closure",
     )
     return loop, tuple(jacobian)
+
+
+def _way(joint: sp.Symbol, step: sp.Symbol, lengths: Container[sp.Symbol]) -> sp.Expr:
+    """The step of a joint: that of a slide is counted in lengths of the machine."""
+    return step * SCALE if joint in lengths else step
 
 
 def _taken(steps: Sequence[sp.Symbol], error: sp.Symbol, taken: sp.Symbol) -> tuple[Let, Let]:
@@ -184,11 +198,13 @@ def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequ
     ]
 
 
-def _errors() -> list[sp.Expr]:
+def _errors(mechanism: Mechanism) -> list[sp.Expr]:
     """The error to the goal: a shift in characteristic lengths, and the vector of the rotation to
-    it (its skew part).
+    it (its skew part), where a rotation is commanded.
     """
     places = [(GOAL[real(c)] - real(c)) / SCALE for c in COORDINATE_NAMES]
+    if mechanism.task.turning is Turning.NONE:
+        return places
     here = sp.Matrix(3, 3, ROTATION_ENTRIES)
     turn = sp.Matrix(3, 3, [GOAL[r] for r in ROTATION_ENTRIES]) * here.T
     return [*places, *((turn[i, j] - turn[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0)))]
@@ -246,7 +262,7 @@ def names_of_search(mechanism: Mechanism, trial: Trial) -> Iterator[sp.Symbol]:
     yield from (*PLACE, *GOAL.values(), START, LOOKED_FOR, FOUND, flag(FITS))
     yield from (real(n) for n in ("value", "guard", "remainder", "slope", "room", "room_slope", "error"))
     yield from (s.name for s in trial.statements)
-    loop, _ = _newton(mechanism, [_ZERO] * len(mechanism.joints))
+    loop, _ = _newton(mechanism, [_ZERO] * len(mechanism.solved_joints))
     yield from (name for s in loop.step for name in binds(s))
 
 

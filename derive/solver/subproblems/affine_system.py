@@ -12,6 +12,10 @@ Across:  one or two equations whose determinant can vanish, and is made of the d
 head may lay flat. There a slide points across its way, or two are parallel, and one of them is free (degenerate case):
 the values nearest to the reference that satisfy the equations, v = r + M' (e - M r) / |M|^2, where the equations agree.
 The determinant is the conditioning. Taken only where nothing else is left.
+
+Along a direction that can vanish:  the same as along a direction, with k₁² + k₂² that may be zero. There v is free, and
+keeps its reference (degenerate case). The length of the direction is the conditioning. The steps before may have come
+from a difference of the equations that says nothing there: all of them are tested with the value.
 """
 
 from __future__ import annotations
@@ -23,7 +27,7 @@ import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
 from derive.equations.problem import Binding, Conditioning, Equation, Problem
-from derive.ir.constants import FREE_ANGLE
+from derive.ir.constants import FREE_ANGLE, MET
 from derive.ir.primitives import Select
 from derive.ir.program import Let, Require, Statement, Status
 from derive.ir.reason import Why, about_joint
@@ -83,11 +87,41 @@ def affine_across(problem: Problem, equations: tuple[Equation, ...]) -> Iterator
             if len(unknowns) == len(rows) == count and set(unknowns) <= {*problem.lengths}:
                 matrix, rest = sp.Matrix([row[0] for row in rows]), sp.Matrix([row[1] for row in rows])
                 value = problem.reduce(matrix.det(method="berkowitz"))
-                directions = {f(a) for a in problem.units for f in (cosine, sine)} | {*ROTATION_ENTRIES}
-                if value != 0 and value.free_symbols <= directions:
+                if value != 0 and _is_direction(problem, value):
                     statements = _or_free(problem, some, unknowns, matrix, rest)
                     conditioning = Conditioning(unknowns[-1], value, sp.Integer(1))
                     yield Binding("affine across", unknowns, statements, conditioning=conditioning)
+
+
+def _is_direction(problem: Problem, value: sp.Expr) -> bool:
+    """Whether a value is made of directions alone: it needs no scale to be compared with."""
+    directions = {f(a) for a in problem.units for f in (cosine, sine)} | {*ROTATION_ENTRIES}
+    return set(problem.reduce(value).free_symbols) <= directions
+
+
+def affine_along_or_free(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every length that several equations hold alone, along a direction that can vanish."""
+    for unknown in problem.lengths:
+        alone = [e for e in equations if problem.unknowns_of(e.expression) == (unknown,)]
+        some = [(e, row) for e in alone if (row := linear_coefficients(e.expression, (unknown,))) is not None]
+        if len(some) < 2 or len(some) < len(alone) or not all(_is_direction(problem, row[0][0]) for _, row in some):
+            continue
+        naming = Naming(problem, tuple(let for e in alone for let in e.lets))
+        along = [naming.named(row[0][0], f"{e.label}_along_{unknown.name}") for e, row in some]
+        right = [naming.named(-row[1], f"{e.label}_of_{unknown.name}") for e, row in some]
+        size = naming.length(f"direction_of_{unknown.name}", *along)
+        points, divisor = sp.Gt(size, FREE_ANGLE), real(f"divisor_{unknown.name}")
+        value = sum(k * e for k, e in zip(along, right, strict=True)) / divisor**2
+        agree = (sp.Abs(k * unknown - e) <= MET * problem.scale for k, e in zip(along, right, strict=True))
+        note = f"{unknown.name} from the {_listed([e.label for e in alone])} equations, along its direction"
+        statements: tuple[Statement, ...] = (
+            *naming.lets,
+            Let(divisor, Select(points, size, sp.Integer(1))),
+            Let(unknown, Select(points, value, problem.references[unknown]), note),
+            Require(sp.And(*agree), Status.UNREACHABLE, reason=about_joint(unknown, Why.SLIDE_ACROSS)),
+        )
+        conditioning = Conditioning(unknown, size, sp.Integer(1))
+        yield Binding("affine along or free", (unknown,), statements, conditioning=conditioning)
 
 
 def _or_free(

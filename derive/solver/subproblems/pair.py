@@ -15,11 +15,12 @@ can vanish, u is free there (degenerate case), and the length is its conditionin
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations
 
 import sympy as sp
 
-from derive.algebra.normal_form import linear_coefficients
+from derive.algebra.normal_form import cancelled, linear_coefficients
 from derive.equations.problem import Binding, Conditioning, Equation, Problem
 from derive.ir.program import Let
 from derive.ir.symbols import cosine, sine
@@ -37,6 +38,38 @@ def pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]
             binding = _solve(problem, angle, (first, second), row1, row2)
             if binding is not None:
                 yield binding
+
+
+def scaled_pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every angle that two equations determine together, of which each is the coordinate of a turned vector times a
+    factor that never vanishes: of an arm at a known angle, the height of its tip and the square of its distance.
+    """
+    for angle in problem.angles:
+        rows = [(e, r) for e in equations for r in [_row(problem, e, angle)] if r is not None]
+        for (first, row1), (second, row2) in combinations(rows, 2):
+            parts = [_without_factor(problem, row) for row in (row1, row2)]
+            (scaled1, factor1), (scaled2, factor2) = parts
+            if factor1 * factor2 == 1 or _sense(problem, scaled1, scaled2) is None:
+                continue
+            binding = _solve(problem, angle, (first, second), scaled1, scaled2)
+            if binding is not None and binding.residual is not None:
+                yield replace(binding, residual=binding.residual * _share(problem, factor1 * factor2) ** 2)
+
+
+def _without_factor(problem: Problem, row: Row) -> tuple[Row, sp.Expr]:
+    """The row over the factor that both of its coefficients have and that never vanishes, and this factor."""
+    a, b, e = row
+    factors = sp.Mul.make_args(sp.factor(sp.gcd(a, b)))
+    factor = sp.Mul(*[f for f in factors if not f.is_number and problem.is_never_zero(f)])
+    content = sp.Mul(*[abs(f.as_coeff_Mul()[0]) for v in (a, b) for f in sp.Add.make_args(sp.expand(v))][:1])
+    factor *= content
+    return (cancelled(a / factor), cancelled(b / factor), sp.expand(e / factor)), factor
+
+
+def _share(problem: Problem, factor: sp.Expr) -> sp.Expr:
+    """A factor without its unit: every length of the machine in it over the machine's scale."""
+    turned = {f(angle) for angle in problem.units for f in (cosine, sine)}
+    return factor.xreplace({s: s / problem.scale for s in factor.free_symbols - turned - {*problem.signs}})
 
 
 def _row(problem: Problem, equation: Equation, angle: sp.Symbol) -> Row | None:

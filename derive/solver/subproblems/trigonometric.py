@@ -6,8 +6,9 @@ u and the direction of (a, b). Then cos u = (a C - b S) / h and sin u = (b C + a
 stay products: expanded they lose half the digits. C and S come from these factors alone, whose ratio is the square of
 the tangent of half the angle: so C^2 + S^2 = 1 to rounding, whatever digits e has lost. Determinant a sin u - b cos u =
 h S: sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution. Where it is 1 both roots meet
-(degenerate case). Where h can vanish, a pose is refused whose h is below 1e-9 of the length that it is compared with:
-the arm then has no length that u could turn.
+(degenerate case). Where joints can make h vanish, u is free there: e must vanish, too. Where h is made of parameters
+and commanded values alone, a pose is refused whose h is below 1e-9 of the length that it is compared with: the arm then
+has no length that u could turn.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ from derive.algebra.normal_form import cancelled, factored, linear_coefficients,
 from derive.equations.problem import Binding, Equation, Problem, StepDeterminant, sign_of
 from derive.ir.constants import (
     BOUNDARY,
+    DEGREE,
+    FREE_ANGLE,
     SHORTEST_LINK,
 )
 from derive.ir.primitives import (
@@ -40,6 +43,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
+from derive.solver.subproblems.direction import free_angle
 from derive.solver.subproblems.lateral import Row, aimed_at_point
 from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.origin import from_origin
@@ -83,7 +87,9 @@ def _rows(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[tuple[E
 
 def _is_commanded(problem: Problem, equation: Equation, coefficient: sp.Expr) -> bool:
     """Whether a coefficient changes with the commanded position."""
-    written_out = coefficient.xreplace({let.name: let.value for let in equation.lets})
+    written_out = coefficient
+    for let in reversed(equation.lets):  # names in the value of a later one are bound by earlier ones
+        written_out = written_out.xreplace({let.name: let.value})
     return bool(problem.reduce(written_out).free_symbols & {real(c) for c in ("x", "y", "z")})
 
 
@@ -105,6 +111,8 @@ class _Amplitude:
     """Whether h may be negative."""
     told: sp.Expr | None = None
     """(h - e)(h + e) made of lengths, where the factors are not: what is missing is read off it."""
+    aimable: sp.Basic | None = None
+    """Whether h is long enough to determine the angle, where joints can make it vanish; else None."""
 
 
 def _amplitude(
@@ -112,7 +120,8 @@ def _amplitude(
 ) -> _Amplitude:
     naming = Naming(problem, equation.lets)
     determinant = a * sine(angle) - b * cosine(angle)
-    common = sp.Mul(*[f for f in sp.Mul.make_args(sp.gcd(a, b)) if f.is_positive])  # it divides, and keeps every sign
+    shared = sp.Mul.make_args(sp.factor(sp.gcd(a, b)))
+    common = sp.Mul(*[f for f in shared if f.is_positive])  # it divides, and keeps every sign
     along, across = cancelled(a / common), cancelled(b / common)
     if along.is_number and across.is_number:
         size = sp.sqrt(along**2 + across**2)
@@ -124,36 +133,48 @@ def _amplitude(
     along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
     note = f"effective length of the arm that {angle.name} turns"
     effective = naming.length(f"effective_{angle.name}", along, across, note=note)
+    written_out = problem.reduce(square.xreplace({let.name: let.value for let in equation.lets}))
+    is_moved = _is_moved(problem, written_out)
+    unit = sp.Integer(1) if _has_no_unit(problem, written_out) else problem.scale_of(equation)
+    divisor, aimable = effective, None
+    guard: tuple[Statement, ...] = ()
     if problem.is_never_zero(square):
-        right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, effective))
-        length = common * effective
-        return _Amplitude(
-            naming, length, (), along / effective, across / effective, right, determinant, length, factors, told=told
-        )
-    divisor, guard = _guarded(effective, common, angle)
+        scale = common * (unit if is_moved else effective)
+    else:
+        scale = equation.scales.get(angle, common * unit)
+        divisor, aimable, guard = _vanishing(effective, (common, unit), angle, is_moved=is_moved)
     right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
+    units = (along / divisor, across / divisor)
     return _Amplitude(
-        naming,
-        common * divisor,
-        guard,
-        along / divisor,
-        across / divisor,
-        right,
-        determinant,
-        equation.scales.get(angle, common * problem.scale_of(equation)),
-        factors,
-        told=told,
+        naming, common * divisor, guard, *units, right, determinant, scale, factors, told=told, aimable=aimable
     )
 
 
-def _guarded(effective: sp.Expr, common: sp.Expr, angle: sp.Symbol) -> tuple[sp.Symbol, tuple[Statement, ...]]:
-    """The effective length as a divisor, and the statements that refuse an arm that is too short to aim."""
-    aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
+def _is_moved(problem: Problem, square: sp.Expr) -> bool:
+    """Whether joints of a chain that are known already change the effective length of the arm."""
+    read = square.free_symbols
+    return bool(problem.links) and any(read & {joint, cosine(joint), sine(joint)} for joint in problem.references)
+
+
+def _has_no_unit(problem: Problem, square: sp.Expr) -> bool:
+    """Whether a value is made of sines, cosines and entries of rotations alone."""
+    turned = {f(angle) for angle in problem.units for f in (cosine, sine)}
+    return set(square.free_symbols) <= {*turned, *problem.rotation, *problem.signs, DEGREE}
+
+
+def _vanishing(
+    effective: sp.Expr, sizes: tuple[sp.Expr, sp.Expr], angle: sp.Symbol, *, is_moved: bool
+) -> tuple[sp.Symbol, sp.Basic | None, tuple[Statement, ...]]:
+    """The effective length as a divisor, where it can vanish; the condition that it determines the angle, where joints
+    make it vanish; the statements. An arm of parameters that is too short to aim is refused.
+    """
+    common, unit = sizes
     divisor = real(f"divisor_{angle.name}")
-    return divisor, (
-        Require(aimable, Status.UNREACHABLE, reason=about_joint(angle, Why.TOO_SHORT)),
-        Let(divisor, Select(aimable, effective, sp.Integer(1))),
-    )
+    aimable = sp.Gt(effective, FREE_ANGLE * unit if is_moved else SHORTEST_LINK * common / 2)
+    let = Let(divisor, Select(aimable, effective, sp.Integer(1)))
+    if is_moved:
+        return divisor, aimable, (let,)
+    return divisor, None, (Require(aimable, Status.UNREACHABLE, reason=about_joint(angle, Why.TOO_SHORT)), let)
 
 
 def _law_of_cosines(
@@ -268,8 +289,6 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     length, right = amplitude.length, amplitude.right
     size = sp.Abs if amplitude.is_signed else sp.Add
     less, more = amplitude.factors or (_product(length - right), _product(length + right))
-    told = less * more if amplitude.told is None else amplitude.told
-    known = (*amplitude.naming.lets, *(s for s in amplitude.guard if isinstance(s, Let)))
     statements: list[Statement] = [
         *amplitude.naming.lets,
         *amplitude.guard,
@@ -277,18 +296,46 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
         Let(plus_cos, more, "1 + cosine, times the scale"),
         Let(twice, less_cos + plus_cos, "twice the scale, as the sum of both: then cosine and sine agree"),
         Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
-        Let(cos_name, (plus_cos - less_cos) / divisor),
-        Require(sp.Le(sp.Abs(cos_name), 1 + BOUNDARY / 2), Status.UNREACHABLE, reason=out_of_reach(angle, told, known)),
+        *_cosine(angle, amplitude, cos_name, (plus_cos - less_cos) / divisor, (less, more)),
         Let(square, less_cos * plus_cos, "sine squared, times the squared scale"),
         Let(sin_name, 2 * sigma * Root(square) / size(divisor)),
+        *(_turned(problem, angle, amplitude, cos_name, sin_name) if turned else ()),
     ]
-    if turned:
-        statements += [
-            Let(cosine(angle), amplitude.cos_unit * cos_name - amplitude.sin_unit * sin_name, _ADDITION),
-            Let(sine(angle), amplitude.sin_unit * cos_name + amplitude.cos_unit * sin_name),
-        ]
     determinant = StepDeterminant(angle, amplitude.determinant, amplitude.determinant_scale, (length, right))
     return Binding("trigonometric", (angle,), tuple(statements), determinant, cosine_alone=True, yields_to_a_sum=True)
+
+
+def _cosine(
+    angle: sp.Symbol, amplitude: _Amplitude, name: sp.Symbol, value: sp.Expr, factors: tuple[sp.Expr, sp.Expr]
+) -> tuple[Statement, ...]:
+    """The cosine of the swing, and the condition that there is one. Near the place where the arm vanishes rounding of
+    the equation moves it far, and beyond one: there it is one.
+    """
+    told = sp.Mul(*factors) if amplitude.told is None else amplitude.told
+    known = (*amplitude.naming.lets, *(s for s in amplitude.guard if isinstance(s, Let)))
+    reason = out_of_reach(angle, told, known)
+    if amplitude.aimable is None:
+        check = Require(sp.Le(sp.Abs(name), 1 + BOUNDARY / 2), Status.UNREACHABLE, reason=reason)
+        return Let(name, value), check
+    ratio, size = real(f"ratio_of_{angle.name}"), amplitude.determinant_scale
+    near = sp.Le(sp.Abs(ratio), 1 + BOUNDARY / 2 * (1 + size / amplitude.length))
+    vanishes = sp.Le(sp.Abs(amplitude.right), FREE_ANGLE * size)
+    is_met = sp.Or(sp.And(amplitude.aimable, near), sp.And(sp.Not(amplitude.aimable), vanishes))
+    within = Select(sp.Gt(ratio, 1), sp.Integer(1), Select(sp.Lt(ratio, -1), sp.Integer(-1), ratio))
+    return Let(ratio, value), Require(is_met, Status.UNREACHABLE, reason=reason), Let(name, within)
+
+
+def _turned(
+    problem: Problem, angle: sp.Symbol, amplitude: _Amplitude, cos_name: sp.Symbol, sin_name: sp.Symbol
+) -> Iterator[Let]:
+    """Cosine and sine of the angle from those of the swing; the reference where there is no arm."""
+    along, across = amplitude.cos_unit, amplitude.sin_unit
+    values = (along * cos_name - across * sin_name, across * cos_name + along * sin_name)
+    free = free_angle(problem, angle)
+    notes = (_ADDITION, "")
+    for function, value, otherwise, note in zip((cosine, sine), values, free, notes, strict=True):
+        chosen = value if amplitude.aimable is None else Select(amplitude.aimable, value, otherwise)
+        yield Let(function(angle), chosen, note)
 
 
 def _product(value: sp.Expr) -> sp.Expr:

@@ -18,7 +18,7 @@ from derive.ir.program import Output, Program, Require, Status
 from derive.ir.symbols import real
 from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
-from derive.mechanism import assembly, length, linear
+from derive.mechanism import assembly, distance, length, linear
 from derive.witness import Disagreement, witness
 from derive.witness.terms import term
 from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, invention
@@ -172,6 +172,15 @@ def test_a_machine_that_is_always_singular(planar_arm: Kinematics) -> None:
     chain = Rz(A1) * Tx(L1) * Rz(A2 * sp.Rational(1, 10**9)) * Tx(L2)
     with pytest.raises(Disagreement, match="a machine has no regular pose: is the mechanism always singular"):
         witness(replace(planar_arm, mechanism=replace(planar_arm.mechanism, chain=chain)))
+
+
+def test_a_machine_that_is_always_singular_with_a_dimension_that_may_be_zero() -> None:
+    """A link that is stated as a distance is zero in some of the machines that the witness tries."""
+    offset = distance("offset", "a link that may vanish", nominal=80.0)
+    chain = Rz(A1) * Tx(L1) * Rz(A2) * Tx(offset)
+    machine = arm(chain=chain, parameters=(L1, offset), offset_interface=False)
+    with pytest.raises(Disagreement, match="with offset = 0 the machine has no regular pose: state what is never zero"):
+        witness(build(validate(machine)))
 
 
 def test_the_indicator_of_an_assembly_must_tell() -> None:

@@ -8,10 +8,13 @@ import pytest
 from sympy import cos, sin
 
 from derive.description.mechanism import DescriptionError, Mechanism, Parameter, Task, Turning, branch, length
+from derive.description.validate import validate
 from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
 from derive.kinematics.build import build
 from derive.kinematics.scan.choice import with_search
 from derive.solver.solve import Undetermined
+from derive.witness import witness
+from tests.machines.chain_machines import ANGLES_AS_NUMBERS, OF_DEGREE_FOUR
 from tests.unit.kinematics.inventions import invention
 from tests.unit.solver.test_fast_refusals import JOINTS, LENGTHS, L
 
@@ -109,3 +112,20 @@ def test_a_parameter_named_like_a_value_of_the_search_is_refused(name: str) -> N
     chain = ARM * Ty(strange) * Ry(A5) * Rx(A6) * Tx(L[4])
     with pytest.raises(DescriptionError, match=f"parameter '{name}' has a name that the derivation itself uses"):
         build(arm(chain, parameters=(*LENGTHS, strange)))
+
+
+def test_an_angle_of_a_table_counts_in_degrees_in_the_branches_that_are_derived() -> None:
+    """The witness compares the sign of every branch with its indicator, and counts the solutions."""
+    evidence = witness(build(validate(ANGLES_AS_NUMBERS)))
+    assert evidence.inverted is not None and evidence.inverted.solutions == 10
+
+
+@pytest.mark.parametrize("name", OF_DEGREE_FOUR)
+def test_a_commanded_point_is_searched_without_a_step_of_two_roots(name: str) -> None:
+    """Its trial has a solution at every angle of the joint, and its residual is a polynomial: no solution is missed."""
+    kinematics = build(validate(OF_DEGREE_FOUR[name]))
+    assert kinematics.mechanism.search is not None and kinematics.tried_branches == 0
+    assert [b.is_crossing for b in kinematics.mechanism.branches] == [True]
+    evidence = witness(kinematics)
+    assert evidence.inverted is not None and evidence.inverted.missed is not None
+    assert evidence.inverted.missed[0] == 0 and evidence.inverted.missed[1] > 50

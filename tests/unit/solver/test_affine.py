@@ -18,7 +18,7 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.solver.subproblems.affine import affine
-from derive.solver.subproblems.affine_system import affine_across, affine_along
+from derive.solver.subproblems.affine_system import affine_across, affine_along, affine_along_or_free
 from tests.unit.solver.execution import (
     ANYTHING,
     LENGTHS,
@@ -143,6 +143,19 @@ def test_across_a_direction(angle: float) -> None:
     assert status is (Status.UNREACHABLE if angle == np.pi / 2 else Status.OK)
 
 
+@pytest.mark.parametrize("angle", [0.3, -2.0, np.pi / 2], ids=str)
+def test_along_a_direction_or_free(angle: float) -> None:
+    """Where the direction vanishes the reference is kept, and the equations have to agree anywhere."""
+    given_problem = problem(sp.cos(U) * V - B, 2 * sp.cos(U) * V - C, lengths=(V,), known=(U,))
+    (binding,) = answers(affine_along_or_free, given_problem)
+    known = {cosine(U): np.cos(angle), sine(U): np.sin(angle), reference(V): 7.0, SCALE: 1.0}
+    values, status = execute(binding.statements, {**known, B: 3 * np.cos(angle), C: 6 * np.cos(angle)})
+    assert status is Status.OK and abs(values["v"] - (7 if angle == np.pi / 2 else 3)) <= 1e-14
+    for amounts in ({B: 3 * np.cos(angle) + 0.1, C: 6 * np.cos(angle)}, {B: 3 * np.cos(angle), C: 0.5}):
+        assert execute(binding.statements, {**known, **amounts})[1] is Status.UNREACHABLE
+
+
 def test_directions_alone_may_vanish() -> None:
     """A coefficient with a length in it is left to other rules: it has no scale to be compared with."""
     assert answers(affine_across, problem((B + 2) * V - C, lengths=(V,))) == []
+    assert answers(affine_along_or_free, problem((B + 2) * V - C, B * V, lengths=(V,))) == []

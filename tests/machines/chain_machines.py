@@ -1,0 +1,154 @@
+"""Serial chains of few axes: an arm without length in some poses, arms without a closed form, and held joints."""
+
+from __future__ import annotations
+
+import sympy as sp
+from sympy import pi
+
+from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
+from derive.mechanism import Joint, Mechanism, Parameter, Task, Turning, Vendor, length, linear, rotary
+
+Y, Z = linear("Y", "slide Y"), linear("Z", "slide Z")
+A1, A2, A3, A4, A5, A6, A7 = (rotary(f"A{k}", f"turn A{k}") for k in range(1, 8))
+L5 = length("link_5", "link 5", nominal=30.0)
+L1, L2, L3, L4 = (length(f"link_{k}", f"link {k}", nominal=v) for k, v in enumerate((50.0, 200.0, 300.0, 120.0), 1))
+
+
+def _chain(
+    name: str,
+    joints: tuple[Joint, ...],
+    chain: Chain,
+    parameters: tuple[Parameter, ...],
+    task: Task,
+    held: tuple[Joint, ...] = (),
+) -> Mechanism:
+    return Mechanism(
+        name=f"Kin_{name}",
+        vendor=Vendor.TEXTBOOK,
+        family="articulated",
+        source="the tests",
+        summary="A serial chain.",
+        joints=joints,
+        parameters=parameters,
+        chain=chain,
+        task=task,
+        offset_interface=False,
+        held=held,
+    )
+
+
+def _by_table(*rows: tuple[sp.Expr | float, float, sp.Expr | float, float]) -> Chain:
+    """The chain of a table in the modified convention: twist and length before the turn, angle and shift of it."""
+    chain = Chain(())
+    for twist, length_before, turn, shift in rows:
+        chain = chain * Rx(twist) * Tx(length_before) * Rz(turn) * Tz(shift)
+    return chain
+
+
+WITHOUT_ARM = {
+    "finger on a rocker on a slide": _chain(
+        "Finger", (Y, A1, A2), Ty(Y) * Tz(L1) * Rx(A1) * Tx(L2) * Ry(A2) * Tz(L3), (L1, L2, L3), Task("xyz")
+    ),
+    "arm whose wrist may lie on its second axis": _chain(
+        "Kneeling",
+        (A1, A2, A3, A4, A5, A6),
+        Ry(A1) * Tz(L1) * Rz(A2) * Tz(L2) * Rx(-A3) * Ty(L3) * Rz(A4) * Rx(A5) * Rz(A6) * Tz(L4),
+        (L1, L2, L3, L4),
+        Task("xyz", Turning.FULL),
+    ),
+    "finger beside a rocker on a slide": _chain(
+        "Beside",
+        (Y, A1, A2),
+        Ty(Y) * Tz(L1) * Rx(A1) * Tx(L2) * Ry(A2) * Tz(L3) * Ty(L4),
+        (L1, L2, L3, L4),
+        Task("xyz"),
+    ),
+    "finger that two rockers in a row turn": _chain(
+        "TwoRockers", (A1, A2, A3), Rx(-A1) * Tz(L1) * Rx(A2) * Ry(-A3) * Tx(L2) * Tz(L4), (L1, L2, L4), Task("xyz")
+    ),
+    "slide that a head points, beside its axis": _chain(
+        "Pointed",
+        (Y, A1, A2, A3, Z),
+        Ty(Y) * Rz(-A1) * Tx(L1) * Ry(A2) * Rz(A3) * Tx(L3) * Tz(Z),
+        (L1, L3),
+        Task("xyz", Turning.DIRECTION),
+    ),
+}
+"""Joints fold the arm of a later joint onto its axis: that joint is free there. In the last its size changes alone."""
+
+FROM_FLANGE = {
+    "seven axes by a table, the last held": _chain(
+        "Panda",
+        (A1, A2, A3, A4, A5, A6, A7),
+        _by_table(
+            (0, 0, A1, 0.333),
+            (-pi / 2, 0, A2, 0),
+            (pi / 2, 0, A3, 0.316),
+            (pi / 2, 0.0825, A4, 0),
+            (-pi / 2, -0.0825, A5, 0.384),
+            (pi / 2, 0, A6, 0),
+            (pi / 2, 0.088, A7, 0.107),
+        ),
+        (),
+        Task("xyz", Turning.FULL),
+        held=(A7,),
+    ),
+    "seven axes with an elbow and a wrist beside them, the last held": _chain(
+        "BesideHeld",
+        (A1, A2, A3, A4, A5, A6, A7),
+        Rz(A1) * Ry(A2) * Rz(A3) * Tz(L3) * Tx(L1) * Ry(A4) * Tz(L2) * Rz(A5) * Ry(A6) * Tx(L5) * Rz(A7) * Tz(L4),
+        (L1, L2, L3, L4, L5),
+        Task("xyz", Turning.FULL),
+        held=(A7,),
+    ),
+}
+"""With the last joint known the shoulder, seen from the flange, gives the joints of the wrist."""
+
+OF_DEGREE_FOUR = {
+    "three axes with offsets everywhere": _chain(
+        "Ortho",
+        (A1, A2, A3),
+        Tz(L2) * Rz(A1) * Tx(L1) * Rx(pi / 2) * Rz(A2) * Tz(L5) * Tx(L3) * Rx(pi / 2) * Rz(A3) * Tz(L1) * Tx(L4),
+        (L1, L2, L3, L4, L5),
+        Task("xyz"),
+    ),
+    "three axes that lean by 60 degrees": _chain(
+        "Leaning",
+        (A1, A2, A3),
+        Rz(A1) * Tx(L1) * Rx(pi / 3) * Rz(A2) * Tz(L5) * Tx(L3) * Rx(pi / 3) * Rz(A3) * Tx(L4),
+        (L1, L3, L4, L5),
+        Task("xyz"),
+    ),
+}
+"""With one joint known a pair gives the next; the residual is a quartic of the tangent of its half angle."""
+
+_ELBOW = 1.3849179
+ANGLES_AS_NUMBERS = _chain(
+    "AnglesByTable",
+    (A1, A2, A3, A4, A5, A6),
+    _by_table(
+        (0, 0, A1, 0.267),
+        (-pi / 2, 0, A2 - _ELBOW, 0),
+        (0, 0.28948866, A3 + _ELBOW, 0),
+        (-pi / 2, 0.0775, A4, 0.3425),
+        (pi / 2, 0, A5, 0),
+        (-pi / 2, 0.076, A6, 0.097),
+    ),
+    (),
+    Task("xyz", Turning.FULL),
+)
+"""Six axes by a table with angles as numbers, which is searched: a machine with branches that the compiler names by the
+joints and by angles of its own, which count in degrees."""
+
+CHAINS = {**WITHOUT_ARM, **FROM_FLANGE, **OF_DEGREE_FOUR}
+CHAIN_SOLUTIONS = {
+    "finger on a rocker on a slide": 4,
+    "arm whose wrist may lie on its second axis": 8,
+    "finger beside a rocker on a slide": 4,
+    "finger that two rockers in a row turn": 4,
+    "slide that a head points, beside its axis": 4,
+    "three axes with offsets everywhere": 4,
+    "three axes that lean by 60 degrees": 4,
+    "seven axes by a table, the last held": 8,
+    "seven axes with an elbow and a wrist beside them, the last held": 8,
+}
