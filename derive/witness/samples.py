@@ -113,7 +113,7 @@ def _first_missing(chosen: Samples, count: int) -> int:
 
 
 def _always_singular(mechanism: Mechanism, machines: dict[str, Array], own: int) -> str:
-    """What to say of a machine without a regular pose, the one with the number `own`: which of its dimensions is zero."""
+    """What to say of the machine with the number `own`, which has no regular pose: which of its dimensions is zero."""
     zero = [f"{p.name} = 0" for p in mechanism.parameters if p.nominal and machines[p.name][own] == 0.0]
     if zero:
         return f"with {' and '.join(zero)} the machine has no regular pose: state what is never zero as a length"
