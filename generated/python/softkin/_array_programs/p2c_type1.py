@@ -72,9 +72,9 @@ class ArrayPrograms(Programs):
         foot_y = 0.5 * centre_1_to_2_y
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         span_1_x = x - k.tcp_displacement_minus_displacement  # rod 1: known part of its vector
-        branch_knee_1 = (span_1_x * sin_a1 - y * cos_a1) / k.outer_arm
+        branch_knee_1 = (span_1_x * sin_a1 - y * cos_a1) * k.one_by_outer_arm
         span_2_x = k.tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
-        branch_knee_2 = (-y * cos_a2 - span_2_x * sin_a2) / k.outer_arm
+        branch_knee_2 = -k.one_by_outer_arm * (y * cos_a2 + span_2_x * sin_a2)
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(

@@ -52,8 +52,8 @@ class ArrayPrograms(Programs):
         x = foot_x + pivot_1_x - k.centre_1_to_2_y * height_by_normal
         foot_y = k.centre_1_to_2_y * foot_fraction
         y = foot_y + k.rail_y_1 + centre_1_to_2_x * height_by_normal
-        branch_carriage_1 = (x - pivot_1_x) / k.arm_length_1
-        branch_carriage_2 = (pivot_2_x - x) / k.arm_length_2
+        branch_carriage_1 = (x - pivot_1_x) * k.one_by_arm_length_1
+        branch_carriage_2 = k.one_by_arm_length_2 * (pivot_2_x - x)
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
