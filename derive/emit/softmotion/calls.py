@@ -10,7 +10,7 @@ import sympy as sp
 from derive.emit.softmotion.block import Block
 from derive.emit.st.contract import Parameter, Signature
 from derive.emit.st.expression import is_size_test, literal
-from derive.emit.st.layout import indented, wrapped
+from derive.emit.st.layout import INSIDE, WIDTH, indented, wrapped
 from derive.emit.st.names import joined, stored_name
 from derive.emit.st.stretches import shares_of
 from derive.ir.constants import (
@@ -126,7 +126,7 @@ def _is_named(block: Block) -> tuple[str, ...]:
 
 def _admitted(block: Block) -> tuple[str, ...]:
     parts = [f"Softkin_AdmitsBranch(cd.abyData[{b.byte}], {b.choice})" for b in block.branches]
-    return tuple(wrapped(f"IF {' AND '.join(parts)} THEN"))
+    return tuple(wrapped(f"IF {' AND '.join(parts)} THEN", WIDTH - 2 * INSIDE))  # inside of ELSE and FOR
 
 
 def _tie(kinematics: Kinematics) -> str:
@@ -150,4 +150,4 @@ def _distance(kinematics: Kinematics, block: Block, read: set[str]) -> tuple[str
         return tuple(lines)
     largest = literal(float(LARGEST))
     numbers = " AND ".join(f"({reference} >= -{largest}) AND ({reference} <= {largest})" for reference in unread)
-    return (*wrapped(f"IF {numbers} THEN"), *indented(lines), "END_IF")
+    return (*wrapped(f"IF {numbers} THEN", WIDTH - 4 * INSIDE), *indented(lines), "END_IF")

@@ -105,7 +105,7 @@ def _body(body: Sequence[Item], printer: StructuredText, refusal: Refusal, width
             yield from commented([*call_lines(first, printer, refusal), ""], respelled(first.note, printer.names))
             continue
         if isinstance(first, Iterate):
-            step = list(_body(first.step, printer, refusal))
+            step = list(_body(first.step, printer, refusal, width - INSIDE))
             lines = list(loop_lines(first, step, printer, refusal.of_loop(first)))
             yield from ("", *commented(lines, respelled(first.note, printer.names)), "")
             continue

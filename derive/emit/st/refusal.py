@@ -9,7 +9,7 @@ import sympy as sp
 
 from derive.emit.st.contract import Signature
 from derive.emit.st.expression import StructuredText
-from derive.emit.st.layout import conjunction, indented, wrapped
+from derive.emit.st.layout import INSIDE, WIDTH, conjunction, indented, wrapped
 from derive.ir.program import Iterate, Require, Status
 from derive.ir.reason import OtherTurn
 from derive.report.reasons import Reasons
@@ -75,7 +75,7 @@ class Explained(Refusal):
             parts = [text for c in check.conditions for text in printer.parts(c)]
             yield from conjunction("IF NOT (", parts, ") THEN")
             if check.missing is not None:
-                yield from indented(wrapped(f"{MISSING} := {printer.print(check.missing)};"))
+                yield from indented(wrapped(f"{MISSING} := {printer.print(check.missing)};", WIDTH - 3 * INSIDE))
             yield from indented([*self._numbered(check.reason, check.turns, printer), *self.of(check.status)])
             yield "END_IF"
 
