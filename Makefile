@@ -28,7 +28,8 @@ test: $(READY)
 quick: $(READY)
 	$(RUN) -m pytest -n 2 --dist loadgroup -m quick tests/unit tests/harness tests/catalogue tests/text
 
-bench: $(BENCH)/ready
+bench: $(READY) $(BENCH)/ready
+	PYTHONPATH=generated/python $(RUN) -m bench.blocks
 	PYTHONPATH=generated/python $(BENCH)/bin/python -m bench
 
 $(BENCH)/ready: bench/requirements.txt

@@ -3,7 +3,8 @@ bit.
 
 A frame may have passed through single precision. The repair keeps the direction of the tool: z is normalised, x is made
 perpendicular to it and normalised, and y = z × x. It runs once a call, before everything else; all other programs read
-a rotation that is orthogonal to all digits.
+a rotation that is orthogonal to all digits. Nearly every frame is a rotation to rounding, which `surely_exact` tells
+with half of the operations.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from derive.equations.axes import finite
 from derive.ir.constants import (
     EXACT_ROTATION,
     ROTATION,
+    SURE_ROTATION,
 )
 from derive.ir.passes import normalise
 from derive.ir.primitives import (
@@ -69,6 +71,19 @@ def rotation_program() -> Program:
     return normalise(
         "rotation", body, [Output(r.name, let.name) for r, let in zip(ROTATION_ENTRIES, chosen, strict=True)]
     )
+
+
+@cache
+def surely_exact() -> tuple[sp.Basic, ...]:
+    """The conditions that x and y are at right angles and of length one, and z is x × y: the program then changes
+    nothing.
+
+    The bound is so small that all of |R^T R - I| is below `EXACT_ROTATION`: z z differs from one by less than two and a
+    half bounds more than x x and y y together.
+    """
+    x, y, z = (_GIVEN[:, k] for k in range(3))
+    errors = [x.dot(x) - 1, y.dot(y) - 1, x.dot(y), *(x.cross(y) - z)]
+    return tuple(sp.Le(sp.Abs(error), SURE_ROTATION) for error in errors)
 
 
 def _small(errors: list[Let], why: Why) -> Require:

@@ -30,6 +30,9 @@ ROTATION = sp.Float("1e-4")
 too."""
 EXACT_ROTATION = sp.Float("1e-12")
 """A rotation nearer to one than this is used as it is; one that is further away is repaired."""
+SURE_ROTATION = sp.Float("1e-13")
+"""A matrix that misses x x = y y = 1, x y = 0 and z = x × y by no more than this is nearer to a rotation than
+`EXACT_ROTATION`."""
 PLANE = sp.Float("1e-6")
 """How far a planar machine's commanded z may be from its plane, per unit of reach."""
 LIMIT = sp.Float("1e-9")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
 from functools import cache, partial
 from operator import itemgetter
 
@@ -49,6 +52,32 @@ from derive.kept import kept_by_identity
 
 Array = NDArray[np.float64]
 _SHIFT = 180.0 + float(EDGE)
+
+
+@dataclass
+class Repeats:
+    """How often the bodies of loops have run, for all rows together."""
+
+    trials: int = 0
+    """Trials of searches for a root."""
+    finished: int = 0
+    """Roots that were looked at."""
+    passes: int = 0
+    """Passes of iterations."""
+
+
+_REPEATS: ContextVar[Repeats | None] = ContextVar("repeats", default=None)
+
+
+@contextmanager
+def repeats_counted() -> Iterator[Repeats]:
+    """What runs inside is counted."""
+    found = Repeats()
+    token = _REPEATS.set(found)
+    try:
+        yield found
+    finally:
+        _REPEATS.reset(token)
 
 
 def nearest_period(value: Array, centre: Array) -> Array:
@@ -237,6 +266,8 @@ def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]
     looked = np.broadcast_to(evaluate(search.wanted, known), shape) & (status == Status.OK)
     rows = {k: np.broadcast_to(v, shape)[looked] for k, v in known.items()}
 
+    counted = _REPEATS.get() or Repeats()
+
     def at(program: Program, place: At) -> list[Array]:
         if not len(place.rows):
             return [np.zeros(0, dtype=bool if is_condition(o.value) else float) for o in program.outputs]
@@ -244,12 +275,17 @@ def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]
         outputs, _ = run(program, there | {s.name: v for s, v in zip(PLACE, place[1:], strict=True)})
         return [np.broadcast_to(outputs[o.name], place.joint.shape) for o in program.outputs]
 
+    def tried(place: At) -> Array:
+        counted.trials += len(place.rows)
+        return np.stack(at(search.trial, place), axis=1)
+
     def finished(place: At) -> tuple[NDArray[np.bool_], Array]:
+        counted.finished += len(place.rows)
         fits, *values = at(search.finish, place)
         return np.asarray(fits, dtype=bool), np.stack(values, axis=1)
 
     start = np.broadcast_to(evaluate(search.start, known), shape)[looked]
-    found, values = nearest(lambda place: np.stack(at(search.trial, place), axis=1), finished, start)
+    found, values = nearest(tried, finished, start)
     for name, column in zip(search.names, (found, *values.T), strict=True):
         known[name.name] = np.zeros(shape, dtype=column.dtype)
         known[name.name][looked] = column
@@ -260,7 +296,9 @@ def _iterate(loop: Iterate, known: dict[str, Array], status: NDArray[np.object_]
     start = [_as_declared(evaluate(value, known), name) for name, value in zip(loop.state, loop.start, strict=True)]
     known.update(zip((name.name for name in loop.state), start, strict=True))
     done = np.zeros(status.shape, dtype=bool)
+    counted = _REPEATS.get() or Repeats()
     for _ in range(loop.limit):
+        counted.passes += int(np.sum(~done & (status == Status.OK)))
         _execute(loop.step, known, status)
         done = np.broadcast_to(evaluate(loop.done, known), status.shape)
         if np.all(done | (status != Status.OK)):

@@ -164,8 +164,12 @@ def forward_program(mechanism: Mechanism, forward: Forward, margins: tuple[Let, 
 
 
 def orientation_program(forward: Forward) -> Program:
-    """The rotation alone."""
-    return normalise("orientation", forward.statements, _rotation_outputs(forward))
+    """The rotation alone. Of a plate that keeps its orientation it is a constant, whatever numbers the axes are."""
+    outputs = _rotation_outputs(forward)
+    statements = forward.statements
+    if not any(o.value.free_symbols for o in outputs):
+        statements = tuple(s for s in statements if isinstance(s, Require) and s.otherwise is Status.BAD_INPUT)
+    return normalise("orientation", statements, outputs)
 
 
 def _rotation_outputs(forward: Forward) -> list[Output]:

@@ -196,7 +196,7 @@ def heading_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
     """The heading of the commanded rotation; there is none where the tool points exactly the opposite way."""
     along, across = real("heading_along"), real("heading_across")
     length, divisor = real("heading_length"), real("heading_divisor")
-    determined = sp.Gt(length, FREE_ANGLE)
+    determined = sp.Or(sp.Gt(sp.Abs(along), FREE_ANGLE), sp.Gt(sp.Abs(across), FREE_ANGLE))
     cos_value, sin_value = heading_parts(mechanism)
     return (
         Let(

@@ -34,6 +34,8 @@ class Case:
     """The position, then the rotation by rows."""
     configuration: Bytes = ()
     is_singular: bool = False
+    operations: int = 0
+    """The floating operations of the call, at most; those of a loop as often as the reference ran it."""
 
 
 @dataclass(frozen=True)

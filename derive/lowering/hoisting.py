@@ -71,6 +71,8 @@ class Gathering(Rewriting):
                 if fixed:
                     return self.graph.product([self.graph.product(fixed, fixed_below), *others], others_below)
                 return self.graph.product(others, [self.graph.product(fixed_below), *others_below])
+            if others and fixed_below and any(self.constant(v.node) for v in fixed_below):
+                return self.graph.product([self.graph.product([], fixed_below), *others], others_below)
         return super().rewritten(node, parts)
 
     def _apart(self, values: Iterable[Value]) -> tuple[list[Value], list[Value]]:

@@ -15,11 +15,13 @@ from functools import cache
 
 import sympy as sp
 
-from derive.equations.rotation_repair import rotation_program
+from derive.equations.rotation_repair import rotation_program, surely_exact
 from derive.ir.constants import (
+    DEGREE,
     FINISHED,
     TRIALS,
 )
+from derive.ir.interpret import Repeats
 from derive.ir.primitives import (
     Atan2,
     NearestOnArc,
@@ -40,6 +42,7 @@ from derive.ir.tree import If, Item
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.scheduling import structured
+from derive.report.branch_stretches import stretches_of
 
 _BINARY_FRACTIONS = (2, 4, 8, 16)
 """The denominators that are written as a decimal factor."""
@@ -99,10 +102,16 @@ class Costs:
     forward: Cost
     inverse: Cost
     """With a configuration that names every branch, away from singular poses."""
+    tried: Cost
+    """A branch of an open configuration, with its distance from the reference."""
+    limits: Cost
+    """The test of the limits."""
     automatic: Cost
     """With a configuration that leaves every branch open; equal to `inverse` where there are no branches."""
+    exact: Cost
+    """The check of a commanded rotation that is exact, once a call; nothing where the rotation is not read."""
     repair: Cost
-    """The repair of the commanded rotation, once a call; nothing where the rotation is not read."""
+    """Check and repair of any other commanded rotation, once a call; nothing likewise."""
     corners: Cost
     """What a branch costs more at a singular pose: the second sides of choices."""
     bounds: tuple[Bound, ...]
@@ -113,11 +122,13 @@ _PRIMITIVES: dict[type[sp.Basic], Cost] = {
     sp.cos: Cost(trigonometric=1),
     Root: Cost(roots=1),
     Atan2: Cost(additions=1, divisions=1, trigonometric=1),
-    NearestPeriod: Cost(additions=4, multiplications=1, divisions=1),
-    NearestOnArc: Cost(additions=5, multiplications=3, divisions=1),
+    NearestPeriod: Cost(additions=4, multiplications=2),
+    NearestOnArc: Cost(additions=5, multiplications=2),
 }
 """The cost of the shared functions of Structured Text."""
-_PERIOD_BYTE = Cost(additions=3, divisions=1)
+_OF_A_TRIAL = Cost(additions=24, multiplications=24, divisions=3, roots=1)
+"""What the search itself does for a trial, at most: the place of the trial, the cells on either side of it."""
+_PERIOD_BYTE = Cost(additions=3, multiplications=1)
 """The number of the turn in which an axis value lies."""
 
 
@@ -127,21 +138,33 @@ def costs_of(kinematics: Kinematics) -> Costs:
     periods, axes = len(kinematics.period_joints), len(kinematics.distance_joints)
     limits, branch = _with_refusals(kinematics.limits), _with_refusals(kinematics.branch, _regular)
     # The distance of a solution from the reference, a sum of squares, and its comparison with the least so far
-    tried = branch + Cost(additions=3 * axes, multiplications=axes) if kinematics.branches else branch
+    tried = branch + Cost(additions=3 * axes, multiplications=axes)
+    exact = _total(map(expression_cost, surely_exact()))
     return Costs(
         forward=cost_of(kinematics.forward) + _PERIOD_BYTE * periods,
-        inverse=tried + limits,
-        automatic=tried * 2 ** len(kinematics.branches) + limits,
-        repair=_with_refusals(rotation_program()) if kinematics.reads_rotation else Cost(),
+        inverse=branch + limits,
+        tried=tried,
+        limits=limits,
+        automatic=_all_branches(kinematics, tried) + limits if kinematics.branches else branch + limits,
+        exact=exact if kinematics.reads_rotation else Cost(),
+        repair=exact + _with_refusals(rotation_program()) if kinematics.reads_rotation else Cost(),
         corners=_with_refusals(kinematics.branch) + branch * -1,
         bounds=tuple(dict.fromkeys(b for p in (kinematics.forward, kinematics.branch) for b in _bounds(p))),
     )
 
 
+def _all_branches(kinematics: Kinematics, tried: Cost) -> Cost:
+    """The cost of all branches: what several of them share is computed once."""
+    slots = 1 << len(kinematics.branches)
+    shared = (s for s in stretches_of(kinematics.branch) if s.is_shared)
+    saved = (_total(_item(i, _regular) for i in s.items) * (slots - s.sides) for s in shared)
+    return tried * slots + _total(saved) * -1
+
+
 def _with_refusals(program: Program, of_sides: _OfSides = _most) -> Cost:
     """The cost with a refusal that computes how much is missing: nothing behind it is then computed."""
     worst, before = cost_of(program, of_sides), Cost()
-    for item in structured(program):
+    for item in (item for stretch in stretches_of(program) for item in stretch.items):
         before += _item(item, of_sides)
         if isinstance(item, Require):
             worst = _most(worst, *(before + expression_cost(e) for e in _amounts(item)))
@@ -153,11 +176,11 @@ def _amounts(require: Require) -> tuple[sp.Expr, ...]:
     return () if reason is None or reason.amount is None else (reason.amount,)
 
 
-def cost_of(program: Program, of_sides: _OfSides = _most) -> Cost:
+def cost_of(program: Program, of_sides: _OfSides = _most, repeats: Repeats | None = None) -> Cost:
     """The cost of one run of a program in the worst case. of_sides: what counts of the costs of
-    both sides of a choice.
+    both sides of a choice; repeats: how often the bodies of loops run, else as often as they may.
     """
-    items = (_item(item, of_sides) for item in structured(program))
+    items = (_item(item, of_sides, repeats) for item in structured(program))
     return _total(items) + _total(map(expression_cost, (o.value for o in program.outputs)))
 
 
@@ -180,14 +203,14 @@ def solve_cost(size: int, columns: int) -> Cost:
     return Cost(additions=eliminated + back, multiplications=eliminated + back + by_inverses + 2 * size, divisions=size)
 
 
-def _item(item: Item, of_sides: _OfSides) -> Cost:
+def _item(item: Item, of_sides: _OfSides, repeats: Repeats | None = None) -> Cost:
     if isinstance(item, If):
-        sides = (_total(_item(inner, of_sides) for inner in side) for side in (item.holds, item.fails))
+        sides = (_total(_item(inner, of_sides, repeats) for inner in side) for side in (item.holds, item.fails))
         return expression_cost(item.condition) + of_sides(*sides)
-    return _statement(item)
+    return _statement(item, repeats)
 
 
-def _statement(statement: Statement) -> Cost:
+def _statement(statement: Statement, repeats: Repeats | None = None) -> Cost:
     if isinstance(statement, Let):
         return expression_cost(statement.value)
     if isinstance(statement, Require):
@@ -196,13 +219,16 @@ def _statement(statement: Statement) -> Cost:
         entries = _total(map(expression_cost, (*statement.matrix, *statement.right)))
         return entries + solve_cost(statement.size, statement.columns)
     if isinstance(statement, Call):
-        return _total(expression_cost(value) for _, value in statement.given) + cost_of(statement.program)
+        given = _total(expression_cost(value) for _, value in statement.given)
+        return given + cost_of(statement.program, repeats=repeats)
     if isinstance(statement, FindRoot):
-        return cost_of(statement.trial) * TRIALS + cost_of(statement.finish) * FINISHED
+        tried, looked = (TRIALS, FINISHED) if repeats is None else (repeats.trials, repeats.finished)
+        return (cost_of(statement.trial) + _OF_A_TRIAL) * tried + cost_of(statement.finish) * looked
     one_pass = _total(map(_statement, statement.step)) + _total(
         map(expression_cost, (statement.done, *statement.following))
     )
-    return _total(map(expression_cost, statement.start)) + one_pass * statement.limit
+    passes = statement.limit if repeats is None else repeats.passes
+    return _total(map(expression_cost, statement.start)) + one_pass * passes
 
 
 def _product(node: sp.Expr) -> Cost:
@@ -213,7 +239,8 @@ def _product(node: sp.Expr) -> Cost:
     for factor in sp.Mul.make_args(rest):
         base, exponent = factor.as_base_exp() if isinstance(factor, sp.Pow) else (factor, sp.Integer(1))
         times = abs(int(exponent))
-        above, below = (above + times, below) if exponent > 0 else (above, below + times)
+        is_above = exponent > 0 or base == DEGREE  # one radian in degrees is a constant, too
+        above, below = (above + times, below) if is_above else (above, below + times)
         inner += expression_cost(base) * times
     numerator = abs(coefficient)
     if isinstance(coefficient, sp.Rational) and coefficient.q not in _BINARY_FRACTIONS:

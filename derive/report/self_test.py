@@ -24,6 +24,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import has_length
 from derive.kinematics.reference_cases import Bytes, Called, Case, Reals, SelfTest
 from derive.kinematics.sampling import sample_axes
+from derive.report.effort import with_operations
 from derive.report.reference_calls import Machine, branches, forward, inverse, machine_with, margins
 
 _CANDIDATES, _LOOP_CANDIDATES = 300, 3000
@@ -60,6 +61,7 @@ def self_test(kinematics: Kinematics) -> SelfTest:
         cases.append(Case(Called.INITIALIZE, index, machine.status))
         own = found.cases if machine is nominal else _once_more(machine, found)
         cases += [replace(case, machine=index) for case in own]
+        cases = [case if case.operations else with_operations(case, machine) for case in cases]
     return SelfTest(tuple(m.given for m in machines), tuple(cases))
 
 

@@ -65,7 +65,7 @@ REFUSED = {
         "Softkin_ReadMatrix(m := f.mR, aElements := rot, eOrder := matrixOrder);",
         "VAR_IN_OUT CONSTANT rot",
     ),
-    "a write outside Initialize": Break(_SINGULAR, "sinA2 := ", "machineScale := ", "Initialize"),
+    "a write outside Initialize": Break(_SINGULAR, "sinA2 := ", "linkLength2 := ", "Initialize"),
     "a write to an input of the block": Break(
         _FORWARD, "f.vT.dX := x;", "dLinkLength1 := x;", "writes the input dLinkLength1"
     ),
@@ -90,12 +90,12 @@ REFUSED = {
 }
 
 FAULTS = {
-    "a division by zero": Break(_BRANCH, "angleA1/DEGREE", "angleA1/0.0", "division by zero"),
-    "a root of a negative": Break(_BRANCH, "reach := Softkin_Root(", "reach := SQRT(-1.0E12 + ", "SQRT of a negative"),
+    "a division by zero": Break(_BRANCH, "angleA1*RADIAN", "angleA1/0.0", "division by zero"),
+    "a root of a negative": Break(_BRANCH, "reach := SQRT(", "reach := SQRT(-1.0E12 + ", "SQRT of a negative"),
     "a product that overflows": Break(_FORWARD, "cosA1 := COS(a1)", "cosA1 := 1.0E200*COS(a1)*1.0E200", "not finite"),
     "an unused axis that is read": Break(_FORWARD, "a.a2 - offsetA3", "a.a2 - a.a4", "not finite"),
     "an integer that overflows": Break(_INVERSE, ":= slot MOD 2 + 1", ":= slot + 32767", "overflow"),
-    "numbers that are not checked": Break("FUNCTION Softkin_IsNumber", ":= (", ":= TRUE OR (", "not finite"),
+    "numbers that are not checked": Break(_FORWARD, "(a.a0 >= -1.0E9) AND (a.a0 <= 1.0E9) AND ", "", "not finite"),
 }
 
 WRONG = {
@@ -110,7 +110,11 @@ WRONG = {
     "AxesToCartesian: a byte without a meaning": Break(_FORWARD, "cd := ", "configBytes.abyData[30] := 7;\ncd := "),
     "CartesianToAxes: a tie": Break(_INVERSE, "least - 1.0E-6", "least + 1.0E6"),
     "CartesianToAxes: a tolerance": Break(_BRANCH, "ABS(cosA2) <= 1.0000000000005", "ABS(cosA2) <= 0.9"),
-    "CartesianToAxes: an error": Break(_BRANCH, "Softkin_Names.Unreachable", "Softkin_Names.InvalidCoupling"),
+    "CartesianToAxes: an error": Break(
+        _BRANCH,
+        "iReason := 2;\n    SolveBranch := Softkin_Names.Unreachable",
+        "iReason := 2;\n    SolveBranch := Softkin_Names.InvalidCoupling",
+    ),
     "CartesianToAxes: a limit": Break(_LIMITS, "(a.a3 <= highestA4)", "(a.a3 <= 2.0*highestA4)"),
     "CartesianToAxes: an output before a refusal": Break(
         _INVERSE, "status := TestLimits(", "a := solution;\nstatus := TestLimits("

@@ -117,18 +117,6 @@ def test_admitted_branches(byte: int, admitted: set[int]) -> None:
     assert {branch for branch in (1, 2) if call("AdmitsBranch", byte, branch)} == admitted
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300, -1.1e9])
-def test_what_is_no_number(value: float) -> None:
-    """NaN, infinite and too large values are no numbers."""
-    assert not call("IsNumber", value)
-
-
-@given(lengths)
-def test_what_is_a_number(value: float) -> None:
-    """Every number up to the largest input is a number."""
-    assert call("IsNumber", value)
-
-
 @pytest.mark.parametrize("order", ["rows", "columns"])
 def test_the_storage_order_is_found(order: str) -> None:
     """Whatever the order, a rotation arrives as it is meant."""

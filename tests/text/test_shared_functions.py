@@ -110,20 +110,6 @@ def test_floor_leaves_what_no_integer_holds(value: float) -> None:
     assert LIBRARY.function("Softkin_Floor")(value) == value
 
 
-@pytest.mark.parametrize("value", NO_NUMBERS)
-def test_what_is_no_number(value: float) -> None:
-    """NaN, infinite and too large values are no numbers."""
-    assert LIBRARY.function("Softkin_IsNumber")(value) is False
-
-
-@given(value=st.floats(-1e9, 1e9))
-@example(1e9)
-@example(-1e9)
-def test_what_is_a_number(value: float) -> None:
-    """Every number of reasonable size is a number."""
-    assert LIBRARY.function("Softkin_IsNumber")(value) is True
-
-
 @given(axis=st.floats(-1e9, 1e9) | st.integers(-300, 300).map(lambda n: 180.0 * n))
 @example(180.0 - 1e-9)
 @example(-180.0 - 1e-9)

@@ -82,8 +82,7 @@ class ScalarPrinter(ExpressionPrinter):
     def __init__(self, *, modulo_turns: bool = False, is_trusted: bool = False) -> None:
         """modulo_turns: whether -180 and 180 degrees are the same, so that the sign of a zero sine does not matter.
 
-        is_trusted: whether sine and cosine of an angle are known not to vanish together. The conversion to degrees is
-        then a multiplication, which is faster than the division.
+        is_trusted: whether sine and cosine of an angle are known not to vanish together.
         """
         self.modulo_turns, self.is_trusted = modulo_turns, is_trusted
 
@@ -92,7 +91,7 @@ class ScalarPrinter(ExpressionPrinter):
             return f"sqrt({self.print(node.args[0])})", ATOM
         if isinstance(node, Grouped):
             return self._spell(node.args[0])
-        if self.is_trusted and node.is_Mul and 1 / DEGREE in node.args:
+        if node.is_Mul and 1 / DEGREE in node.args:
             return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT
         if (
             isinstance(node, sp.LessThan)

@@ -3,14 +3,15 @@ on arrays."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
 from derive.emit.python.methods import ROTATION, ROTATION_ARGUMENT
-from derive.emit.python.printer import primitives_in
+from derive.emit.python.printer import ScalarPrinter, primitives_in
 from derive.emit.python.program import Method, scalar_body
 from derive.emit.python.refusal import explained
-from derive.equations.rotation_repair import rotation_program
+from derive.equations.rotation_repair import rotation_program, surely_exact
 from derive.ir.passes import untold
 from derive.report.reasons import reasons_of_rotation
 
@@ -19,7 +20,7 @@ def rotation_functions() -> dict[str, object]:
     """The values that the templates read: the bodies of both functions, and the names that they call."""
     summary = "The rotation as it is used."
     method = Method("made_rotation", summary, rotation_program(), (ROTATION_ARGUMENT,), "Rotation", ROTATION)
-    plain = scalar_body(method, explained(reasons_of_rotation()))
+    plain = _with_shortcut(scalar_body(method, explained(reasons_of_rotation())))
     arrays = array_body(replace(method, program=untold(method.program)))
     return {
         "plain": plain,
@@ -27,3 +28,12 @@ def rotation_functions() -> dict[str, object]:
         "arrays": arrays,
         "helpers": sorted(named_in(arrays, CALLED | TYPES), key=lambda n: (n[0].islower(), n)),
     }
+
+
+def _with_shortcut(lines: Sequence[str]) -> list[str]:
+    """The lines, with the end of nearly every call in front of the first value: the rotation is exact."""
+    first = rotation_program().lets()[0].name.name
+    place = next(k for k, line in enumerate(lines) if line.startswith(f"{first} = "))
+    conditions = " and ".join(map(ScalarPrinter().print, surely_exact()))
+    shortcut = [f"if {conditions}:", f"    return {ROTATION_ARGUMENT.name}"]
+    return [*lines[:place], *shortcut, *lines[place:]]

@@ -18,7 +18,9 @@ from derive.ir.constants import (
     ONE_TURN,
     ROTATION,
 )
+from derive.ir.program import Status, shared
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.reference_cases import Called
 from derive.report.cost import Bound, Cost, Costs, costs_of
 from derive.report.reasons import workspace
 
@@ -42,6 +44,13 @@ _OPEN_TURN = (
     "block, too. For an axis with a wider range command the turn of a point-to-point movement. Where another turn "
     "would be inside the limits, Diagnose says so, and iTurn is its number."
 )
+_BOUNDED = "Every method is bounded: no loop runs without an end, and none waits. "
+_REENTRANT = "All other methods are re-entrant: the planning task and the bus task may call them at the same time."
+_TASKS = {
+    True: f"{_BOUNDED}Initialize and AxisSettings write variables of the block. {_REENTRANT}",
+    False: f"{_BOUNDED}Initialize alone writes variables of the block. {_REENTRANT}",
+}
+"""What holds for all methods, by whether drives pass their limits to the block."""
 _KINDS = {
     (True, False): "Position kinematics for a SoftMotion axis group. ",
     (False, True): "Orientation kinematics, to be combined with a position kinematics for a SoftMotion axis group. ",
@@ -83,7 +92,8 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
         drives=wrap(_DRIVES, _WIDTH) if block.has_settings else [],
         singularities=list(_singularities(kinematics)),
         workspace=list(_workspace(kinematics)),
-        costs=list(_costs(costs_of(kinematics), block)),
+        costs=[*_costs(costs_of(kinematics), block), *_looped(kinematics, costs_of(kinematics))],
+        tasks=wrap(_TASKS[block.has_settings], _WIDTH),
         notes=[line for note in mechanism.all_notes for line in _item(respelled(note, names))],
         verification=list(_verification(kinematics)),
     )
@@ -175,12 +185,35 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
         yield from wrap(text, _WIDTH)
 
 
+def _looped(kinematics: Kinematics, costs: Costs) -> Iterator[str]:
+    """Of a method with a loop what a call typically costs, what it costs in vain, and the worst case."""
+    cases = () if kinematics.self_test is None else kinematics.self_test.cases
+    programs = (
+        ("AxesToCartesian", Called.FORWARD, kinematics.forward, costs.forward),
+        ("CartesianToAxes", Called.INVERSE, kinematics.branch, costs.inverse + costs.repair),
+    )
+    for method, called, program, worst in programs:
+        if not any(bound.program == p.name for bound in costs.bounds for p in (program, *shared([program]))):
+            continue
+        calls = [c for c in cases if c.called is called]
+        found = ([c.operations for c in calls if (c.status is Status.OK) == ok] for ok in (True, False))
+        near, vain = (str(max(numbers)) if numbers else "not measured" for numbers in found)
+        yield from _item(
+            f"{method}, all operations: with the reference near {near}, without a solution {vain} (the most of the "
+            f"self-test), in the worst case {sum(worst.counts)}."
+        )
+
+
 def _costs(costs: Costs, block: Block) -> Iterator[str]:
     rows = [("AxesToCartesian", costs.forward), ("CartesianToAxes", costs.inverse)]
     if block.branches:
         rows[1:] = [("CartesianToAxes, one branch", costs.inverse)]
         rows.append((f"CartesianToAxes, all {block.slots} branches open", costs.automatic))
-    more = (("Repair of a frame, more", costs.repair), ("A branch at a singular pose, more", costs.corners))
+    more = (
+        ("Check of an exact frame, more", costs.exact),
+        ("Repair of a frame, more", costs.repair),
+        ("A branch at a singular pose, more", costs.corners),
+    )
     rows += [(what, cost) for what, cost in more if any(cost.counts)]
     yield from _table(_COST_HEAD, map(_cost_row, rows))
     if costs.bounds:

@@ -9,13 +9,16 @@ from dataclasses import dataclass, replace
 from jinja2 import Environment
 
 from derive.emit.softmotion.block import Block, constants, direct, setup_of
-from derive.emit.softmotion.calls import BranchCall, branch_call
+from derive.emit.softmotion.calls import BranchCall, branch_call, checks, without_checks
 from derive.emit.st.contract import Contract, Parameter, Signature
+from derive.emit.st.expression import StructuredText
+from derive.emit.st.layout import commented
 from derive.emit.st.names import input_name, parameter_name, stored_name
 from derive.emit.st.program import Printed, printed
-from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal
+from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal, Told
 from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st.shared import method_name, own_names, signature_of
+from derive.emit.st.stretches import shares_of
 from derive.equations.windows import limits_of_axis
 from derive.ir.program import FindRoot, Program, shared
 from derive.kept import kept_by_identity
@@ -23,6 +26,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import reasons_of, texts
 
 LIMITS_OF_AXIS = limits_of_axis()
+_BRANCHES = ("SolveBranch", "SolveOffsetBranch")
 
 _FIRST = (
     "Initialize",
@@ -103,11 +107,7 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
     for name in names:
         program = solved.get(name)
         if program is None:
-            call = (
-                branch_call(known["CartesianToAxes"], kinematics.branch, kinematics, block)
-                if name == "Diagnose"
-                else None
-            )
+            call = _call(name, kinematics.branch, kinematics, block, contract) if name == "Diagnose" else None
             yield _Source(known[name], programs.get(name), call)
             yield from _shared(programs.get(name), kinematics, contract, ready)
             if name == "Initialize" and block.has_settings:
@@ -115,15 +115,29 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
             if name == "GetPositionFromOrientation3":
                 yield _Source(_end_point(known[name], block, contract))
             continue
-        call = branch_call(known[name], program, kinematics, block)
+        call = _call(name, program, kinematics, block, contract)
         yield _Source(known[name], call=call)
         is_plain = name == "CartesianToAxes"
-        yield _Source(_explained(call.signature, block) if is_plain else call.signature, program)
+        solving = without_checks(program)
+        yield _Source(_explained(call.signature, block) if is_plain else call.signature, solving)
         yield from _shared(program, kinematics, contract, ready)
         if is_plain:
             yield _Source(
                 _explained(_check_limits(block, contract), block, turns=bool(block.periods)), kinematics.limits
             )
+
+
+def _call(name: str, program: Program, kinematics: Kinematics, block: Block, contract: Contract) -> BranchCall:
+    """The call of a branch in a public method, which checks the inputs first."""
+    public = contract.signatures["CartesianToAxes" if name == "Diagnose" else name]
+    errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
+    refusal = Refusal(public, errors, error)
+    if name == "Diagnose":
+        refusal = Told(contract.signatures[name], errors, error, reasons_of(kinematics))
+    printer = StructuredText(_positions(public) | spelled_inputs(kinematics))
+    found = checks(program)
+    lines = commented(refusal.lines(found, printer), found[0].comment) if found else []
+    return branch_call(public, program, kinematics, block, tuple(lines))
 
 
 def _programs(kinematics: Kinematics, block: Block, names: Sequence[str]) -> dict[str, Program | None]:
@@ -222,7 +236,7 @@ def _method(
 def _printed(source: _Source, program: Program, kinematics: Kinematics, block: Block, contract: Contract) -> Printed:
     signature = source.signature
     taken = {i.name for i in block.inputs} | {name for name, _ in block.fields} | {p.name for p in signature.parameters}
-    taken |= {"initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes", *contract.signatures}
+    taken |= {"initialized", "matrixOrder", "checkLimits", "DEGREE", "RADIAN", "NumAxes", *contract.signatures}
     taken |= {method_name(inner) for inner in (*kinematics.shared, LIMITS_OF_AXIS)}
     errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
     refusal = Refusal(signature, errors, error)
@@ -236,7 +250,8 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
     if source.is_shared:
         own = own_names(program, spelled)
         return printed(program, spelled | own, {o.name: own[o.name] for o in program.outputs}, taken, refusal)
-    return printed(program, _positions(signature) | spelled, {}, taken, refusal)
+    shares = shares_of(program) if signature.name in _BRANCHES else None
+    return printed(program, _positions(signature) | spelled, {}, taken, refusal, shares)
 
 
 def _positions(signature: Signature) -> dict[str, str]:

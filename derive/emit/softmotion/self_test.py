@@ -92,6 +92,7 @@ def _tables(cases: Sequence[Case], axes: int, size: int) -> Iterator[Table]:
         more = frames.index(case.frame or _NO_FRAME), data.index(case.configuration or (0,) * size)
         rows.append(tuple(map(str, (case.called.value, case.machine, answer, *places, *more))))
     yield _table("CASES", "INT", rows)
+    yield _column("OPERATIONS", "UDINT", [str(case.operations) for case in cases])
     if axes:
         yield _table("AXIS_VALUES", "LREAL", [tuple(map(literal, row)) for row in poses])
     yield _table("FRAMES", "LREAL", [tuple(map(literal, row)) for row in frames])
@@ -104,3 +105,10 @@ def _table(name: str, kind: str, rows: Sequence[Sequence[str]]) -> Table:
     lines = [line for row in rows for line in packed([f"{value}," for value in row])]
     lines[-1] = lines[-1].removesuffix(",")
     return Table(name, f"ARRAY[0..{len(rows) - 1}, 0..{len(rows[0]) - 1}] OF {kind}", tuple(lines))
+
+
+def _column(name: str, kind: str, values: Sequence[str]) -> Table:
+    """A table of one value a row."""
+    lines = packed([f"{value}," for value in values])
+    lines[-1] = lines[-1].removesuffix(",")
+    return Table(name, f"ARRAY[0..{len(values) - 1}] OF {kind}", tuple(lines))

@@ -6,11 +6,13 @@ from collections.abc import Mapping, Sequence
 
 import sympy as sp
 
-from derive.emit.expression import ExpressionPrinter
+from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter
 from derive.ir.constants import (
+    DEGREE,
     LARGEST,
 )
 from derive.ir.primitives import (
+    Root,
     Select,
 )
 
@@ -44,6 +46,11 @@ def is_size_test(condition: sp.Basic) -> bool:
     return bool(condition.lhs.args[0].is_Symbol)
 
 
+def is_sum_of_squares(value: sp.Expr) -> bool:
+    """Whether a value cannot be negative."""
+    return value.is_Add and all(term.is_Pow and term.exp == 2 for term in value.args)
+
+
 def is_larger(expression: sp.Basic) -> bool:
     """Whether a choice takes the larger of two values."""
     return isinstance(expression, Select) and expression.args[0] == sp.Gt(*expression.args[1:])
@@ -67,12 +74,26 @@ class StructuredText(ExpressionPrinter):
     def print(self, expression: sp.Basic) -> str:
         """The expression as text. The size of an input is tested by comparisons, which are defined for every input."""
         if is_size_test(expression):
-            return f"Softkin_IsNumber({self.print(expression.lhs.args[0])})"
+            return " AND ".join(f"({part})" for part in self.parts(expression))
         if is_larger(expression):
             return f"MAX({self.print(expression.args[2])}, {self.print(expression.args[1])})"
         if (limits := limits_of(expression)) is not None:
             return f"LIMIT({', '.join(map(self.print, limits))})"
         return super().print(expression)
+
+    def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if isinstance(node, Root) and is_sum_of_squares(node.args[0]):
+            return f"SQRT({self.print(node.args[0])})", ATOM
+        if node.is_Mul and 1 / DEGREE in node.args:
+            return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT
+        return super()._spell(node)
+
+    def parts(self, condition: sp.Basic) -> list[str]:
+        """A condition as conditions that all hold: the size of an input is tested by two comparisons."""
+        if not is_size_test(condition):
+            return [self.print(condition)]
+        value, largest = self.print(condition.lhs.args[0]), literal(float(LARGEST))
+        return [f"{value} >= -{largest}", f"{value} <= {largest}"]
 
     def name(self, symbol: sp.Symbol) -> str:
         """The spelling of a symbol."""

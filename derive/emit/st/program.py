@@ -14,6 +14,7 @@ from derive.emit.st.loops import LOCALS, declarations, kept, loop_lines, solve_l
 from derive.emit.st.names import respelled, spellings, type_name
 from derive.emit.st.refusal import Refusal
 from derive.emit.st.shared import OUTCOME, call_lines
+from derive.emit.st.stretches import KEPT, KNOWN, SIDE, Shares, stretch_lines
 from derive.ir.constants import (
     DEGREE,
 )
@@ -54,9 +55,14 @@ class Printed:
 
 
 def printed(
-    program: Program, given: Mapping[str, str], stored: Mapping[str, str], taken: Iterable[str], refusal: Refusal
+    program: Program,
+    given: Mapping[str, str],
+    stored: Mapping[str, str],
+    taken: Iterable[str],
+    refusal: Refusal,
+    shares: Shares | None = None,
 ) -> Printed:
-    """A program in Structured Text.
+    """A program in Structured Text. shares: the arrays through which branches share their stretches.
 
     given: the spellings of the values that it reads; stored: those of the values that it binds to instance variables.
     All other values are bound to temporary variables, whose names are not in `taken`.
@@ -64,12 +70,18 @@ def printed(
     items = structured(program)
     stored = {**stored, **kept(program.body)}
     own = {name.name: name for name in bound_in(items) if name.name not in stored}
-    temporaries = spellings(own, (*taken, *LOCALS, OUTCOME))
+    temporaries = spellings(own, (*taken, *LOCALS, OUTCOME, *((KNOWN, KEPT, SIDE) if shares else ())))
     printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})
+    side: tuple[str, ...] = ()
+    if shares is None:
+        body = _body(items, printer, refusal)
+    else:
+        side = (f"{SIDE} : INT;",) if shares.columns > 1 else ()
+        body = stretch_lines(program, printer, refusal, lambda part, width: _body(part, printer, refusal, width))
     return Printed(
         variables=tuple((temporaries[name], type_name(type_of(symbol))) for name, symbol in own.items()),
-        declarations=(*declarations(program.body), *_outcome(program, refusal)),
-        body="\n".join(_body(items, printer, refusal)),
+        declarations=(*declarations(program.body), *_outcome(program, refusal), *side),
+        body="\n".join(body),
         outputs={o.name: printer.print(o.value) for o in decided(program).outputs},
     )
 
@@ -93,7 +105,7 @@ def _body(body: Sequence[Item], printer: StructuredText, refusal: Refusal, width
             yield from commented([*call_lines(first, printer, refusal), ""], respelled(first.note, printer.names))
             continue
         if isinstance(first, Iterate):
-            step = list(_body(first.step, printer, refusal))
+            step = list(_body(first.step, printer, refusal, width - INSIDE))
             lines = list(loop_lines(first, step, printer, refusal.of_loop(first)))
             yield from ("", *commented(lines, respelled(first.note, printer.names)), "")
             continue

@@ -9,7 +9,7 @@ import sympy as sp
 
 from derive.emit.st.contract import Signature
 from derive.emit.st.expression import StructuredText
-from derive.emit.st.layout import conjunction, indented, wrapped
+from derive.emit.st.layout import INSIDE, WIDTH, conjunction, indented, wrapped
 from derive.ir.program import Iterate, Require, Status
 from derive.ir.reason import OtherTurn
 from derive.report.reasons import Reasons
@@ -49,8 +49,8 @@ class Refusal:
 
     def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
         """The lines that refuse where conditions with the same refusal do not all hold."""
-        parts = [printer.print(part) for r in requires for part in sp.ordered(sp.And.make_args(r.condition))]
-        head = conjunction("IF NOT (", parts, ") THEN")
+        conditions = [part for r in requires for part in sp.ordered(sp.And.make_args(r.condition))]
+        head = conjunction("IF NOT (", [text for part in conditions for text in printer.parts(part)], ") THEN")
         return [*head, *indented(self.of(requires[0].otherwise)), "END_IF"]
 
 
@@ -72,9 +72,10 @@ class Explained(Refusal):
 
     def _lines(self, requires: Sequence[Require], printer: StructuredText) -> Iterator[str]:
         for check in self.reasons.checks(requires):
-            yield from conjunction("IF NOT (", [printer.print(c) for c in check.conditions], ") THEN")
+            parts = [text for c in check.conditions for text in printer.parts(c)]
+            yield from conjunction("IF NOT (", parts, ") THEN")
             if check.missing is not None:
-                yield from indented(wrapped(f"{MISSING} := {printer.print(check.missing)};"))
+                yield from indented(wrapped(f"{MISSING} := {printer.print(check.missing)};", WIDTH - 3 * INSIDE))
             yield from indented([*self._numbered(check.reason, check.turns, printer), *self.of(check.status)])
             yield "END_IF"
 
@@ -99,6 +100,22 @@ class Explained(Refusal):
 
     def _because(self, reason: str, status: Status) -> tuple[str, ...]:
         return (f"{REASON} := {self._number(reason)};", *self.of(status))
+
+
+@dataclass(frozen=True)
+class Told(Refusal):
+    """Writes refusals for a method that returns the reason itself."""
+
+    reasons: Reasons
+
+    def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
+        """The lines that refuse, for each reason separately."""
+        found: list[str] = []
+        for check in self.reasons.checks(requires):
+            parts = [text for c in check.conditions for text in printer.parts(c)]
+            head = conjunction("IF NOT (", parts, ") THEN")
+            found += [*head, *indented([f"{self.signature.name} := '{check.reason}';", "RETURN;"]), "END_IF"]
+        return found
 
 
 def _one(word: str, ends: Sequence[sp.Expr], printer: StructuredText) -> str:

@@ -3,12 +3,13 @@
 Paden and Kahan's subproblem 4; where e is made of three sides of a triangle, the law of cosines (their subproblem 3).
 Two roots. Let h = |(a, b)|, C = e / h and S = sigma sqrt((h - e)(h + e)) / h, the cosine and sine of the angle between
 u and the direction of (a, b). Then cos u = (a C - b S) / h and sin u = (b C + a S) / h. The factors h - e and h + e
-stay products: expanded they lose half the digits. C and S come from these factors alone, whose ratio is the square of
-the tangent of half the angle: so C^2 + S^2 = 1 to rounding, whatever digits e has lost. Determinant a sin u - b cos u =
-h S: sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution. Where it is 1 both roots meet
-(degenerate case). Where joints can make h vanish, u is free there: e must vanish, too. Where h is made of parameters
-and commanded values alone, a pose is refused whose h is below 1e-9 of the length that it is compared with: the arm then
-has no length that u could turn.
+stay products: expanded they lose half the digits. Where h changes with the pose, C and S come from these factors alone,
+whose ratio is the square of the tangent of half the angle: so C^2 + S^2 = 1 to rounding, whatever digits e has lost.
+Where h is made of lengths of the machine, their sum 2 h is one, too, and nothing is divided. Determinant a sin u - b
+cos u = h S: sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution. Where it is 1 both roots
+meet (degenerate case). Where joints can make h vanish, u is free there: e must vanish, too. Where h is made of
+parameters and commanded values alone, a pose is refused whose h is below 1e-9 of the length that it is compared with:
+the arm then has no length that u could turn.
 """
 
 from __future__ import annotations
@@ -109,6 +110,8 @@ class _Amplitude:
     """h - e and h + e, where they can be computed with fewer rounding errors than by these differences; else None."""
     is_signed: bool = False
     """Whether h may be negative."""
+    is_fixed: bool = False
+    """Whether h never vanishes, so that it divides as it is."""
     told: sp.Expr | None = None
     """(h - e)(h + e) made of lengths, where the factors are not: what is missing is read off it."""
     aimable: sp.Basic | None = None
@@ -123,12 +126,15 @@ def _amplitude(
     shared = sp.Mul.make_args(sp.factor(sp.gcd(a, b)))
     common = sp.Mul(*[f for f in shared if f.is_positive])  # it divides, and keeps every sign
     along, across = cancelled(a / common), cancelled(b / common)
+    is_fixed = common.is_number or problem.is_never_zero(common)
     if along.is_number and across.is_number:
         size = sp.sqrt(along**2 + across**2)
-        return _Amplitude(naming, common * size, (), along / size, across / size, e, determinant, common * size)
+        length = common * size
+        return _Amplitude(naming, length, (), along / size, across / size, e, determinant, length, is_fixed=is_fixed)
     if across == 0 and problem.is_never_zero(along):  # of either sign: sigma is then the sign of the sine
         length, one = common * along, sp.Integer(1)
-        return _Amplitude(naming, length, (), one, sp.Integer(0), e, sine(angle), one, is_signed=not length.is_positive)
+        is_signed, nothing = not length.is_positive, sp.Integer(0)
+        return _Amplitude(naming, length, (), one, nothing, e, sine(angle), one, is_signed=is_signed, is_fixed=is_fixed)
     square = along**2 + across**2
     along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
     note = f"effective length of the arm that {angle.name} turns"
@@ -141,13 +147,15 @@ def _amplitude(
     if problem.is_never_zero(square):
         scale = common * (unit if is_moved else effective)
     else:
+        is_fixed = False
         scale = equation.scales.get(angle, common * unit)
         divisor, aimable, guard = _vanishing(effective, (common, unit), angle, is_moved=is_moved)
     right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
     units = (along / divisor, across / divisor)
     return _Amplitude(
-        naming, common * divisor, guard, *units, right, determinant, scale, factors, told=told, aimable=aimable
-    )
+        naming, common * divisor, guard, *units, right, determinant, scale, factors, is_fixed=is_fixed, told=told,
+        aimable=aimable,
+    )  # fmt: skip
 
 
 def _is_moved(problem: Problem, square: sp.Expr) -> bool:
@@ -289,16 +297,22 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     length, right = amplitude.length, amplitude.right
     size = sp.Abs if amplitude.is_signed else sp.Add
     less, more = amplitude.factors or (_product(length - right), _product(length + right))
+    scale: tuple[Let, ...] = (
+        Let(twice, less_cos + plus_cos, "twice the scale, as the sum of both: then cosine and sine agree"),
+        Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
+    )
+    below: sp.Expr = divisor
+    if amplitude.is_fixed:
+        scale, below = (), 2 * length
     statements: list[Statement] = [
         *amplitude.naming.lets,
         *amplitude.guard,
         Let(less_cos, less, f"law of cosines for {angle.name} ({equation.label}): 1 - cosine, times a scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
-        Let(twice, less_cos + plus_cos, "twice the scale, as the sum of both: then cosine and sine agree"),
-        Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
-        *_cosine(angle, amplitude, cos_name, (plus_cos - less_cos) / divisor, (less, more)),
+        *scale,
+        *_cosine(angle, amplitude, cos_name, (plus_cos - less_cos) / below, (less, more)),
         Let(square, less_cos * plus_cos, "sine squared, times the squared scale"),
-        Let(sin_name, 2 * sigma * Root(square) / size(divisor)),
+        Let(sin_name, 2 * sigma * Root(square) / size(below)),
         *(_turned(problem, angle, amplitude, cos_name, sin_name) if turned else ()),
     ]
     determinant = StepDeterminant(angle, amplitude.determinant, amplitude.determinant_scale, (length, right))

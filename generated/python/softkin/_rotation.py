@@ -17,6 +17,15 @@ def made_rotation(rotation: Rotation) -> Rotation | Diagnosis:
     (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
     if not reasonable(r11, r12, r13, r21, r22, r23, r31, r32, r33):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
+    if (
+        abs(r11 * r11 + r21 * r21 + r31 * r31 - 1.0) <= 1e-13
+        and abs(r12 * r12 + r22 * r22 + r32 * r32 - 1.0) <= 1e-13
+        and abs(r11 * r12 + r21 * r22 + r31 * r32) <= 1e-13
+        and abs(r13 + r22 * r31 - r21 * r32) <= 1e-13
+        and abs(r23 + r11 * r32 - r12 * r31) <= 1e-13
+        and abs(r33 + r12 * r21 - r11 * r22) <= 1e-13
+    ):
+        return rotation
     uneven_x = abs(r11 * r11 + r21 * r21 + r31 * r31 - 1.0)
     uneven_y = abs(r12 * r12 + r22 * r22 + r32 * r32 - 1.0)
     uneven_z = abs(r13 * r13 + r23 * r23 + r33 * r33 - 1.0)

@@ -28,12 +28,12 @@ Singularities:
     determinant: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 142 additions, 201 multiplications, 12 divisions, 0 square roots, 14 sines
-    inverse: 76175 additions, 125423 multiplications, 5837 divisions, 3138 square roots, 5304 sines
-    inverse, all 16 branches open: 1218785 additions, 2006768 multiplications, 93392 divisions, 50208 square
+    forward: 142 additions, 207 multiplications, 6 divisions, 0 square roots, 14 sines
+    inverse: 91344 additions, 139882 multiplications, 7320 divisions, 3898 square roots, 5304 sines
+    inverse, all 16 branches open: 1461777 additions, 2238208 multiplications, 117120 divisions, 62368 square
     roots, 84864 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 28 additions, 50 multiplications, 11 divisions, 3 square roots, 12
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 28 additions, 50 multiplications, 10 divisions, 3 square roots, 12
     sines
     root scan along A6: at most 760 passes, all of which are counted
 
@@ -57,7 +57,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, solve, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, solve, sqrt
 from softkin._root import every_root, nearest_root
 from softkin._search import SearchedInverse
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
@@ -89,19 +89,23 @@ class Constants:
         size_of_j6_offset_x = abs(j6_offset_x)
         a2_plus_effective_q3_tried = a2 + effective_q3_tried
         a2_minus_effective_q3_tried = a2 - effective_q3_tried
+        quotient_in_cos_swing_q3_tried = 0.25 / (a2 * effective_q3_tried)
+        half_by_a2_by_effective_q3_tried = 0.5 / (a2 * effective_q3_tried)
         d4_by_effective_q3_tried = d4 / effective_q3_tried
         a3_by_effective_q3_tried = a3 / effective_q3_tried
-        quotient_in_fits = 0.5 * machine_scale * machine_scale / (sqrt(a3 * a3 + d4 * d4) * a2)
         one_by_machine_scale = 1.0 / machine_scale
+        quotient_in_fits = 0.5 * machine_scale * machine_scale / (sqrt(a3 * a3 + d4 * d4) * a2)
         self.d1, self.a1, self.a2, self.a3, self.d4, self.j6_offset_x, self.d6 = d1, a1, a2, a3, d4, j6_offset_x, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.offset_a5, self.offset_a6, self.effective_q3_tried = offset_a5, offset_a6, effective_q3_tried
         self.searched, self.machine_scale_times_free_angle = searched, machine_scale_times_free_angle
         self.size_of_j6_offset_x, self.a2_plus_effective_q3_tried = size_of_j6_offset_x, a2_plus_effective_q3_tried
         self.a2_minus_effective_q3_tried = a2_minus_effective_q3_tried
+        self.quotient_in_cos_swing_q3_tried = quotient_in_cos_swing_q3_tried
+        self.half_by_a2_by_effective_q3_tried = half_by_a2_by_effective_q3_tried
         self.d4_by_effective_q3_tried = d4_by_effective_q3_tried
-        self.a3_by_effective_q3_tried, self.quotient_in_fits = a3_by_effective_q3_tried, quotient_in_fits
-        self.one_by_machine_scale = one_by_machine_scale
+        self.a3_by_effective_q3_tried, self.one_by_machine_scale = a3_by_effective_q3_tried, one_by_machine_scale
+        self.quotient_in_fits = quotient_in_fits
 
 
 class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
@@ -261,8 +265,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         a1, a2, a2_minus_effective_q3_tried = k.a1, k.a2, k.a2_minus_effective_q3_tried
         a2_plus_effective_q3_tried, a3 = k.a2_plus_effective_q3_tried, k.a3
         a3_by_effective_q3_tried, d1, d4 = k.a3_by_effective_q3_tried, k.d1, k.d4
-        d4_by_effective_q3_tried, d6, j6_offset_x = k.d4_by_effective_q3_tried, k.d6, k.j6_offset_x
+        d4_by_effective_q3_tried, d6 = k.d4_by_effective_q3_tried, k.d6
+        half_by_a2_by_effective_q3_tried, j6_offset_x = k.half_by_a2_by_effective_q3_tried, k.j6_offset_x
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        quotient_in_cos_swing_q3_tried = k.quotient_in_cos_swing_q3_tried
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # wrist centre: the last joints do not move this point
@@ -320,8 +326,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sum_in_one_plus_cos_q3_tried_2 = a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = -sum_in_one_plus_cos_q3_tried * sum_in_one_plus_cos_q3_tried_2
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * quotient_in_cos_swing_q3_tried
+        # sine squared, times the squared scale
+        sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
+        root_of_sin_swing_q3_tried = sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0
+        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
+        product_in_sin_swing_q3_tried = half_by_a2_by_effective_q3_tried * sign_elbow_tried
+        sin_swing_q3_tried = product_in_sin_swing_q3_tried * root_of_sin_swing_q3_tried
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
+        sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
         slope_wrist_z_tried = j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried * cos_q1_tried
@@ -341,27 +355,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_one_plus_cos_q3_tried = (
             sum_in_one_plus_cos_q3_tried_2 - sum_in_one_plus_cos_q3_tried
         ) * slope_reach_tried
-        if sum_q3_tried > 0.0:
-            divisor_of_cos_q3_tried = sum_q3_tried
-            slope_divisor_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-        else:
-            divisor_of_cos_q3_tried = 1.0
-            slope_divisor_of_cos_q3_tried = 0.0
-        one_by_sum_q3_tried = 1.0 / divisor_of_cos_q3_tried
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_q3_tried
-        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
-        # sine squared, times the squared scale
-        sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
-        root_of_sin_swing_q3_tried = sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0
-        sin_swing_q3_tried = 2.0 * one_by_sum_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
-        sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
-            slope_one_plus_cos_q3_tried
-            - slope_one_less_cos_q3_tried
-            - slope_divisor_of_cos_q3_tried * cos_swing_q3_tried
-        ) * one_by_sum_q3_tried
+            slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
+        ) * quotient_in_cos_swing_q3_tried
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried * slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried * slope_one_less_cos_q3_tried
         )
@@ -370,10 +366,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             if root_of_sin_swing_q3_tried > 0.0
             else 0.0
         )
-        slope_sin_swing_q3_tried = (
-            2.0 * sign_elbow_tried * slope_root_of_sin_swing_q3_tried
-            - slope_divisor_of_cos_q3_tried * sin_swing_q3_tried
-        ) * one_by_sum_q3_tried
+        slope_sin_swing_q3_tried = product_in_sin_swing_q3_tried * slope_root_of_sin_swing_q3_tried
         slope_cos_q3_tried = (
             a3_by_effective_q3_tried * slope_cos_swing_q3_tried + d4_by_effective_q3_tried * slope_sin_swing_q3_tried
         )
@@ -505,9 +498,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         a1, a2, a2_minus_effective_q3_tried = k.a1, k.a2, k.a2_minus_effective_q3_tried
         a2_plus_effective_q3_tried, a3 = k.a2_plus_effective_q3_tried, k.a3
         a3_by_effective_q3_tried, d1, d4 = k.a3_by_effective_q3_tried, k.d1, k.d4
-        d4_by_effective_q3_tried, d6, j6_offset_x = k.d4_by_effective_q3_tried, k.d6, k.j6_offset_x
+        d4_by_effective_q3_tried, d6 = k.d4_by_effective_q3_tried, k.d6
+        half_by_a2_by_effective_q3_tried, j6_offset_x = k.half_by_a2_by_effective_q3_tried, k.j6_offset_x
         machine_scale_times_free_angle, one_by_machine_scale = k.machine_scale_times_free_angle, k.one_by_machine_scale
-        quotient_in_fits, size_of_j6_offset_x = k.quotient_in_fits, k.size_of_j6_offset_x
+        quotient_in_cos_swing_q3_tried, quotient_in_fits = k.quotient_in_cos_swing_q3_tried, k.quotient_in_fits
+        size_of_j6_offset_x = k.size_of_j6_offset_x
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # wrist centre: the last joints do not move this point
@@ -540,18 +535,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         one_plus_cos_q3_tried = (reach_tried - a2_minus_effective_q3_tried) * (
             a2_minus_effective_q3_tried + reach_tried
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        divisor_of_cos_q3_tried = sum_q3_tried if sum_q3_tried > 0.0 else 1.0
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * quotient_in_cos_swing_q3_tried
         sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         sin_swing_q3_tried = (
-            2.0
-            * (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
+            (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
+            * half_by_a2_by_effective_q3_tried
             * sign_elbow_tried
-            / divisor_of_cos_q3_tried
         )
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
@@ -717,7 +708,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
             rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
             x_minus_x_at_q4 = x - x_at_q4
-            rate_2_4 = (-r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23) * one_by_machine_scale
+            rate_2_4 = -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
             rate_2_5 = (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * one_by_machine_scale
             x_minus_x_at_q6 = x - x_at_q6
             rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
@@ -1016,32 +1007,32 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + q1 / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + q1 * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + q2 / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + q2 * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + q3 / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + q3 * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + q4 / DEGREE  # A4: whole turns added
+        axis_a4 = offset_a4 + q4 * RADIAN  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
         near_a5 = 360.0 * (turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + q5 / DEGREE  # A5: whole turns added
+        axis_a5 = offset_a5 + q5 * RADIAN  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
         open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
         near_a6 = 360.0 * (turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        axis_a6 = offset_a6 + q6 / DEGREE  # A6: whole turns added
+        axis_a6 = offset_a6 + q6 * RADIAN  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -1132,7 +1123,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     one_by_machine_scale * x,
                     z_minus_d1 * sin_q1_times_one_by_machine_scale,
                     z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale,
-                    (-r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23) * one_by_machine_scale,
+                    -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23),
                     (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * one_by_machine_scale,
                     (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale,
                 ),
@@ -1248,12 +1239,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         a1, a2, a2_minus_effective_q3_tried = k.a1, k.a2, k.a2_minus_effective_q3_tried
         a2_plus_effective_q3_tried, a3_by_effective_q3_tried = k.a2_plus_effective_q3_tried, k.a3_by_effective_q3_tried
         d1, d4_by_effective_q3_tried, d6 = k.d1, k.d4_by_effective_q3_tried, k.d6
-        effective_q3_tried, machine_scale_times_free_angle = k.effective_q3_tried, k.machine_scale_times_free_angle
-        mid_a1, mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a1, k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
-        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
-        offset_a5, offset_a6, searched, single_a1 = k.offset_a5, k.offset_a6, k.searched, k.single_a1
-        single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
-        single_a6 = k.single_a6
+        effective_q3_tried, half_by_a2_by_effective_q3_tried = k.effective_q3_tried, k.half_by_a2_by_effective_q3_tried
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        offset_a6, quotient_in_cos_swing_q3_tried, searched = k.offset_a6, k.quotient_in_cos_swing_q3_tried, k.searched
+        single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
+        single_a5, single_a6 = k.single_a5, k.single_a6
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x_closed = x - d6 * r13  # wrist centre: the last joints do not move this point
@@ -1277,10 +1269,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         one_plus_cos_q3_closed = (reach_closed - a2_minus_effective_q3_tried) * (
             a2_minus_effective_q3_tried + reach_closed
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-        divisor_of_cos_q3_closed = sum_q3_closed if sum_q3_closed > 0.0 else 1.0
-        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
+        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) * quotient_in_cos_swing_q3_tried
         # q3: out of reach
         if not (searched or (-1.0000000000005 <= cos_swing_q3_closed <= 1.0000000000005)):
             missing = (
@@ -1355,10 +1344,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             # sine squared, times the squared scale
             sine_square_q3_closed = one_less_cos_q3_closed * one_plus_cos_q3_closed
             sin_swing_q3_closed = (
-                2.0
-                * (sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)
+                (sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)
                 * sigma_elbow
-                / divisor_of_cos_q3_closed
+                * half_by_a2_by_effective_q3_tried
             )
             # where it is singular: the angle of the reference
             if reach_closed > machine_scale_times_free_angle:
@@ -1424,32 +1412,32 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q6 = arctan2(scaled_r21_from_q1234_closed + 0.0, scaled_r22_from_q1234_closed + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + q1 / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + q1 * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + q2 / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + q2 * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + q3 / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + q3 * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + q4 / DEGREE  # A4: whole turns added
+        axis_a4 = offset_a4 + q4 * RADIAN  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
         near_a5 = 360.0 * (turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + q5 / DEGREE  # A5: whole turns added
+        axis_a5 = offset_a5 + q5 * RADIAN  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
         open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
         near_a6 = 360.0 * (turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        axis_a6 = offset_a6 + q6 / DEGREE  # A6: whole turns added
+        axis_a6 = offset_a6 + q6 * RADIAN  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -1557,7 +1545,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     one_by_machine_scale * x,
                     z_minus_d1 * sin_q1_times_one_by_machine_scale,
                     z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale,
-                    (-r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23) * one_by_machine_scale,
+                    -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23),
                     (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * one_by_machine_scale,
                     (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale,
                 ),

@@ -28,11 +28,11 @@ Singularities:
     a4_parallel_a6: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 51 additions, 52 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 99 additions, 72 multiplications, 24 divisions, 5 square roots, 6 sines
-    inverse, all 8 branches open: 785 additions, 576 multiplications, 192 divisions, 40 square roots, 48 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 101 additions, 155 multiplications, 19 divisions, 10 square roots, 22
+    forward: 51 additions, 59 multiplications, 0 divisions, 0 square roots, 13 sines
+    inverse: 80 additions, 79 multiplications, 10 divisions, 5 square roots, 6 sines
+    inverse, all 8 branches open: 503 additions, 380 multiplications, 44 divisions, 19 square roots, 32 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 101 additions, 153 multiplications, 17 divisions, 10 square roots, 22
     sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
@@ -47,7 +47,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
-from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.ac6_threeparallel import unrolled
 
@@ -81,22 +81,27 @@ class Constants:
         machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
         machine_scale_times_rounding = 1e-12 * machine_scale
         product_in_cos_q6 = 1.000000001 * size_q1_for_q3
+        one_by_machine_scale = 1.0 / machine_scale
         a2_squared_plus_a3_squared = a2 * a2 + a3 * a3
         twice_d5 = 2.0 * d5
         d1_times_d5_times_2 = 2.0 * d1 * d5
         a2_plus_a3 = a2 + a3
         a2_minus_a3 = a2 - a3
+        quotient_in_cos_q3 = 0.25 / (a2 * a3)
+        quotient_in_sin_q3 = 0.5 / abs(a2 * a3)
         self.d1, self.a2, self.a3, self.d4, self.d5, self.d6, self.offset_a1 = d1, a2, a3, d4, d5, d6, offset_a1
         self.offset_a2, self.offset_a3, self.offset_a4, self.offset_a5 = offset_a2, offset_a3, offset_a4, offset_a5
-        self.offset_a6, self.machine_scale, self.rounding_q1 = offset_a6, machine_scale, rounding_q1
-        self.size_q1_for_q3, self.machine_scale_times_free_angle = size_q1_for_q3, machine_scale_times_free_angle
+        self.offset_a6, self.rounding_q1, self.size_q1_for_q3 = offset_a6, rounding_q1, size_q1_for_q3
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.size_q1_for_q3_times_rounding = size_q1_for_q3_times_rounding
         self.product_in_divisor_q6_q1_for_q3 = product_in_divisor_q6_q1_for_q3
         self.product_in_highest_q6_q1_for_q3 = product_in_highest_q6_q1_for_q3
         self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
         self.machine_scale_times_rounding, self.product_in_cos_q6 = machine_scale_times_rounding, product_in_cos_q6
-        self.a2_squared_plus_a3_squared, self.twice_d5 = a2_squared_plus_a3_squared, twice_d5
-        self.d1_times_d5_times_2, self.a2_plus_a3, self.a2_minus_a3 = d1_times_d5_times_2, a2_plus_a3, a2_minus_a3
+        self.one_by_machine_scale, self.a2_squared_plus_a3_squared = one_by_machine_scale, a2_squared_plus_a3_squared
+        self.twice_d5, self.d1_times_d5_times_2, self.a2_plus_a3 = twice_d5, d1_times_d5_times_2, a2_plus_a3
+        self.a2_minus_a3, self.quotient_in_cos_q3 = a2_minus_a3, quotient_in_cos_q3
+        self.quotient_in_sin_q3 = quotient_in_sin_q3
 
 
 class Ac6ThreeParallel(Mechanism):
@@ -229,9 +234,9 @@ class Ac6ThreeParallel(Mechanism):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        a2, a3, d1, d4, d5, d6, machine_scale = k.a2, k.a3, k.d1, k.d4, k.d5, k.d6, k.machine_scale
-        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
-        offset_a5, offset_a6 = k.offset_a5, k.offset_a6
+        a2, a3, d1, d4, d5, d6, offset_a1, offset_a2 = k.a2, k.a3, k.d1, k.d4, k.d5, k.d6, k.offset_a1, k.offset_a2
+        offset_a3, offset_a4, offset_a5, offset_a6 = k.offset_a3, k.offset_a4, k.offset_a5, k.offset_a6
+        one_by_machine_scale = k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q5 = DEGREE * (axis_a5 - offset_a5)
@@ -292,7 +297,7 @@ class Ac6ThreeParallel(Mechanism):
         r32_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
         wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         wrist_y = y - d6_times_r22_at_q5
-        branch_shoulder = (-wrist_x * cos_q1 - wrist_y * sin_q1) / machine_scale
+        branch_shoulder = -one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         return (
             (x, y, z),
@@ -361,9 +366,10 @@ class Ac6ThreeParallel(Mechanism):
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
         offset_a6, product_in_cos_q6 = k.offset_a6, k.product_in_cos_q6
         product_in_divisor_q6_q1_for_q3 = k.product_in_divisor_q6_q1_for_q3
-        product_in_highest_q6_q1_for_q3, rounding_q1 = k.product_in_highest_q6_q1_for_q3, k.rounding_q1
-        single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
-        single_a5, single_a6, size_q1_for_q3 = k.single_a5, k.single_a6, k.size_q1_for_q3
+        product_in_highest_q6_q1_for_q3, quotient_in_cos_q3 = k.product_in_highest_q6_q1_for_q3, k.quotient_in_cos_q3
+        quotient_in_sin_q3, rounding_q1, single_a1 = k.quotient_in_sin_q3, k.rounding_q1, k.single_a1
+        single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
+        single_a6, size_q1_for_q3 = k.single_a6, k.size_q1_for_q3
         size_q1_for_q3_times_rounding, twice_d5 = k.size_q1_for_q3_times_rounding, k.twice_d5
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
@@ -777,10 +783,7 @@ class Ac6ThreeParallel(Mechanism):
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):
             missing = (
@@ -798,11 +801,11 @@ class Ac6ThreeParallel(Mechanism):
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / abs(divisor_of_cos_q3)
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_sin_q3
         # rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
@@ -817,30 +820,30 @@ class Ac6ThreeParallel(Mechanism):
         angle_q2 = arctan2(direction_y_q2 + 0.0, direction_x_q2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_q2 / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + angle_q2 * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_q3 = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + angle_q3 / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + angle_q3 * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         angle_with_q4 = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
-        axis_a4 = offset_a4 + (angle_with_q4 - angle_q2 - angle_q3) / DEGREE
+        axis_a4 = offset_a4 + (angle_with_q4 - angle_q2 - angle_q3) * RADIAN
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
         near_a5 = 360.0 * (turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + arctan2(q6_radius_of_q5, cos_q5 + 0.0) / DEGREE  # A5: whole turns added
+        axis_a5 = offset_a5 + arctan2(q6_radius_of_q5, cos_q5 + 0.0) * RADIAN  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
         open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
         near_a6 = 360.0 * (turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0) / DEGREE  # A6: whole turns added
+        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0) * RADIAN  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -870,8 +873,9 @@ class Ac6ThreeParallel(Mechanism):
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        a2, a3, d4, d5, d6, machine_scale, offset_a1 = k.a2, k.a3, k.d4, k.d5, k.d6, k.machine_scale, k.offset_a1
-        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        a2, a3, d4, d5, d6, offset_a1, offset_a2 = k.a2, k.a3, k.d4, k.d5, k.d6, k.offset_a1, k.offset_a2
+        offset_a3, offset_a4, offset_a5 = k.offset_a3, k.offset_a4, k.offset_a5
+        one_by_machine_scale = k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q5 = DEGREE * (axis_a5 - offset_a5)
@@ -913,7 +917,7 @@ class Ac6ThreeParallel(Mechanism):
         y_at_q6 = y_at_q5 - d5 * r22_at_q234
         y = d6_times_r22_at_q5 + y_at_q6
         wrist_y = y - d6_times_r22_at_q5
-        margin_wrist_on_axis_1 = (-wrist_x * cos_q1 - wrist_y * sin_q1) / machine_scale
+        margin_wrist_on_axis_1 = -one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         return (margin_wrist_on_axis_1, sin_q3, sin_q5)
 

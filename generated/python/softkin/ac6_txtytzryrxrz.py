@@ -21,10 +21,10 @@ Singularities:
     a4_parallel_a6: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 28 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
-    inverse: 46 additions, 27 multiplications, 9 divisions, 1 square roots, 3 sines
-    inverse, all 2 branches open: 91 additions, 54 multiplications, 18 divisions, 2 square roots, 6 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 28 additions, 29 multiplications, 0 divisions, 0 square roots, 6 sines
+    inverse: 37 additions, 30 multiplications, 3 divisions, 1 square roots, 3 sines
+    inverse, all 2 branches open: 75 additions, 52 multiplications, 6 divisions, 1 square roots, 6 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
@@ -39,7 +39,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.ac6_txtytzryrxrz import unrolled
 
@@ -283,20 +283,20 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
             direction_y_a4 = sin(reference_a4)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4 + 0.0) / DEGREE  # A4: whole turns added
+        axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4 + 0.0) * RADIAN  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         a4_radius_of_a5 = sigma_wrist * radius_a4
         open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
         near_a5 = 360.0 * (turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + arctan2(-r23, a4_radius_of_a5 + 0.0) / DEGREE  # A5: whole turns added
+        axis_a5 = offset_a5 + arctan2(-r23, a4_radius_of_a5 + 0.0) * RADIAN  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
         scaled_r11_from_a4 = direction_x_a4 * r11 - direction_y_a4 * r31
         direction_y_a6 = direction_y_a4 * r32 - direction_x_a4 * r12
         open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
         near_a6 = 360.0 * (turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4 + 0.0) / DEGREE  # A6: whole turns added
+        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4 + 0.0) * RADIAN  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)

@@ -28,10 +28,10 @@ Singularities:
     a4_parallel_a6: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 59 additions, 66 multiplications, 7 divisions, 0 square roots, 14 sines
-    inverse: 100 additions, 83 multiplications, 24 divisions, 6 square roots, 6 sines
-    inverse, all 8 branches open: 793 additions, 664 multiplications, 192 divisions, 48 square roots, 48 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 59 additions, 73 multiplications, 0 divisions, 0 square roots, 14 sines
+    inverse: 81 additions, 90 multiplications, 10 divisions, 6 square roots, 6 sines
+    inverse, all 8 branches open: 461 additions, 377 multiplications, 46 divisions, 17 square roots, 34 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 12 additions, 11 multiplications, 2 divisions, 1 square roots, 6 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
@@ -46,7 +46,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.articulatedrobot_6dof import unrolled
 
@@ -78,23 +78,29 @@ class Constants:
         machine_scale_times_free_angle = 1e-11 * machine_scale
         machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
         machine_scale_times_rounding = 1e-12 * machine_scale
+        one_by_machine_scale = 1.0 / machine_scale
         d4_by_effective_q3 = d4 / effective_q3
         a3_by_effective_q3 = a3 / effective_q3
         a2_squared_plus_effective_q3_squared = a2 * a2 + effective_q3 * effective_q3
         twice_d3 = 2.0 * d3
         a2_plus_effective_q3 = a2 + effective_q3
         a2_minus_effective_q3 = a2 - effective_q3
+        quotient_in_cos_swing_q3 = 0.25 / (a2 * effective_q3)
+        half_by_a2_by_effective_q3 = 0.5 / (a2 * effective_q3)
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.d6 = d1, a1, a2, d3, a3, d4, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.offset_a5, self.offset_a6, self.machine_scale = offset_a5, offset_a6, machine_scale
-        self.effective_q3, self.rounding_q1, self.size_q1_for_q3 = effective_q3, rounding_q1, size_q1_for_q3
+        self.offset_a5, self.offset_a6, self.effective_q3 = offset_a5, offset_a6, effective_q3
+        self.rounding_q1, self.size_q1_for_q3 = rounding_q1, size_q1_for_q3
         self.size_q1_for_q3_times_rounding = size_q1_for_q3_times_rounding
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
-        self.machine_scale_times_rounding, self.d4_by_effective_q3 = machine_scale_times_rounding, d4_by_effective_q3
+        self.machine_scale_times_rounding = machine_scale_times_rounding
+        self.one_by_machine_scale, self.d4_by_effective_q3 = one_by_machine_scale, d4_by_effective_q3
         self.a3_by_effective_q3 = a3_by_effective_q3
         self.a2_squared_plus_effective_q3_squared, self.twice_d3 = a2_squared_plus_effective_q3_squared, twice_d3
         self.a2_plus_effective_q3, self.a2_minus_effective_q3 = a2_plus_effective_q3, a2_minus_effective_q3
+        self.quotient_in_cos_swing_q3 = quotient_in_cos_swing_q3
+        self.half_by_a2_by_effective_q3 = half_by_a2_by_effective_q3
 
 
 class ArticulatedRobot6DOF(Mechanism):
@@ -231,9 +237,9 @@ class ArticulatedRobot6DOF(Mechanism):
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
         a1, a2, a3, a3_by_effective_q3, d1, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3, k.d1, k.d3, k.d4
-        d4_by_effective_q3, d6, machine_scale, offset_a1 = k.d4_by_effective_q3, k.d6, k.machine_scale, k.offset_a1
-        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6 = k.offset_a6
+        d4_by_effective_q3, d6, offset_a1, offset_a2 = k.d4_by_effective_q3, k.d6, k.offset_a1, k.offset_a2
+        offset_a3, offset_a4, offset_a5, offset_a6 = k.offset_a3, k.offset_a4, k.offset_a5, k.offset_a6
+        one_by_machine_scale = k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q5 = DEGREE * (axis_a5 - offset_a5)
@@ -297,7 +303,7 @@ class ArticulatedRobot6DOF(Mechanism):
         r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
         wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         wrist_y = y - d6_times_r22_at_q5
-        branch_arm = (wrist_x * cos_q1 + wrist_y * sin_q1) / machine_scale
+        branch_arm = one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
         branch_elbow = d4_by_effective_q3 * cos_q3 - a3_by_effective_q3 * sin_q3
@@ -370,15 +376,16 @@ class ArticulatedRobot6DOF(Mechanism):
         a2_plus_effective_q3 = k.a2_plus_effective_q3
         a2_squared_plus_effective_q3_squared = k.a2_squared_plus_effective_q3_squared
         a3_by_effective_q3, d1, d3, d4_by_effective_q3 = k.a3_by_effective_q3, k.d1, k.d3, k.d4_by_effective_q3
-        d6, effective_q3, machine_scale_squared_times_plane = k.d6, k.effective_q3, k.machine_scale_squared_times_plane
+        d6, effective_q3, half_by_a2_by_effective_q3 = k.d6, k.effective_q3, k.half_by_a2_by_effective_q3
+        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, rounding_q1, single_a1, single_a2 = k.offset_a6, k.rounding_q1, k.single_a1, k.single_a2
-        single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
-        size_q1_for_q3, size_q1_for_q3_times_rounding = k.size_q1_for_q3, k.size_q1_for_q3_times_rounding
-        twice_d3 = k.twice_d3
+        offset_a6, quotient_in_cos_swing_q3, rounding_q1 = k.offset_a6, k.quotient_in_cos_swing_q3, k.rounding_q1
+        single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
+        single_a5, single_a6, size_q1_for_q3 = k.single_a5, k.single_a6, k.size_q1_for_q3
+        size_q1_for_q3_times_rounding, twice_d3 = k.size_q1_for_q3_times_rounding, k.twice_d3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
@@ -458,10 +465,7 @@ class ArticulatedRobot6DOF(Mechanism):
         one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_swing_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             missing = (
@@ -478,11 +482,13 @@ class ArticulatedRobot6DOF(Mechanism):
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
+        sin_swing_q3 = (
+            -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * half_by_a2_by_effective_q3
+        )
         # where it is singular: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3 * sin_swing_q3
@@ -502,7 +508,7 @@ class ArticulatedRobot6DOF(Mechanism):
             sin_q2 = sin(reference_a2)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -510,7 +516,7 @@ class ArticulatedRobot6DOF(Mechanism):
         sin_q3 = a3_by_effective_q3 * sin_swing_q3 + d4_by_effective_q3 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         r13_from_q1 = r13 * cos_q1 + r23 * sin_q1
@@ -531,14 +537,14 @@ class ArticulatedRobot6DOF(Mechanism):
             direction_y_q4 = sin(reference_a4)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4 + 0.0) / DEGREE  # A4: whole turns added
+        axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4 + 0.0) * RADIAN  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         q4_radius_of_q5 = sigma_hand * radius_q4
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
         near_a5 = 360.0 * (turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5 + 0.0) / DEGREE  # A5: whole turns added
+        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5 + 0.0) * RADIAN  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
         r21_from_q1 = r21 * cos_q1 - r11 * sin_q1
@@ -552,7 +558,7 @@ class ArticulatedRobot6DOF(Mechanism):
         open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
         near_a6 = 360.0 * (turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
         # A6: whole turns added
-        axis_a6 = offset_a6 + arctan2(scaled_r21_from_q1234, scaled_r22_from_q1234 + 0.0) / DEGREE
+        axis_a6 = offset_a6 + arctan2(scaled_r21_from_q1234, scaled_r22_from_q1234 + 0.0) * RADIAN
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -583,8 +589,9 @@ class ArticulatedRobot6DOF(Mechanism):
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
         a1, a2, a3, a3_by_effective_q3, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3, k.d3, k.d4
-        d4_by_effective_q3, d6, machine_scale, offset_a1 = k.d4_by_effective_q3, k.d6, k.machine_scale, k.offset_a1
-        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        d4_by_effective_q3, d6, offset_a1, offset_a2 = k.d4_by_effective_q3, k.d6, k.offset_a1, k.offset_a2
+        offset_a3, offset_a4, offset_a5 = k.offset_a3, k.offset_a4, k.offset_a5
+        one_by_machine_scale = k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q5 = DEGREE * (axis_a5 - offset_a5)
@@ -626,7 +633,7 @@ class ArticulatedRobot6DOF(Mechanism):
         y_at_q5 = y_at_q4 - d4 * r22_at_q23
         y = d6_times_r22_at_q5 + y_at_q5
         wrist_y = y - d6_times_r22_at_q5
-        margin_wrist_on_axis_1 = (wrist_x * cos_q1 + wrist_y * sin_q1) / machine_scale
+        margin_wrist_on_axis_1 = one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
         margin_elbow = d4_by_effective_q3 * cos_q3 - a3_by_effective_q3 * sin_q3

@@ -17,9 +17,9 @@ Singularities:
     machine has no length with which this distance could be compared
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 6 additions, 6 multiplications, 1 divisions, 0 square roots, 4 sines
-    inverse: 13 additions, 6 multiplications, 5 divisions, 2 square roots, 2 sines
-    a branch at a singular pose, more: 7 additions, 7 multiplications, 1 divisions, 0 square roots, 4 sines
+    forward: 6 additions, 7 multiplications, 0 divisions, 0 square roots, 4 sines
+    inverse: 13 additions, 9 multiplications, 2 divisions, 2 square roots, 2 sines
+    a branch at a singular pose, more: 7 additions, 6 multiplications, 0 divisions, 0 square roots, 4 sines
 
 On the vertical the azimuth is the reference's; at the origin the polar angle is too.
 
@@ -56,8 +56,10 @@ class Constants:
         self.lowest_phi, self.highest_phi, *_ = machine._window("phi", (offset_phi, 180.0 + offset_phi))
         machine_scale = 1.0  # characteristic length of the machine
         machine_scale_times_free_angle = 1e-11 * machine_scale
+        one_by_machine_scale = 1.0 / machine_scale
         self.offset_r, self.offset_theta, self.offset_phi = offset_r, offset_theta, offset_phi
-        self.machine_scale, self.machine_scale_times_free_angle = machine_scale, machine_scale_times_free_angle
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
+        self.one_by_machine_scale = one_by_machine_scale
 
 
 class Crane(OffsetKinematics):
@@ -157,18 +159,8 @@ class Crane(OffsetKinematics):
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_r, axis_theta, axis_phi = axes
-        k = self._constants
-        offset_phi, offset_r = k.offset_phi, k.offset_r
         if not reasonable(axis_phi, axis_r, axis_theta):
             return Status.BAD_INPUT
-        axis_r_minus_offset_r = axis_r - offset_r
-        # R where the machine has no pose
-        if not (axis_r_minus_offset_r >= -1e-9 and axis_r_minus_offset_r <= 1000000001.0):
-            return Status.IMPOSSIBLE
-        axis_phi_minus_offset_phi = axis_phi - offset_phi
-        # Phi where the machine has no pose
-        if not (axis_phi_minus_offset_phi >= -1e-9 and axis_phi_minus_offset_phi <= 180.000000181):
-            return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
@@ -198,7 +190,7 @@ class Crane(OffsetKinematics):
         open_theta = mid_theta if single_theta else ref_theta
         near_theta = 360.0 * (turn_theta - 1 if turn_theta > 0 else turn_theta) if turn_theta != 0 else open_theta
         # Theta: whole turns added
-        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0) / DEGREE
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0) * RADIAN
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
         # where it is singular: the angle of the reference
@@ -210,7 +202,7 @@ class Crane(OffsetKinematics):
             value_in_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
             direction_x_phi = cos(value_in_direction_y_phi)
             direction_y_phi = sin(value_in_direction_y_phi)
-        axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0) / DEGREE
+        axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0) * RADIAN
         return (axis_r, axis_theta, axis_phi)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
@@ -231,7 +223,8 @@ class Crane(OffsetKinematics):
         """The margins, each zero at its singularity."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
-        machine_scale, offset_phi, offset_r, offset_theta = k.machine_scale, k.offset_phi, k.offset_r, k.offset_theta
+        offset_phi, offset_r, offset_theta = k.offset_phi, k.offset_r, k.offset_theta
+        one_by_machine_scale = k.one_by_machine_scale
         if not reasonable(axis_phi, axis_r, axis_theta):
             return Status.BAD_INPUT
         r = axis_r - offset_r
@@ -254,7 +247,7 @@ class Crane(OffsetKinematics):
         y = r_times_sin_phi * sin_theta  # y from the y equation, which is linear in it
         radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
         radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
-        length_free_phi = radius_phi / machine_scale
+        length_free_phi = one_by_machine_scale * radius_phi
         # 0 where nothing determines the axis, else 1 or -1
         margin_free_phi = 1.0 if length_free_phi > 1e-11 else 0.0
         return (sin_phi, margin_free_phi)
@@ -325,7 +318,7 @@ class Crane(OffsetKinematics):
         open_theta = mid_theta if single_theta else ref_theta
         near_theta = 360.0 * (turn_theta - 1 if turn_theta > 0 else turn_theta) if turn_theta != 0 else open_theta
         # Theta: whole turns added
-        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0) / DEGREE
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0) * RADIAN
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
         # where it is singular: the angle of the reference
@@ -337,7 +330,7 @@ class Crane(OffsetKinematics):
             value_in_direction_y_phi = nearest_on_arc(reference_phi, 90.0 * DEGREE, 90.0 * DEGREE)
             direction_x_phi = cos(value_in_direction_y_phi)
             direction_y_phi = sin(value_in_direction_y_phi)
-        axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0) / DEGREE
+        axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0) * RADIAN
         return (axis_r, axis_theta, axis_phi)
 
     def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:

@@ -26,10 +26,10 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 60 additions, 70 multiplications, 6 divisions, 2 square roots, 8 sines
-    inverse: 98 additions, 75 multiplications, 24 divisions, 8 square roots, 4 sines
-    inverse, all 8 branches open: 777 additions, 600 multiplications, 192 divisions, 64 square roots, 32 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 60 additions, 75 multiplications, 1 divisions, 2 square roots, 8 sines
+    inverse: 86 additions, 77 multiplications, 16 divisions, 7 square roots, 4 sines
+    inverse, all 8 branches open: 256 additions, 214 multiplications, 28 divisions, 10 square roots, 7 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
 
 Arm 1 points to +X, arm 2 to 120 degrees from it, arm 3 to 240. The origin is the centre of the motor axes,
 and Z points up. The frame is that of the tool in the plate's centre, in the plane of the joints of the rods.
@@ -49,7 +49,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.delta_c import unrolled
@@ -92,9 +92,10 @@ class Constants:
         base_radius_minus_plate_radius = base_radius - plate_radius
         half_arm_length = 0.5 * arm_length
         half_plate_radius_minus_half_base_radius = 0.5 * plate_radius - 0.5 * base_radius
+        one_by_rod_length = 1.0 / rod_length
         half_by_rod_length = 0.5 / rod_length
         quotient_in_type2_rods_coplanar = assembly_sign / (rod_length * rod_length * rod_length)
-        product_in_margin_rods_coplanar = rod_length * rod_length * rod_length
+        quotient_in_margin_rods_coplanar = 1.0 / (rod_length * rod_length * rod_length)
         twice_arm_length = 2.0 * arm_length
         sum_in_slope_1_by_x = 2.0 * base_radius - 2.0 * plate_radius
         arm_length_times_root_of_3 = arm_length * root_of_3
@@ -111,10 +112,11 @@ class Constants:
         self.sum_in_pivot_2_y, self.base_radius_minus_plate_radius = sum_in_pivot_2_y, base_radius_minus_plate_radius
         self.half_arm_length = half_arm_length
         self.half_plate_radius_minus_half_base_radius = half_plate_radius_minus_half_base_radius
-        self.half_by_rod_length = half_by_rod_length
+        self.one_by_rod_length, self.half_by_rod_length = one_by_rod_length, half_by_rod_length
         self.quotient_in_type2_rods_coplanar = quotient_in_type2_rods_coplanar
-        self.product_in_margin_rods_coplanar, self.twice_arm_length = product_in_margin_rods_coplanar, twice_arm_length
-        self.sum_in_slope_1_by_x, self.arm_length_times_root_of_3 = sum_in_slope_1_by_x, arm_length_times_root_of_3
+        self.quotient_in_margin_rods_coplanar = quotient_in_margin_rods_coplanar
+        self.twice_arm_length, self.sum_in_slope_1_by_x = twice_arm_length, sum_in_slope_1_by_x
+        self.arm_length_times_root_of_3 = arm_length_times_root_of_3
 
 
 class DeltaC(OffsetKinematics, TwistChoice):
@@ -258,9 +260,8 @@ class DeltaC(OffsetKinematics, TwistChoice):
         assembly_sign, base_radius_minus_plate_radius = k.assembly_sign, k.base_radius_minus_plate_radius
         half_arm_length, half_by_rod_length = k.half_arm_length, k.half_by_rod_length
         half_plate_radius_minus_half_base_radius, offset_a1 = k.half_plate_radius_minus_half_base_radius, k.offset_a1
-        offset_a2, offset_a3, offset_a4 = k.offset_a2, k.offset_a3, k.offset_a4
-        product_in_normal_divisor, rod_length = k.product_in_normal_divisor, k.rod_length
-        rod_length_squared = k.rod_length_squared
+        offset_a2, offset_a3, offset_a4, one_by_rod_length = k.offset_a2, k.offset_a3, k.offset_a4, k.one_by_rod_length
+        product_in_normal_divisor, rod_length_squared = k.product_in_normal_divisor, k.rod_length_squared
         rod_length_squared_times_rounding, sum_in_pivot_2_y = k.rod_length_squared_times_rounding, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
@@ -331,7 +332,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
         cos_a4 = cos(a4)
         sin_a4 = sin(a4)
         span_1_x = x - base_radius_minus_plate_radius  # rod 1: known part of its vector
-        branch_knee_1 = (-z * cos_a1 - span_1_x * sin_a1) / rod_length
+        branch_knee_1 = -one_by_rod_length * (z * cos_a1 + span_1_x * sin_a1)
         span_2_x = x - half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         span_2_y = y - sum_in_pivot_2_y
         root_of_3_2 = root(3.0)
@@ -444,9 +445,8 @@ class DeltaC(OffsetKinematics, TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         span_1_x = x - base_radius_minus_plate_radius  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + z * z)  # effective length of the arm that a1 turns
@@ -601,22 +601,22 @@ class DeltaC(OffsetKinematics, TwistChoice):
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + arctan2(heading_across, heading_along + 0.0) / DEGREE  # A4: whole turns added
+        axis_a4 = offset_a4 + arctan2(heading_across, heading_along + 0.0) * RADIAN  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         return (axis_a1, axis_a2, axis_a3, axis_a4)
@@ -645,10 +645,9 @@ class DeltaC(OffsetKinematics, TwistChoice):
         assembly_sign, base_radius_minus_plate_radius = k.assembly_sign, k.base_radius_minus_plate_radius
         half_arm_length, half_by_rod_length = k.half_arm_length, k.half_by_rod_length
         half_plate_radius_minus_half_base_radius, offset_a1 = k.half_plate_radius_minus_half_base_radius, k.offset_a1
-        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
-        product_in_margin_rods_coplanar = k.product_in_margin_rods_coplanar
-        product_in_normal_divisor, rod_length = k.product_in_normal_divisor, k.rod_length
-        rod_length_squared = k.rod_length_squared
+        offset_a2, offset_a3, one_by_rod_length = k.offset_a2, k.offset_a3, k.one_by_rod_length
+        product_in_normal_divisor = k.product_in_normal_divisor
+        quotient_in_margin_rods_coplanar, rod_length_squared = k.quotient_in_margin_rods_coplanar, k.rod_length_squared
         rod_length_squared_times_rounding, sum_in_pivot_2_y = k.rod_length_squared_times_rounding, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
@@ -715,7 +714,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         x = foot_x + pivot_1_x + height_by_normal * normal_x
         span_1_x = x - base_radius_minus_plate_radius  # rod 1: known part of its vector
-        margin_stretched_1 = (-z * cos_a1 - span_1_x * sin_a1) / rod_length
+        margin_stretched_1 = -one_by_rod_length * (z * cos_a1 + span_1_x * sin_a1)
         span_2_x = x - half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         y = foot_y + height_by_normal * normal_y
         span_2_y = y - sum_in_pivot_2_y
@@ -731,11 +730,11 @@ class DeltaC(OffsetKinematics, TwistChoice):
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
         rod_3_z = z - pivot_3_z
-        margin_rods_coplanar = (
+        margin_rods_coplanar = quotient_in_margin_rods_coplanar * (
             rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
             + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
-        ) / product_in_margin_rods_coplanar
+        )
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, margin_rods_coplanar)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -1032,10 +1031,10 @@ class DeltaC(OffsetKinematics, TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Status.UNREACHABLE
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
@@ -1225,17 +1224,17 @@ class DeltaC(OffsetKinematics, TwistChoice):
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3, ref_a4)
@@ -1248,8 +1247,8 @@ class DeltaC(OffsetKinematics, TwistChoice):
         assembly_sign, base_radius_minus_plate_radius = k.assembly_sign, k.base_radius_minus_plate_radius
         half_arm_length, half_by_rod_length = k.half_arm_length, k.half_by_rod_length
         half_plate_radius_minus_half_base_radius, offset_a1 = k.half_plate_radius_minus_half_base_radius, k.offset_a1
-        offset_a2, offset_a3, product_in_normal_divisor = k.offset_a2, k.offset_a3, k.product_in_normal_divisor
-        rod_length, rod_length_squared = k.rod_length, k.rod_length_squared
+        offset_a2, offset_a3, one_by_rod_length = k.offset_a2, k.offset_a3, k.one_by_rod_length
+        product_in_normal_divisor, rod_length_squared = k.product_in_normal_divisor, k.rod_length_squared
         rod_length_squared_times_rounding, sum_in_pivot_2_y = k.rod_length_squared_times_rounding, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
@@ -1316,7 +1315,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
         flange_z = foot_z + pivot_1_z + height_by_normal * normal_z
         flange_x = foot_x + pivot_1_x + height_by_normal * normal_x
         span_1_x = flange_x - base_radius_minus_plate_radius  # rod 1: known part of its vector
-        branch_knee_1 = (-flange_z * cos_a1 - span_1_x * sin_a1) / rod_length
+        branch_knee_1 = -one_by_rod_length * (flange_z * cos_a1 + span_1_x * sin_a1)
         span_2_x = flange_x - half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         flange_y = foot_y + height_by_normal * normal_y
         span_2_y = flange_y - sum_in_pivot_2_y

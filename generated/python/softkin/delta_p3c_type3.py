@@ -24,9 +24,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 65 additions, 70 multiplications, 7 divisions, 1 square roots, 6 sines
-    inverse: 90 additions, 74 multiplications, 21 divisions, 6 square roots, 3 sines
-    inverse, all 8 branches open: 713 additions, 592 multiplications, 168 divisions, 48 square roots, 24 sines
+    forward: 65 additions, 76 multiplications, 1 divisions, 1 square roots, 6 sines
+    inverse: 82 additions, 77 multiplications, 15 divisions, 6 square roots, 3 sines
+    inverse, all 8 branches open: 229 additions, 207 multiplications, 27 divisions, 9 square roots, 6 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -41,7 +41,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.delta_p3c_type3 import unrolled
 
@@ -178,8 +178,11 @@ class Constants:
         outer_arm_1_squared_times_half = 0.5 * outer_arm_1 * outer_arm_1
         sum_in_projection_2 = outer_arm_1_squared_times_half - 0.5 * outer_arm_2 * outer_arm_2
         sum_in_projection_3 = outer_arm_1_squared_times_half - 0.5 * outer_arm_3 * outer_arm_3
+        one_by_outer_arm_1 = 1.0 / outer_arm_1
+        one_by_outer_arm_2 = 1.0 / outer_arm_2
+        one_by_outer_arm_3 = 1.0 / outer_arm_3
         quotient_in_type2_rods_coplanar = assembly_sign / (outer_arm_1 * outer_arm_2 * outer_arm_3)
-        product_in_margin_rods_coplanar = outer_arm_1 * outer_arm_2 * outer_arm_3
+        quotient_in_margin_rods_coplanar = 1.0 / (outer_arm_1 * outer_arm_2 * outer_arm_3)
         twice_cos_azimuth_1 = 2.0 * cos_azimuth_1
         twice_sin_azimuth_1 = 2.0 * sin_azimuth_1
         twice_inner_arm_1 = 2.0 * inner_arm_1
@@ -222,8 +225,10 @@ class Constants:
         self.cos_azimuth_2_times_inner_arm_2, self.sum_in_pivot_2_x = cos_azimuth_2_times_inner_arm_2, sum_in_pivot_2_x
         self.cos_azimuth_3_times_inner_arm_3, self.sum_in_pivot_3_x = cos_azimuth_3_times_inner_arm_3, sum_in_pivot_3_x
         self.sum_in_projection_2, self.sum_in_projection_3 = sum_in_projection_2, sum_in_projection_3
+        self.one_by_outer_arm_1, self.one_by_outer_arm_2 = one_by_outer_arm_1, one_by_outer_arm_2
+        self.one_by_outer_arm_3 = one_by_outer_arm_3
         self.quotient_in_type2_rods_coplanar = quotient_in_type2_rods_coplanar
-        self.product_in_margin_rods_coplanar = product_in_margin_rods_coplanar
+        self.quotient_in_margin_rods_coplanar = quotient_in_margin_rods_coplanar
         self.twice_cos_azimuth_1, self.twice_sin_azimuth_1 = twice_cos_azimuth_1, twice_sin_azimuth_1
         self.twice_inner_arm_1, self.twice_cos_azimuth_2 = twice_inner_arm_1, twice_cos_azimuth_2
         self.twice_sin_azimuth_2, self.twice_inner_arm_2 = twice_sin_azimuth_2, twice_inner_arm_2
@@ -397,15 +402,16 @@ class DeltaP3CType3(OffsetKinematics):
         inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
         inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
         inner_arm_3_times_sin_azimuth_3, offset_a1 = k.inner_arm_3_times_sin_azimuth_3, k.offset_a1
-        offset_a2, offset_a3, outer_arm_1 = k.offset_a2, k.offset_a3, k.outer_arm_1
+        offset_a2, offset_a3, one_by_outer_arm_1 = k.offset_a2, k.offset_a3, k.one_by_outer_arm_1
+        one_by_outer_arm_2, one_by_outer_arm_3 = k.one_by_outer_arm_2, k.one_by_outer_arm_3
         outer_arm_1_squared = k.outer_arm_1_squared
-        outer_arm_1_squared_times_rounding, outer_arm_2 = k.outer_arm_1_squared_times_rounding, k.outer_arm_2
-        outer_arm_3, product_in_normal_divisor = k.outer_arm_3, k.product_in_normal_divisor
-        sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
-        sum_in_pivot_1_x, sum_in_pivot_1_y = k.sum_in_pivot_1_x, k.sum_in_pivot_1_y
-        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
-        sum_in_pivot_3_x, sum_in_pivot_3_y = k.sum_in_pivot_3_x, k.sum_in_pivot_3_y
-        sum_in_projection_2, sum_in_projection_3 = k.sum_in_projection_2, k.sum_in_projection_3
+        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
+        product_in_normal_divisor, sin_azimuth_1 = k.product_in_normal_divisor, k.sin_azimuth_1
+        sin_azimuth_2, sin_azimuth_3, sum_in_pivot_1_x = k.sin_azimuth_2, k.sin_azimuth_3, k.sum_in_pivot_1_x
+        sum_in_pivot_1_y, sum_in_pivot_2_x = k.sum_in_pivot_1_y, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y, sum_in_pivot_3_x = k.sum_in_pivot_2_y, k.sum_in_pivot_3_x
+        sum_in_pivot_3_y, sum_in_projection_2 = k.sum_in_pivot_3_y, k.sum_in_projection_2
+        sum_in_projection_3 = k.sum_in_projection_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -478,13 +484,19 @@ class DeltaP3CType3(OffsetKinematics):
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
         span_1_y = y - sum_in_pivot_1_y
-        branch_knee_1 = ((-span_1_x * cos_azimuth_1 - span_1_y * sin_azimuth_1) * sin_a1 - z * cos_a1) / outer_arm_1
+        branch_knee_1 = -one_by_outer_arm_1 * (
+            z * cos_a1 + (span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1) * sin_a1
+        )
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - sum_in_pivot_2_y
-        branch_knee_2 = ((-span_2_x * cos_azimuth_2 - span_2_y * sin_azimuth_2) * sin_a2 - z * cos_a2) / outer_arm_2
+        branch_knee_2 = -one_by_outer_arm_2 * (
+            z * cos_a2 + (span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2) * sin_a2
+        )
         span_3_x = x - sum_in_pivot_3_x  # rod 3: known part of its vector
         span_3_y = y - sum_in_pivot_3_y
-        branch_knee_3 = ((-span_3_x * cos_azimuth_3 - span_3_y * sin_azimuth_3) * sin_a3 - z * cos_a3) / outer_arm_3
+        branch_knee_3 = -one_by_outer_arm_3 * (
+            z * cos_a3 + (span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3) * sin_a3
+        )
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -494,85 +506,8 @@ class DeltaP3CType3(OffsetKinematics):
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3 = axes
-        k = self._constants
-        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
-        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
-        cos_azimuth_3_times_inner_arm_3, inner_arm_1 = k.cos_azimuth_3_times_inner_arm_3, k.inner_arm_1
-        inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
-        inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
-        inner_arm_3_times_sin_azimuth_3, offset_a1 = k.inner_arm_3_times_sin_azimuth_3, k.offset_a1
-        offset_a2, offset_a3, outer_arm_1_squared = k.offset_a2, k.offset_a3, k.outer_arm_1_squared
-        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
-        product_in_normal_divisor, sum_in_pivot_1_x = k.product_in_normal_divisor, k.sum_in_pivot_1_x
-        sum_in_pivot_1_y, sum_in_pivot_2_x = k.sum_in_pivot_1_y, k.sum_in_pivot_2_x
-        sum_in_pivot_2_y, sum_in_pivot_3_x = k.sum_in_pivot_2_y, k.sum_in_pivot_3_x
-        sum_in_pivot_3_y, sum_in_projection_2 = k.sum_in_pivot_3_y, k.sum_in_projection_2
-        sum_in_projection_3 = k.sum_in_projection_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a1 = DEGREE * (axis_a1 - offset_a1)
-        cos_a1 = cos(a1)
-        pivot_1_y = sum_in_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
-        a2 = DEGREE * (axis_a2 - offset_a2)
-        cos_a2 = cos(a2)
-        pivot_2_y = sum_in_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
-        centre_1_to_2_y = pivot_2_y - pivot_1_y
-        sin_a1 = sin(a1)
-        pivot_1_z = -inner_arm_1 * sin_a1
-        sin_a2 = sin(a2)
-        pivot_2_z = -inner_arm_2 * sin_a2
-        centre_1_to_2_z = pivot_2_z - pivot_1_z
-        a3 = DEGREE * (axis_a3 - offset_a3)
-        cos_a3 = cos(a3)
-        pivot_3_y = sum_in_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
-        centre_1_to_3_y = pivot_3_y - pivot_1_y
-        sin_a3 = sin(a3)
-        pivot_3_z = -inner_arm_3 * sin_a3
-        centre_1_to_3_z = pivot_3_z - pivot_1_z
-        # normal to the plane of the centres
-        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
-        # rod 1: centre about which it swings
-        pivot_1_x = sum_in_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
-        # rod 2: centre about which it swings
-        pivot_2_x = sum_in_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
-        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        # rod 3: centre about which it swings
-        pivot_3_x = sum_in_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
-        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
-        normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
-        # squared length of the normal
-        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
-        # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > product_in_normal_divisor):
-            return Status.IMPOSSIBLE
-        # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = sum_in_projection_2 + 0.5 * (
-            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
-        )
-        # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = sum_in_projection_3 + 0.5 * (
-            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
-        )
-        one_by_normal_square = 1.0 / normal_square
-        # foot of the perpendicular, seen from centre 1
-        foot_x = one_by_normal_square * (
-            (centre_1_to_3_y * normal_z - centre_1_to_3_z * normal_y) * projection_2
-            + (centre_1_to_2_z * normal_y - centre_1_to_2_y * normal_z) * projection_3
-        )
-        foot_y = one_by_normal_square * (
-            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
-            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
-        )
-        foot_z = one_by_normal_square * (
-            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
-            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
-        )
-        # square of the height over the plane of the centres
-        height_square = outer_arm_1_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
-        # the rods do not meet
-        if not (height_square >= -outer_arm_1_squared_times_rounding):
-            return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
@@ -757,17 +692,17 @@ class DeltaP3CType3(OffsetKinematics):
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -797,11 +732,12 @@ class DeltaP3CType3(OffsetKinematics):
         inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
         inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
         inner_arm_3_times_sin_azimuth_3, offset_a1 = k.inner_arm_3_times_sin_azimuth_3, k.offset_a1
-        offset_a2, offset_a3, outer_arm_1 = k.offset_a2, k.offset_a3, k.outer_arm_1
+        offset_a2, offset_a3, one_by_outer_arm_1 = k.offset_a2, k.offset_a3, k.one_by_outer_arm_1
+        one_by_outer_arm_2, one_by_outer_arm_3 = k.one_by_outer_arm_2, k.one_by_outer_arm_3
         outer_arm_1_squared = k.outer_arm_1_squared
-        outer_arm_1_squared_times_rounding, outer_arm_2 = k.outer_arm_1_squared_times_rounding, k.outer_arm_2
-        outer_arm_3, product_in_margin_rods_coplanar = k.outer_arm_3, k.product_in_margin_rods_coplanar
-        product_in_normal_divisor, sin_azimuth_1 = k.product_in_normal_divisor, k.sin_azimuth_1
+        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
+        product_in_normal_divisor = k.product_in_normal_divisor
+        quotient_in_margin_rods_coplanar, sin_azimuth_1 = k.quotient_in_margin_rods_coplanar, k.sin_azimuth_1
         sin_azimuth_2, sin_azimuth_3, sum_in_pivot_1_x = k.sin_azimuth_2, k.sin_azimuth_3, k.sum_in_pivot_1_x
         sum_in_pivot_1_y, sum_in_pivot_2_x = k.sum_in_pivot_1_y, k.sum_in_pivot_2_x
         sum_in_pivot_2_y, sum_in_pivot_3_x = k.sum_in_pivot_2_y, k.sum_in_pivot_3_x
@@ -879,19 +815,19 @@ class DeltaP3CType3(OffsetKinematics):
         span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
         y = foot_y + pivot_1_y + height_by_normal * normal_y
         span_1_y = y - sum_in_pivot_1_y
-        margin_stretched_1 = (
-            (-span_1_x * cos_azimuth_1 - span_1_y * sin_azimuth_1) * sin_a1 - z * cos_a1
-        ) / outer_arm_1
+        margin_stretched_1 = -one_by_outer_arm_1 * (
+            z * cos_a1 + (span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1) * sin_a1
+        )
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - sum_in_pivot_2_y
-        margin_stretched_2 = (
-            (-span_2_x * cos_azimuth_2 - span_2_y * sin_azimuth_2) * sin_a2 - z * cos_a2
-        ) / outer_arm_2
+        margin_stretched_2 = -one_by_outer_arm_2 * (
+            z * cos_a2 + (span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2) * sin_a2
+        )
         span_3_x = x - sum_in_pivot_3_x  # rod 3: known part of its vector
         span_3_y = y - sum_in_pivot_3_y
-        margin_stretched_3 = (
-            (-span_3_x * cos_azimuth_3 - span_3_y * sin_azimuth_3) * sin_a3 - z * cos_a3
-        ) / outer_arm_3
+        margin_stretched_3 = -one_by_outer_arm_3 * (
+            z * cos_a3 + (span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3) * sin_a3
+        )
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         rod_1_z = z - pivot_1_z
@@ -901,11 +837,11 @@ class DeltaP3CType3(OffsetKinematics):
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
         rod_3_z = z - pivot_3_z
-        margin_rods_coplanar = (
-            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
-            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * rod_1_y
-            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
-        ) / product_in_margin_rods_coplanar
+        margin_rods_coplanar = -quotient_in_margin_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+        )
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, margin_rods_coplanar)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -1267,17 +1203,17 @@ class DeltaP3CType3(OffsetKinematics):
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -1293,15 +1229,16 @@ class DeltaP3CType3(OffsetKinematics):
         inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
         inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
         inner_arm_3_times_sin_azimuth_3, offset_a1 = k.inner_arm_3_times_sin_azimuth_3, k.offset_a1
-        offset_a2, offset_a3, outer_arm_1 = k.offset_a2, k.offset_a3, k.outer_arm_1
+        offset_a2, offset_a3, one_by_outer_arm_1 = k.offset_a2, k.offset_a3, k.one_by_outer_arm_1
+        one_by_outer_arm_2, one_by_outer_arm_3 = k.one_by_outer_arm_2, k.one_by_outer_arm_3
         outer_arm_1_squared = k.outer_arm_1_squared
-        outer_arm_1_squared_times_rounding, outer_arm_2 = k.outer_arm_1_squared_times_rounding, k.outer_arm_2
-        outer_arm_3, product_in_normal_divisor = k.outer_arm_3, k.product_in_normal_divisor
-        sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
-        sum_in_pivot_1_x, sum_in_pivot_1_y = k.sum_in_pivot_1_x, k.sum_in_pivot_1_y
-        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
-        sum_in_pivot_3_x, sum_in_pivot_3_y = k.sum_in_pivot_3_x, k.sum_in_pivot_3_y
-        sum_in_projection_2, sum_in_projection_3 = k.sum_in_projection_2, k.sum_in_projection_3
+        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
+        product_in_normal_divisor, sin_azimuth_1 = k.product_in_normal_divisor, k.sin_azimuth_1
+        sin_azimuth_2, sin_azimuth_3, sum_in_pivot_1_x = k.sin_azimuth_2, k.sin_azimuth_3, k.sum_in_pivot_1_x
+        sum_in_pivot_1_y, sum_in_pivot_2_x = k.sum_in_pivot_1_y, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y, sum_in_pivot_3_x = k.sum_in_pivot_2_y, k.sum_in_pivot_3_x
+        sum_in_pivot_3_y, sum_in_projection_2 = k.sum_in_pivot_3_y, k.sum_in_projection_2
+        sum_in_projection_3 = k.sum_in_projection_3
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -1374,19 +1311,19 @@ class DeltaP3CType3(OffsetKinematics):
         span_1_x = flange_x - sum_in_pivot_1_x  # rod 1: known part of its vector
         flange_y = foot_y + pivot_1_y + height_by_normal * normal_y
         span_1_y = flange_y - sum_in_pivot_1_y
-        branch_knee_1 = (
-            (-span_1_x * cos_azimuth_1 - span_1_y * sin_azimuth_1) * sin_a1 - flange_z * cos_a1
-        ) / outer_arm_1
+        branch_knee_1 = -one_by_outer_arm_1 * (
+            flange_z * cos_a1 + (span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1) * sin_a1
+        )
         span_2_x = flange_x - sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = flange_y - sum_in_pivot_2_y
-        branch_knee_2 = (
-            (-span_2_x * cos_azimuth_2 - span_2_y * sin_azimuth_2) * sin_a2 - flange_z * cos_a2
-        ) / outer_arm_2
+        branch_knee_2 = -one_by_outer_arm_2 * (
+            flange_z * cos_a2 + (span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2) * sin_a2
+        )
         span_3_x = flange_x - sum_in_pivot_3_x  # rod 3: known part of its vector
         span_3_y = flange_y - sum_in_pivot_3_y
-        branch_knee_3 = (
-            (-span_3_x * cos_azimuth_3 - span_3_y * sin_azimuth_3) * sin_a3 - flange_z * cos_a3
-        ) / outer_arm_3
+        branch_knee_3 = -one_by_outer_arm_3 * (
+            flange_z * cos_a3 + (span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3) * sin_a3
+        )
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

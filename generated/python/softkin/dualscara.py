@@ -23,10 +23,10 @@ Singularities:
     rods_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 31 additions, 26 multiplications, 6 divisions, 2 square roots, 6 sines
-    inverse: 60 additions, 39 multiplications, 17 divisions, 5 square roots, 3 sines
-    inverse, all 4 branches open: 237 additions, 156 multiplications, 68 divisions, 20 square roots, 12 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 31 additions, 31 multiplications, 1 divisions, 2 square roots, 6 sines
+    inverse: 51 additions, 40 multiplications, 11 divisions, 4 square roots, 3 sines
+    inverse, all 4 branches open: 113 additions, 83 multiplications, 19 divisions, 6 square roots, 5 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
 
 The origin is the middle between the motor axes, which stand on the X axis. Front is the side of +Y.
 
@@ -45,7 +45,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.dualscara import unrolled
@@ -109,17 +109,18 @@ class Constants:
         arm_length_1_times_shortest_link = 1e-9 * arm_length_1
         arm_length_2_times_shortest_link = 1e-9 * arm_length_2
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        one_by_rod_length_1 = 1.0 / rod_length_1
+        one_by_rod_length_2 = 1.0 / rod_length_2
         arm_length_1_minus_rod_length_1 = arm_length_1 - rod_length_1
         arm_length_1_plus_rod_length_1 = arm_length_1 + rod_length_1
         arm_length_2_minus_rod_length_2 = arm_length_2 - rod_length_2
         arm_length_2_plus_rod_length_2 = arm_length_2 + rod_length_2
         quotient_in_type2_rods_aligned = assembly_sign / (rod_length_1 * rod_length_2)
-        rod_length_1_times_rod_length_2 = rod_length_1 * rod_length_2
+        quotient_in_margin_rods_aligned = 1.0 / (rod_length_1 * rod_length_2)
         twice_arm_length_1 = 2.0 * arm_length_1
         twice_arm_length_2 = 2.0 * arm_length_2
         self.base_distance, self.arm_length_1, self.arm_length_2 = base_distance, arm_length_1, arm_length_2
-        self.rod_length_1, self.rod_length_2, self.offset_a1 = rod_length_1, rod_length_2, offset_a1
-        self.offset_a2, self.offset_a3, self.offset_a4 = offset_a2, offset_a3, offset_a4
+        self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
         self.half_base_distance, self.product_in_normal_divisor = half_base_distance, product_in_normal_divisor
         self.rod_length_1_squared_times_rounding = rod_length_1_squared_times_rounding
@@ -129,12 +130,13 @@ class Constants:
         self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
         self.arm_length_2_times_shortest_link = arm_length_2_times_shortest_link
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
+        self.one_by_rod_length_1, self.one_by_rod_length_2 = one_by_rod_length_1, one_by_rod_length_2
         self.arm_length_1_minus_rod_length_1 = arm_length_1_minus_rod_length_1
         self.arm_length_1_plus_rod_length_1 = arm_length_1_plus_rod_length_1
         self.arm_length_2_minus_rod_length_2 = arm_length_2_minus_rod_length_2
         self.arm_length_2_plus_rod_length_2 = arm_length_2_plus_rod_length_2
         self.quotient_in_type2_rods_aligned = quotient_in_type2_rods_aligned
-        self.rod_length_1_times_rod_length_2 = rod_length_1_times_rod_length_2
+        self.quotient_in_margin_rods_aligned = quotient_in_margin_rods_aligned
         self.twice_arm_length_1, self.twice_arm_length_2 = twice_arm_length_1, twice_arm_length_2
 
 
@@ -266,11 +268,12 @@ class DualScara(OffsetKinematics, TwistChoice):
         k = self._constants
         arm_length_1, arm_length_2, assembly_sign = k.arm_length_1, k.arm_length_2, k.assembly_sign
         half_base_distance, offset_a1, offset_a2 = k.half_base_distance, k.offset_a1, k.offset_a2
-        offset_a3, offset_a4, product_in_foot_fraction = k.offset_a3, k.offset_a4, k.product_in_foot_fraction
-        product_in_normal_divisor, rod_length_1 = k.product_in_normal_divisor, k.rod_length_1
+        offset_a3, offset_a4, one_by_rod_length_1 = k.offset_a3, k.offset_a4, k.one_by_rod_length_1
+        one_by_rod_length_2, product_in_foot_fraction = k.one_by_rod_length_2, k.product_in_foot_fraction
+        product_in_normal_divisor = k.product_in_normal_divisor
         rod_length_1_minus_rod_length_2 = k.rod_length_1_minus_rod_length_2
         rod_length_1_plus_rod_length_2 = k.rod_length_1_plus_rod_length_2
-        rod_length_1_squared_times_rounding, rod_length_2 = k.rod_length_1_squared_times_rounding, k.rod_length_2
+        rod_length_1_squared_times_rounding = k.rod_length_1_squared_times_rounding
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -317,9 +320,9 @@ class DualScara(OffsetKinematics, TwistChoice):
         cos_a4 = cos(a4)
         sin_a4 = sin(a4)
         span_1_x = half_base_distance + x  # rod 1: known part of its vector
-        branch_elbow_1 = (span_1_x * sin_a1 - y * cos_a1) / rod_length_1
+        branch_elbow_1 = (span_1_x * sin_a1 - y * cos_a1) * one_by_rod_length_1
         span_2_x = x - half_base_distance  # rod 2: known part of its vector
-        branch_elbow_2 = (y * cos_a2 - span_2_x * sin_a2) / rod_length_2
+        branch_elbow_2 = one_by_rod_length_2 * (y * cos_a2 - span_2_x * sin_a2)
         return (
             (x, y, a3),
             ((cos_a4, -sin_a4, 0.0), (sin_a4, cos_a4, 0.0), (0.0, 0.0, 1.0)),
@@ -398,9 +401,8 @@ class DualScara(OffsetKinematics, TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         span_1_x = half_base_distance + x  # rod 1: known part of its vector
         y_squared = y * y
@@ -488,18 +490,18 @@ class DualScara(OffsetKinematics, TwistChoice):
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         axis_a3 = offset_a3 + z
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + arctan2(heading_across, heading_along + 0.0) / DEGREE  # A4: whole turns added
+        axis_a4 = offset_a4 + arctan2(heading_across, heading_along + 0.0) * RADIAN  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         return (axis_a1, axis_a2, axis_a3, axis_a4)
@@ -526,11 +528,12 @@ class DualScara(OffsetKinematics, TwistChoice):
         k = self._constants
         arm_length_1, arm_length_2, assembly_sign = k.arm_length_1, k.arm_length_2, k.assembly_sign
         half_base_distance, offset_a1, offset_a2 = k.half_base_distance, k.offset_a1, k.offset_a2
+        one_by_rod_length_1, one_by_rod_length_2 = k.one_by_rod_length_1, k.one_by_rod_length_2
         product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
-        rod_length_1, rod_length_1_minus_rod_length_2 = k.rod_length_1, k.rod_length_1_minus_rod_length_2
+        quotient_in_margin_rods_aligned = k.quotient_in_margin_rods_aligned
+        rod_length_1_minus_rod_length_2 = k.rod_length_1_minus_rod_length_2
         rod_length_1_plus_rod_length_2 = k.rod_length_1_plus_rod_length_2
         rod_length_1_squared_times_rounding = k.rod_length_1_squared_times_rounding
-        rod_length_1_times_rod_length_2, rod_length_2 = k.rod_length_1_times_rod_length_2, k.rod_length_2
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -573,14 +576,14 @@ class DualScara(OffsetKinematics, TwistChoice):
         foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         span_1_x = half_base_distance + x  # rod 1: known part of its vector
-        margin_stretched_1 = (span_1_x * sin_a1 - y * cos_a1) / rod_length_1
+        margin_stretched_1 = (span_1_x * sin_a1 - y * cos_a1) * one_by_rod_length_1
         span_2_x = x - half_base_distance  # rod 2: known part of its vector
-        margin_stretched_2 = (y * cos_a2 - span_2_x * sin_a2) / rod_length_2
+        margin_stretched_2 = one_by_rod_length_2 * (y * cos_a2 - span_2_x * sin_a2)
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        margin_rods_aligned = (rod_1_x * rod_2_y - rod_1_y * rod_2_x) / rod_length_1_times_rod_length_2
+        margin_rods_aligned = quotient_in_margin_rods_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         return (margin_stretched_1, margin_stretched_2, margin_rods_aligned)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -767,10 +770,10 @@ class DualScara(OffsetKinematics, TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Status.UNREACHABLE
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
@@ -888,12 +891,12 @@ class DualScara(OffsetKinematics, TwistChoice):
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         flange_z = z - point_z  # position of the flange: the point less its offset
@@ -906,10 +909,11 @@ class DualScara(OffsetKinematics, TwistChoice):
         k = self._constants
         arm_length_1, arm_length_2, assembly_sign = k.arm_length_1, k.arm_length_2, k.assembly_sign
         half_base_distance, offset_a1, offset_a2 = k.half_base_distance, k.offset_a1, k.offset_a2
+        one_by_rod_length_1, one_by_rod_length_2 = k.one_by_rod_length_1, k.one_by_rod_length_2
         product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
-        rod_length_1, rod_length_1_minus_rod_length_2 = k.rod_length_1, k.rod_length_1_minus_rod_length_2
+        rod_length_1_minus_rod_length_2 = k.rod_length_1_minus_rod_length_2
         rod_length_1_plus_rod_length_2 = k.rod_length_1_plus_rod_length_2
-        rod_length_1_squared_times_rounding, rod_length_2 = k.rod_length_1_squared_times_rounding, k.rod_length_2
+        rod_length_1_squared_times_rounding = k.rod_length_1_squared_times_rounding
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -952,9 +956,9 @@ class DualScara(OffsetKinematics, TwistChoice):
         foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         flange_x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         span_1_x = flange_x + half_base_distance  # rod 1: known part of its vector
-        branch_elbow_1 = (span_1_x * sin_a1 - flange_y * cos_a1) / rod_length_1
+        branch_elbow_1 = (span_1_x * sin_a1 - flange_y * cos_a1) * one_by_rod_length_1
         span_2_x = flange_x - half_base_distance  # rod 2: known part of its vector
-        branch_elbow_2 = (flange_y * cos_a2 - span_2_x * sin_a2) / rod_length_2
+        branch_elbow_2 = one_by_rod_length_2 * (flange_y * cos_a2 - span_2_x * sin_a2)
         return (branch_elbow_1, branch_elbow_2)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

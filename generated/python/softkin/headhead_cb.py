@@ -21,10 +21,10 @@ Singularities:
     tool_along_c: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 19 additions, 14 multiplications, 2 divisions, 0 square roots, 4 sines
-    inverse: 31 additions, 17 multiplications, 8 divisions, 1 square roots, 2 sines
-    inverse, all 2 branches open: 61 additions, 34 multiplications, 16 divisions, 2 square roots, 4 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 19 additions, 16 multiplications, 0 divisions, 0 square roots, 4 sines
+    inverse: 25 additions, 19 multiplications, 4 divisions, 1 square roots, 2 sines
+    inverse, all 2 branches open: 58 additions, 38 multiplications, 8 divisions, 1 square roots, 4 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 The direction is that of the tool, from its tip to the spindle.
@@ -41,7 +41,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.headhead_cb import unrolled
 
@@ -262,12 +262,12 @@ class HeadHeadCB(Mechanism):
         axis_z = joint_z + offset_z
         open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
         near_c = 360.0 * (turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
-        axis_c = offset_c + arctan2(sin_c, cos_c + 0.0) / DEGREE  # C: whole turns added
+        axis_c = offset_c + arctan2(sin_c, cos_c + 0.0) * RADIAN  # C: whole turns added
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         open_b = mid_b if single_b else ref_b  # B: without a commanded turn, the value nearest to this
         near_b = 360.0 * (turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
-        axis_b = offset_b + arctan2(c_radius_of_b, r33 + 0.0) / DEGREE  # B: whole turns added
+        axis_b = offset_b + arctan2(c_radius_of_b, r33 + 0.0) * RADIAN  # B: whole turns added
         if not -180.000000001 <= axis_b - near_b < 179.999999999:
             axis_b = nearest_period(axis_b, near_b)
         return (axis_x, axis_y, axis_z, axis_c, axis_b)

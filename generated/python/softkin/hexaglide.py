@@ -26,9 +26,9 @@ Singularities:
     rods_dependent: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 4298 additions, 6006 multiplications, 300 divisions, 140 square roots, 120 sines
-    inverse: 230 additions, 300 multiplications, 7 divisions, 8 square roots, 2 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 4298 additions, 6026 multiplications, 280 divisions, 140 square roots, 120 sines
+    inverse: 230 additions, 301 multiplications, 6 divisions, 8 square roots, 2 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     Newton's method: every pass improves the pose until all legs fit: at most 20 passes, all of which are
     counted
 
@@ -61,7 +61,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
-from softkin._scalar import DEGREE, arctan2, cos, reasonable, root, sin, solve, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, reasonable, root, sin, solve, sqrt
 from softkin._start import IterativeForward
 from softkin._types import Axis, Diagnosis, Parameter, Status
 
@@ -404,9 +404,11 @@ class Constants:
         least_cos_plate_times_rod_length_4 = least_cos_plate * rod_length_4
         least_cos_plate_times_rod_length_5 = least_cos_plate * rod_length_5
         least_cos_plate_times_rod_length_6 = least_cos_plate * rod_length_6
-        machine_scale_squared = machine_scale * machine_scale
         one_by_platform_radius = 1.0 / platform_radius
-        product_in_determinant = rod_length_1 * rod_length_2 * rod_length_3 * rod_length_4 * rod_length_5 * rod_length_6
+        one_by_machine_scale_squared = 1.0 / (machine_scale * machine_scale)
+        quotient_in_determinant = 1.0 / (
+            rod_length_1 * rod_length_2 * rod_length_3 * rod_length_4 * rod_length_5 * rod_length_6
+        )
         half_by_rod_length_1 = 0.5 / rod_length_1
         half_by_rod_length_2 = 0.5 / rod_length_2
         half_by_rod_length_3 = 0.5 / rod_length_3
@@ -470,8 +472,9 @@ class Constants:
         self.least_cos_plate_times_rod_length_4 = least_cos_plate_times_rod_length_4
         self.least_cos_plate_times_rod_length_5 = least_cos_plate_times_rod_length_5
         self.least_cos_plate_times_rod_length_6 = least_cos_plate_times_rod_length_6
-        self.machine_scale_squared, self.one_by_platform_radius = machine_scale_squared, one_by_platform_radius
-        self.product_in_determinant, self.half_by_rod_length_1 = product_in_determinant, half_by_rod_length_1
+        self.one_by_platform_radius = one_by_platform_radius
+        self.one_by_machine_scale_squared = one_by_machine_scale_squared
+        self.quotient_in_determinant, self.half_by_rod_length_1 = quotient_in_determinant, half_by_rod_length_1
         self.half_by_rod_length_2, self.half_by_rod_length_3 = half_by_rod_length_2, half_by_rod_length_3
         self.half_by_rod_length_4, self.half_by_rod_length_5 = half_by_rod_length_4, half_by_rod_length_5
         self.half_by_rod_length_6 = half_by_rod_length_6
@@ -797,18 +800,18 @@ class Hexaglide(IterativeForward):
         k = self._constants
         assembly_sign, carriage_side_1, carriage_side_2 = k.assembly_sign, k.carriage_side_1, k.carriage_side_2
         carriage_side_3, carriage_side_4, carriage_side_5 = k.carriage_side_3, k.carriage_side_4, k.carriage_side_5
-        carriage_side_6, machine_scale_squared = k.carriage_side_6, k.machine_scale_squared
-        machine_scale_times_shortest_link, offset_a1 = k.machine_scale_times_shortest_link, k.offset_a1
-        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, one_by_platform_radius, platform_1_x = k.offset_a6, k.one_by_platform_radius, k.platform_1_x
-        platform_1_y, platform_1_z, platform_2_x = k.platform_1_y, k.platform_1_z, k.platform_2_x
-        platform_2_y, platform_2_z, platform_3_x = k.platform_2_y, k.platform_2_z, k.platform_3_x
-        platform_3_y, platform_3_z, platform_4_x = k.platform_3_y, k.platform_3_z, k.platform_4_x
-        platform_4_y, platform_4_z, platform_5_x = k.platform_4_y, k.platform_4_z, k.platform_5_x
-        platform_5_y, platform_5_z, platform_6_x = k.platform_5_y, k.platform_5_z, k.platform_6_x
-        platform_6_y, platform_6_z, rail_1_y, rail_1_z = k.platform_6_y, k.platform_6_z, k.rail_1_y, k.rail_1_z
-        rail_2_y, rail_2_z, rail_3_y, rail_3_z, rail_4_y = k.rail_2_y, k.rail_2_z, k.rail_3_y, k.rail_3_z, k.rail_4_y
-        rail_4_z, rail_5_y, rail_5_z, rail_6_y, rail_6_z = k.rail_4_z, k.rail_5_y, k.rail_5_z, k.rail_6_y, k.rail_6_z
+        carriage_side_6, machine_scale_times_shortest_link = k.carriage_side_6, k.machine_scale_times_shortest_link
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        offset_a5, offset_a6, one_by_machine_scale_squared = k.offset_a5, k.offset_a6, k.one_by_machine_scale_squared
+        one_by_platform_radius, platform_1_x, platform_1_y = k.one_by_platform_radius, k.platform_1_x, k.platform_1_y
+        platform_1_z, platform_2_x, platform_2_y = k.platform_1_z, k.platform_2_x, k.platform_2_y
+        platform_2_z, platform_3_x, platform_3_y = k.platform_2_z, k.platform_3_x, k.platform_3_y
+        platform_3_z, platform_4_x, platform_4_y = k.platform_3_z, k.platform_4_x, k.platform_4_y
+        platform_4_z, platform_5_x, platform_5_y = k.platform_4_z, k.platform_5_x, k.platform_5_y
+        platform_5_z, platform_6_x, platform_6_y = k.platform_5_z, k.platform_6_x, k.platform_6_y
+        platform_6_z, rail_1_y, rail_1_z, rail_2_y = k.platform_6_z, k.rail_1_y, k.rail_1_z, k.rail_2_y
+        rail_2_z, rail_3_y, rail_3_z, rail_4_y, rail_4_z = k.rail_2_z, k.rail_3_y, k.rail_3_z, k.rail_4_y, k.rail_4_z
+        rail_5_y, rail_5_z, rail_6_y, rail_6_z = k.rail_5_y, k.rail_5_z, k.rail_6_y, k.rail_6_z
         rod_length_1, rod_length_2, rod_length_3 = k.rod_length_1, k.rod_length_2, k.rod_length_3
         rod_length_4, rod_length_5, rod_length_6, within = k.rod_length_4, k.rod_length_5, k.rod_length_6, k.within
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
@@ -997,10 +1000,10 @@ class Hexaglide(IterativeForward):
             yaw_rate = spin_z + roll_rate * sin_pitch
             # size of the step, in characteristic lengths and radians
             size = root(
-                pitch_rate * pitch_rate
+                one_by_machine_scale_squared * (x_rate * x_rate + y_rate * y_rate + z_rate * z_rate)
+                + pitch_rate * pitch_rate
                 + roll_rate * roll_rate
                 + yaw_rate * yaw_rate
-                + (x_rate * x_rate + y_rate * y_rate + z_rate * z_rate) / machine_scale_squared
             )
             stretch = 2.0 * size if size > 0.5 else 1.0
             one_by_stretch = 1.0 / stretch
@@ -1238,7 +1241,7 @@ class Hexaglide(IterativeForward):
         platform_4_x, platform_4_y, platform_4_z = k.platform_4_x, k.platform_4_y, k.platform_4_z
         platform_5_x, platform_5_y, platform_5_z = k.platform_5_x, k.platform_5_y, k.platform_5_z
         platform_6_x, platform_6_y, platform_6_z = k.platform_6_x, k.platform_6_y, k.platform_6_z
-        product_in_determinant, rail_1_y, rail_1_z = k.product_in_determinant, k.rail_1_y, k.rail_1_z
+        quotient_in_determinant, rail_1_y, rail_1_z = k.quotient_in_determinant, k.rail_1_y, k.rail_1_z
         rail_2_y, rail_2_z, rail_3_y, rail_3_z, rail_4_y = k.rail_2_y, k.rail_2_z, k.rail_3_y, k.rail_3_z, k.rail_4_y
         rail_4_z, rail_5_y, rail_5_z, rail_6_y, rail_6_z = k.rail_4_z, k.rail_5_y, k.rail_5_z, k.rail_6_y, k.rail_6_z
         rod_length_1, rod_length_1_squared = k.rod_length_1, k.rod_length_1_squared
@@ -1329,7 +1332,7 @@ class Hexaglide(IterativeForward):
                     along_base_cone_1 + 0.0,
                 )
                 - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 1: its joint on the base bends beyond its cone [deg]", missing)
         arm_2_x = platform_2_x * r11 + platform_2_y * r12 + platform_2_z * r13
         span_2_x = arm_2_x + x  # rod 2: known part of its vector
@@ -1345,7 +1348,7 @@ class Hexaglide(IterativeForward):
                     along_base_cone_2 + 0.0,
                 )
                 - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 2: its joint on the base bends beyond its cone [deg]", missing)
         arm_3_x = platform_3_x * r11 + platform_3_y * r12 + platform_3_z * r13
         span_3_x = arm_3_x + x  # rod 3: known part of its vector
@@ -1361,7 +1364,7 @@ class Hexaglide(IterativeForward):
                     along_base_cone_3 + 0.0,
                 )
                 - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 3: its joint on the base bends beyond its cone [deg]", missing)
         arm_4_x = platform_4_x * r11 + platform_4_y * r12 + platform_4_z * r13
         span_4_x = arm_4_x + x  # rod 4: known part of its vector
@@ -1377,7 +1380,7 @@ class Hexaglide(IterativeForward):
                     along_base_cone_4 + 0.0,
                 )
                 - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 4: its joint on the base bends beyond its cone [deg]", missing)
         arm_5_x = platform_5_x * r11 + platform_5_y * r12 + platform_5_z * r13
         span_5_x = arm_5_x + x  # rod 5: known part of its vector
@@ -1393,7 +1396,7 @@ class Hexaglide(IterativeForward):
                     along_base_cone_5 + 0.0,
                 )
                 - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 5: its joint on the base bends beyond its cone [deg]", missing)
         arm_6_x = platform_6_x * r11 + platform_6_y * r12 + platform_6_z * r13
         span_6_x = arm_6_x + x  # rod 6: known part of its vector
@@ -1409,7 +1412,7 @@ class Hexaglide(IterativeForward):
                     along_base_cone_6 + 0.0,
                 )
                 - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 6: its joint on the base bends beyond its cone [deg]", missing)
         cone_axis_1_x = plate_axis_1_x * r11 + plate_axis_1_y * r12 + plate_axis_1_z * r13
         cone_axis_1_y = plate_axis_1_x * r21 + plate_axis_1_y * r22 + plate_axis_1_z * r23
@@ -1424,7 +1427,7 @@ class Hexaglide(IterativeForward):
                     along_plate_cone_1 + 0.0,
                 )
                 - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 1: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_2_x = plate_axis_2_x * r11 + plate_axis_2_y * r12 + plate_axis_2_z * r13
         cone_axis_2_y = plate_axis_2_x * r21 + plate_axis_2_y * r22 + plate_axis_2_z * r23
@@ -1439,7 +1442,7 @@ class Hexaglide(IterativeForward):
                     along_plate_cone_2 + 0.0,
                 )
                 - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 2: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_3_x = plate_axis_3_x * r11 + plate_axis_3_y * r12 + plate_axis_3_z * r13
         cone_axis_3_y = plate_axis_3_x * r21 + plate_axis_3_y * r22 + plate_axis_3_z * r23
@@ -1454,7 +1457,7 @@ class Hexaglide(IterativeForward):
                     along_plate_cone_3 + 0.0,
                 )
                 - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 3: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_4_x = plate_axis_4_x * r11 + plate_axis_4_y * r12 + plate_axis_4_z * r13
         cone_axis_4_y = plate_axis_4_x * r21 + plate_axis_4_y * r22 + plate_axis_4_z * r23
@@ -1469,7 +1472,7 @@ class Hexaglide(IterativeForward):
                     along_plate_cone_4 + 0.0,
                 )
                 - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 4: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_5_x = plate_axis_5_x * r11 + plate_axis_5_y * r12 + plate_axis_5_z * r13
         cone_axis_5_y = plate_axis_5_x * r21 + plate_axis_5_y * r22 + plate_axis_5_z * r23
@@ -1484,7 +1487,7 @@ class Hexaglide(IterativeForward):
                     along_plate_cone_5 + 0.0,
                 )
                 - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 5: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_6_x = plate_axis_6_x * r11 + plate_axis_6_y * r12 + plate_axis_6_z * r13
         cone_axis_6_y = plate_axis_6_x * r21 + plate_axis_6_y * r22 + plate_axis_6_z * r23
@@ -1499,7 +1502,7 @@ class Hexaglide(IterativeForward):
                     along_plate_cone_6 + 0.0,
                 )
                 - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 6: its joint on the plate bends beyond its cone [deg]", missing)
         # leg 1: the moment of its span about the platform's origin
         moment_1_x = (arm_1_y * span_1_z - arm_1_z * span_1_y) * one_by_platform_radius
@@ -1538,7 +1541,7 @@ class Hexaglide(IterativeForward):
             (),
         )
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans / product_in_determinant
+        determinant = determinant_of_spans * quotient_in_determinant
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         if not (assembly_sign * determinant >= min_type2_margin):
             missing = min_type2_margin - assembly_sign * determinant
@@ -1872,7 +1875,7 @@ class Hexaglide(IterativeForward):
         platform_4_x, platform_4_y, platform_4_z = k.platform_4_x, k.platform_4_y, k.platform_4_z
         platform_5_x, platform_5_y, platform_5_z = k.platform_5_x, k.platform_5_y, k.platform_5_z
         platform_6_x, platform_6_y, platform_6_z = k.platform_6_x, k.platform_6_y, k.platform_6_z
-        product_in_determinant, rail_1_y, rail_1_z = k.product_in_determinant, k.rail_1_y, k.rail_1_z
+        quotient_in_determinant, rail_1_y, rail_1_z = k.quotient_in_determinant, k.rail_1_y, k.rail_1_z
         rail_2_y, rail_2_z, rail_3_y, rail_3_z, rail_4_y = k.rail_2_y, k.rail_2_z, k.rail_3_y, k.rail_3_z, k.rail_4_y
         rail_4_z, rail_5_y, rail_5_z, rail_6_y, rail_6_z = k.rail_4_z, k.rail_5_y, k.rail_5_z, k.rail_6_y, k.rail_6_z
         rod_length_1_squared = k.rod_length_1_squared
@@ -2110,7 +2113,7 @@ class Hexaglide(IterativeForward):
             (),
         )
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans / product_in_determinant
+        determinant = determinant_of_spans * quotient_in_determinant
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         if not (assembly_sign * determinant >= min_type2_margin):
             return None

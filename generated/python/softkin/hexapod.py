@@ -19,9 +19,9 @@ Singularities:
     rods_dependent: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 4280 additions, 5982 multiplications, 300 divisions, 140 square roots, 120 sines
+    forward: 4280 additions, 6002 multiplications, 280 divisions, 140 square roots, 120 sines
     inverse: 224 additions, 317 multiplications, 7 divisions, 8 square roots, 2 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     Newton's method: every pass improves the pose until all legs fit: at most 20 passes, all of which are
     counted
 
@@ -51,7 +51,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
-from softkin._scalar import DEGREE, arctan2, cos, reasonable, root, sin, solve, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, reasonable, root, sin, solve, sqrt
 from softkin._start import IterativeForward
 from softkin._types import Axis, Diagnosis, Parameter, Status
 
@@ -312,8 +312,8 @@ class Constants:
             else -2.0
         )
         machine_scale_times_shortest_link = 1e-9 * machine_scale
-        machine_scale_squared = machine_scale * machine_scale
         one_by_platform_radius = 1.0 / platform_radius
+        one_by_machine_scale_squared = 1.0 / (machine_scale * machine_scale)
         self.base_1_x, self.base_1_y, self.base_1_z, self.base_2_x = base_1_x, base_1_y, base_1_z, base_2_x
         self.base_2_y, self.base_2_z, self.base_3_x, self.base_3_y = base_2_y, base_2_z, base_3_x, base_3_y
         self.base_3_z, self.base_4_x, self.base_4_y, self.base_4_z = base_3_z, base_4_x, base_4_y, base_4_z
@@ -344,7 +344,8 @@ class Constants:
         self.plate_axis_6_x, self.plate_axis_6_y, self.plate_axis_6_z = plate_axis_6_x, plate_axis_6_y, plate_axis_6_z
         self.within, self.least_cos_base, self.least_cos_plate = within, least_cos_base, least_cos_plate
         self.machine_scale_times_shortest_link = machine_scale_times_shortest_link
-        self.machine_scale_squared, self.one_by_platform_radius = machine_scale_squared, one_by_platform_radius
+        self.one_by_platform_radius = one_by_platform_radius
+        self.one_by_machine_scale_squared = one_by_machine_scale_squared
 
 
 class Hexapod(IterativeForward):
@@ -651,16 +652,16 @@ class Hexapod(IterativeForward):
         base_2_x, base_2_y, base_2_z, base_3_x, base_3_y = k.base_2_x, k.base_2_y, k.base_2_z, k.base_3_x, k.base_3_y
         base_3_z, base_4_x, base_4_y, base_4_z, base_5_x = k.base_3_z, k.base_4_x, k.base_4_y, k.base_4_z, k.base_5_x
         base_5_y, base_5_z, base_6_x, base_6_y, base_6_z = k.base_5_y, k.base_5_z, k.base_6_x, k.base_6_y, k.base_6_z
-        machine_scale_squared = k.machine_scale_squared
         machine_scale_times_shortest_link, offset_l1 = k.machine_scale_times_shortest_link, k.offset_l1
         offset_l2, offset_l3, offset_l4, offset_l5 = k.offset_l2, k.offset_l3, k.offset_l4, k.offset_l5
-        offset_l6, one_by_platform_radius, platform_1_x = k.offset_l6, k.one_by_platform_radius, k.platform_1_x
-        platform_1_y, platform_1_z, platform_2_x = k.platform_1_y, k.platform_1_z, k.platform_2_x
-        platform_2_y, platform_2_z, platform_3_x = k.platform_2_y, k.platform_2_z, k.platform_3_x
-        platform_3_y, platform_3_z, platform_4_x = k.platform_3_y, k.platform_3_z, k.platform_4_x
-        platform_4_y, platform_4_z, platform_5_x = k.platform_4_y, k.platform_4_z, k.platform_5_x
-        platform_5_y, platform_5_z, platform_6_x = k.platform_5_y, k.platform_5_z, k.platform_6_x
-        platform_6_y, platform_6_z, within = k.platform_6_y, k.platform_6_z, k.within
+        offset_l6, one_by_machine_scale_squared = k.offset_l6, k.one_by_machine_scale_squared
+        one_by_platform_radius, platform_1_x, platform_1_y = k.one_by_platform_radius, k.platform_1_x, k.platform_1_y
+        platform_1_z, platform_2_x, platform_2_y = k.platform_1_z, k.platform_2_x, k.platform_2_y
+        platform_2_z, platform_3_x, platform_3_y = k.platform_2_z, k.platform_3_x, k.platform_3_y
+        platform_3_z, platform_4_x, platform_4_y = k.platform_3_z, k.platform_4_x, k.platform_4_y
+        platform_4_z, platform_5_x, platform_5_y = k.platform_4_z, k.platform_5_x, k.platform_5_y
+        platform_5_z, platform_6_x, platform_6_y = k.platform_5_z, k.platform_6_x, k.platform_6_y
+        platform_6_z, within = k.platform_6_z, k.within
         if not reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6):
             return Status.BAD_INPUT
         l1 = axis_l1 - offset_l1
@@ -844,10 +845,10 @@ class Hexapod(IterativeForward):
             yaw_rate = spin_z + roll_rate * sin_pitch
             # size of the step, in characteristic lengths and radians
             size = root(
-                pitch_rate * pitch_rate
+                one_by_machine_scale_squared * (x_rate * x_rate + y_rate * y_rate + z_rate * z_rate)
+                + pitch_rate * pitch_rate
                 + roll_rate * roll_rate
                 + yaw_rate * yaw_rate
-                + (x_rate * x_rate + y_rate * y_rate + z_rate * z_rate) / machine_scale_squared
             )
             stretch = 2.0 * size if size > 0.5 else 1.0
             one_by_stretch = 1.0 / stretch
@@ -1147,7 +1148,7 @@ class Hexapod(IterativeForward):
             missing = (
                 arctan2(root((l1 - along_base_cone_1) * (along_base_cone_1 + l1)) + 0.0, along_base_cone_1 + 0.0)
                 - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 1: its joint on the base bends beyond its cone [deg]", missing)
         # leg 2: how far it reaches along the axis of its cone on the base
         along_base_cone_2 = home_along_2_x * span_2_x + home_along_2_y * span_2_y + home_along_2_z * span_2_z
@@ -1156,7 +1157,7 @@ class Hexapod(IterativeForward):
             missing = (
                 arctan2(root((l2 - along_base_cone_2) * (along_base_cone_2 + l2)) + 0.0, along_base_cone_2 + 0.0)
                 - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 2: its joint on the base bends beyond its cone [deg]", missing)
         # leg 3: how far it reaches along the axis of its cone on the base
         along_base_cone_3 = home_along_3_x * span_3_x + home_along_3_y * span_3_y + home_along_3_z * span_3_z
@@ -1165,7 +1166,7 @@ class Hexapod(IterativeForward):
             missing = (
                 arctan2(root((l3 - along_base_cone_3) * (along_base_cone_3 + l3)) + 0.0, along_base_cone_3 + 0.0)
                 - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 3: its joint on the base bends beyond its cone [deg]", missing)
         # leg 4: how far it reaches along the axis of its cone on the base
         along_base_cone_4 = home_along_4_x * span_4_x + home_along_4_y * span_4_y + home_along_4_z * span_4_z
@@ -1174,7 +1175,7 @@ class Hexapod(IterativeForward):
             missing = (
                 arctan2(root((l4 - along_base_cone_4) * (along_base_cone_4 + l4)) + 0.0, along_base_cone_4 + 0.0)
                 - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 4: its joint on the base bends beyond its cone [deg]", missing)
         # leg 5: how far it reaches along the axis of its cone on the base
         along_base_cone_5 = home_along_5_x * span_5_x + home_along_5_y * span_5_y + home_along_5_z * span_5_z
@@ -1183,7 +1184,7 @@ class Hexapod(IterativeForward):
             missing = (
                 arctan2(root((l5 - along_base_cone_5) * (along_base_cone_5 + l5)) + 0.0, along_base_cone_5 + 0.0)
                 - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 5: its joint on the base bends beyond its cone [deg]", missing)
         # leg 6: how far it reaches along the axis of its cone on the base
         along_base_cone_6 = home_along_6_x * span_6_x + home_along_6_y * span_6_y + home_along_6_z * span_6_z
@@ -1192,7 +1193,7 @@ class Hexapod(IterativeForward):
             missing = (
                 arctan2(root((l6 - along_base_cone_6) * (along_base_cone_6 + l6)) + 0.0, along_base_cone_6 + 0.0)
                 - arctan2(root((1.0 - least_cos_base) * (1.0 + least_cos_base)) + 0.0, least_cos_base + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 6: its joint on the base bends beyond its cone [deg]", missing)
         cone_axis_1_x = plate_axis_1_x * r11 + plate_axis_1_y * r12 + plate_axis_1_z * r13
         cone_axis_1_y = plate_axis_1_x * r21 + plate_axis_1_y * r22 + plate_axis_1_z * r23
@@ -1204,7 +1205,7 @@ class Hexapod(IterativeForward):
             missing = (
                 arctan2(root((l1 - along_plate_cone_1) * (along_plate_cone_1 + l1)) + 0.0, along_plate_cone_1 + 0.0)
                 - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 1: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_2_x = plate_axis_2_x * r11 + plate_axis_2_y * r12 + plate_axis_2_z * r13
         cone_axis_2_y = plate_axis_2_x * r21 + plate_axis_2_y * r22 + plate_axis_2_z * r23
@@ -1216,7 +1217,7 @@ class Hexapod(IterativeForward):
             missing = (
                 arctan2(root((l2 - along_plate_cone_2) * (along_plate_cone_2 + l2)) + 0.0, along_plate_cone_2 + 0.0)
                 - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 2: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_3_x = plate_axis_3_x * r11 + plate_axis_3_y * r12 + plate_axis_3_z * r13
         cone_axis_3_y = plate_axis_3_x * r21 + plate_axis_3_y * r22 + plate_axis_3_z * r23
@@ -1228,7 +1229,7 @@ class Hexapod(IterativeForward):
             missing = (
                 arctan2(root((l3 - along_plate_cone_3) * (along_plate_cone_3 + l3)) + 0.0, along_plate_cone_3 + 0.0)
                 - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 3: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_4_x = plate_axis_4_x * r11 + plate_axis_4_y * r12 + plate_axis_4_z * r13
         cone_axis_4_y = plate_axis_4_x * r21 + plate_axis_4_y * r22 + plate_axis_4_z * r23
@@ -1240,7 +1241,7 @@ class Hexapod(IterativeForward):
             missing = (
                 arctan2(root((l4 - along_plate_cone_4) * (along_plate_cone_4 + l4)) + 0.0, along_plate_cone_4 + 0.0)
                 - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 4: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_5_x = plate_axis_5_x * r11 + plate_axis_5_y * r12 + plate_axis_5_z * r13
         cone_axis_5_y = plate_axis_5_x * r21 + plate_axis_5_y * r22 + plate_axis_5_z * r23
@@ -1252,7 +1253,7 @@ class Hexapod(IterativeForward):
             missing = (
                 arctan2(root((l5 - along_plate_cone_5) * (along_plate_cone_5 + l5)) + 0.0, along_plate_cone_5 + 0.0)
                 - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 5: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_6_x = plate_axis_6_x * r11 + plate_axis_6_y * r12 + plate_axis_6_z * r13
         cone_axis_6_y = plate_axis_6_x * r21 + plate_axis_6_y * r22 + plate_axis_6_z * r23
@@ -1264,7 +1265,7 @@ class Hexapod(IterativeForward):
             missing = (
                 arctan2(root((l6 - along_plate_cone_6) * (along_plate_cone_6 + l6)) + 0.0, along_plate_cone_6 + 0.0)
                 - arctan2(root((1.0 - least_cos_plate) * (1.0 + least_cos_plate)) + 0.0, least_cos_plate + 0.0)
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "leg 6: its joint on the plate bends beyond its cone [deg]", missing)
         # leg 1: the moment of its span about the platform's origin
         moment_1_x = (arm_1_y * span_1_z - arm_1_z * span_1_y) * one_by_platform_radius

@@ -20,10 +20,10 @@ Singularities:
     tool_along_a: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 14 additions, 10 multiplications, 2 divisions, 0 square roots, 4 sines
-    inverse: 28 additions, 14 multiplications, 8 divisions, 1 square roots, 2 sines
-    inverse, all 2 branches open: 55 additions, 28 multiplications, 16 divisions, 2 square roots, 4 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 14 additions, 12 multiplications, 0 divisions, 0 square roots, 4 sines
+    inverse: 22 additions, 18 multiplications, 2 divisions, 1 square roots, 2 sines
+    inverse, all 2 branches open: 46 additions, 31 multiplications, 4 divisions, 1 square roots, 4 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
@@ -38,7 +38,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.kin_5axes import unrolled
 
@@ -61,9 +61,10 @@ class Constants:
         self.lowest_a, self.highest_a, self.single_a, self.mid_a = machine._window("a")
         self.lowest_b, self.highest_b, self.single_b, self.mid_b = machine._window("b")
         tool_length_times_tool_side = tool_side * tool_length
+        one_by_tool_side = 1.0 / tool_side
         self.tool_length, self.tool_side, self.offset_x, self.offset_y = tool_length, tool_side, offset_x, offset_y
         self.offset_z, self.offset_a, self.offset_b = offset_z, offset_a, offset_b
-        self.tool_length_times_tool_side = tool_length_times_tool_side
+        self.tool_length_times_tool_side, self.one_by_tool_side = tool_length_times_tool_side, one_by_tool_side
 
 
 class Kin5Axes(Mechanism):
@@ -234,8 +235,8 @@ class Kin5Axes(Mechanism):
         _, _, _, ref_a, ref_b = reference
         k = self._constants
         mid_a, mid_b, offset_a, offset_b, offset_x = k.mid_a, k.mid_b, k.offset_a, k.offset_b, k.offset_x
-        offset_y, offset_z, single_a, single_b = k.offset_y, k.offset_z, k.single_a, k.single_b
-        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
+        offset_y, offset_z, one_by_tool_side, single_a = k.offset_y, k.offset_z, k.one_by_tool_side, k.single_a
+        single_b, tool_length_times_tool_side = k.single_b, k.tool_length_times_tool_side
         if not reasonable(x, y, z, ref_a, ref_b):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - r13 * tool_length_times_tool_side  # wrist centre: the last joints do not move this point
@@ -244,8 +245,8 @@ class Kin5Axes(Mechanism):
         axis_y = offset_y + wrist_y
         wrist_z = z - r33 * tool_length_times_tool_side
         axis_z = offset_z + wrist_z
-        r13_of_a = r13 / tool_side
-        r23_of_a = r23 / tool_side
+        r13_of_a = one_by_tool_side * r13
+        r23_of_a = one_by_tool_side * r23
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
         # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
         # reference
@@ -258,13 +259,13 @@ class Kin5Axes(Mechanism):
             direction_y_a = sin(reference_a)
         open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
         near_a = 360.0 * (turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
-        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0) / DEGREE  # A: whole turns added
+        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0) * RADIAN  # A: whole turns added
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
         a_radius_of_b = sigma_roll * radius_a
         open_b = mid_b if single_b else ref_b  # B: without a commanded turn, the value nearest to this
         near_b = 360.0 * (turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
-        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0) / DEGREE  # B: whole turns added
+        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0) * RADIAN  # B: whole turns added
         if not -180.000000001 <= axis_b - near_b < 179.999999999:
             axis_b = nearest_period(axis_b, near_b)
         return (axis_x, axis_y, axis_z, axis_a, axis_b)

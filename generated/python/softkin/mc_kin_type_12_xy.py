@@ -20,9 +20,9 @@ Singularities:
     arms_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 26 additions, 33 multiplications, 5 divisions, 2 square roots, 4 sines
-    inverse: 48 additions, 41 multiplications, 14 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 189 additions, 164 multiplications, 56 divisions, 16 square roots, 8 sines
+    forward: 26 additions, 37 multiplications, 1 divisions, 2 square roots, 4 sines
+    inverse: 51 additions, 44 multiplications, 10 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 164 additions, 121 multiplications, 27 divisions, 9 square roots, 6 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.mc_kin_type_12_xy import unrolled
 
@@ -106,9 +106,10 @@ class Constants:
         link_length_3_by_link_length_2 = link_length_3 / link_length_2
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         link_length_2_by_link_length_3 = link_length_2 / link_length_3
-        link_length_2_times_link_length_4 = link_length_2 * link_length_4
+        one_by_link_length_2 = 1.0 / link_length_2
         link_length_2_plus_link_length_3 = link_length_2 + link_length_3
         product_in_branch_w = link_length_1 * link_length_2_plus_link_length_3
+        quotient_in_branch_w = 1.0 / (link_length_2 * link_length_4)
         sum_in_pivot_rear_x = link_length_1 + link_length_1 * link_length_3 / link_length_2
         quotient_in_scaled_pivot_rear_y = link_length_2 * sum_in_pivot_rear_x / link_length_3
         quotient_in_scaled_pivot_rear_y_2 = link_length_2 * link_length_5 / link_length_3
@@ -139,8 +140,8 @@ class Constants:
         self.link_length_3_by_link_length_2 = link_length_3_by_link_length_2
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
         self.link_length_2_by_link_length_3 = link_length_2_by_link_length_3
-        self.link_length_2_times_link_length_4 = link_length_2_times_link_length_4
-        self.product_in_branch_w, self.sum_in_pivot_rear_x = product_in_branch_w, sum_in_pivot_rear_x
+        self.one_by_link_length_2, self.product_in_branch_w = one_by_link_length_2, product_in_branch_w
+        self.quotient_in_branch_w, self.sum_in_pivot_rear_x = quotient_in_branch_w, sum_in_pivot_rear_x
         self.quotient_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y
         self.quotient_in_scaled_pivot_rear_y_2 = quotient_in_scaled_pivot_rear_y_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
@@ -261,10 +262,10 @@ class KinType12XY(OffsetKinematics):
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
-        link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
         link_length_3_by_link_length_2, offset_a1 = k.link_length_3_by_link_length_2, k.offset_a1
-        offset_a2, product_in_branch_w = k.offset_a2, k.product_in_branch_w
-        product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
+        offset_a2, one_by_link_length_2 = k.offset_a2, k.one_by_link_length_2
+        product_in_branch_w, product_in_foot_fraction = k.product_in_branch_w, k.product_in_foot_fraction
+        product_in_normal_divisor, quotient_in_branch_w = k.product_in_normal_divisor, k.quotient_in_branch_w
         quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
         quotient_in_scaled_pivot_rear_y_2, swap_xy = k.quotient_in_scaled_pivot_rear_y_2, k.swap_xy
         # inputs must be numbers, and of reasonable size
@@ -325,69 +326,21 @@ class KinType12XY(OffsetKinematics):
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > product_in_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        branch_t = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / link_length_2
+        branch_t = one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        branch_w = (
+        branch_w = quotient_in_branch_w * (
             (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
             + (product_in_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
-        ) / link_length_2_times_link_length_4
+        )
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_t, branch_w))
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a1, axis_a2 = axes
-        k = self._constants
-        link_length_1, link_length_2_minus_radius_2 = k.link_length_1, k.link_length_2_minus_radius_2
-        link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
-        link_length_2_squared_times_rounding, offset_a1 = k.link_length_2_squared_times_rounding, k.offset_a1
-        offset_a2, product_in_normal_divisor = k.offset_a2, k.product_in_normal_divisor
-        quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
-        quotient_in_scaled_pivot_rear_y_2, swap_xy = k.quotient_in_scaled_pivot_rear_y_2, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE * (axis_a1 - offset_a1)
-        sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
-        cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1 * cos_a1
-        a2 = DEGREE * (axis_a2 - offset_a2)
-        cos_a2 = cos(a2)
-        # rod rear: centre about which it swings
-        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
-        sin_a2 = sin(a2)
-        scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
-        if swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_2_x = -scaled_pivot_rear_y
-            centre_1_y = pivot_upper_x
-            centre_2_y = -scaled_pivot_rear_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_2_x = -scaled_pivot_rear_x
-            centre_1_y = pivot_upper_y
-            centre_2_y = -scaled_pivot_rear_y
-        centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
-        centre_1_to_2_y = centre_2_y - centre_1_y
-        # squared length of the normal
-        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
-        # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > product_in_normal_divisor):
-            return Status.IMPOSSIBLE
-        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
-        # square of the height over the line of the centres
-        height_square = (
-            0.25
-            * (link_length_2_plus_radius_2 - between_centres)
-            * (between_centres + link_length_2_minus_radius_2)
-            * (between_centres + link_length_2_plus_radius_2)
-            * (between_centres - link_length_2_minus_radius_2)
-            / normal_square
-        )
-        # the rods do not meet
-        if not (height_square >= -link_length_2_squared_times_rounding):
-            return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
@@ -532,12 +485,12 @@ class KinType12XY(OffsetKinematics):
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -561,10 +514,10 @@ class KinType12XY(OffsetKinematics):
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
-        link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
         link_length_3_by_link_length_2, offset_a1 = k.link_length_3_by_link_length_2, k.offset_a1
-        offset_a2, product_in_branch_w = k.offset_a2, k.product_in_branch_w
-        product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
+        offset_a2, one_by_link_length_2 = k.offset_a2, k.one_by_link_length_2
+        product_in_branch_w, product_in_foot_fraction = k.product_in_branch_w, k.product_in_foot_fraction
+        product_in_normal_divisor, quotient_in_branch_w = k.product_in_normal_divisor, k.quotient_in_branch_w
         quotient_in_margin_arms_aligned = k.quotient_in_margin_arms_aligned
         quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
         quotient_in_scaled_pivot_rear_y_2, swap_xy = k.quotient_in_scaled_pivot_rear_y_2, k.swap_xy
@@ -626,13 +579,13 @@ class KinType12XY(OffsetKinematics):
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > product_in_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        margin_stretched_1 = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / link_length_2
+        margin_stretched_1 = one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        margin_stretched_2 = (
+        margin_stretched_2 = quotient_in_branch_w * (
             (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
             + (product_in_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
-        ) / link_length_2_times_link_length_4
+        )
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
         rod_2_x = x - centre_2_x
@@ -907,12 +860,12 @@ class KinType12XY(OffsetKinematics):
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -925,10 +878,10 @@ class KinType12XY(OffsetKinematics):
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
-        link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
         link_length_3_by_link_length_2, offset_a1 = k.link_length_3_by_link_length_2, k.offset_a1
-        offset_a2, product_in_branch_w = k.offset_a2, k.product_in_branch_w
-        product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
+        offset_a2, one_by_link_length_2 = k.offset_a2, k.one_by_link_length_2
+        product_in_branch_w, product_in_foot_fraction = k.product_in_branch_w, k.product_in_foot_fraction
+        product_in_normal_divisor, quotient_in_branch_w = k.product_in_normal_divisor, k.quotient_in_branch_w
         quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
         quotient_in_scaled_pivot_rear_y_2, swap_xy = k.quotient_in_scaled_pivot_rear_y_2, k.swap_xy
         # inputs must be numbers, and of reasonable size
@@ -989,13 +942,13 @@ class KinType12XY(OffsetKinematics):
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > product_in_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        branch_t = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / link_length_2
+        branch_t = one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        branch_w = (
+        branch_w = quotient_in_branch_w * (
             (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
             + (product_in_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
-        ) / link_length_2_times_link_length_4
+        )
         return (branch_t, branch_w)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

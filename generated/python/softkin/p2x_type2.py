@@ -60,13 +60,14 @@ class Constants:
         shared_product = 2.5e-13 * arm_length * arm_length
         machine_scale_times_free_angle = 1e-11 * machine_scale
         assembly_sign_by_arm_length = assembly_sign / arm_length
+        one_by_arm_length = 1.0 / arm_length
         self.arm_length, self.tcp_link_distance, self.offset_a1 = arm_length, tcp_link_distance, offset_a1
         self.offset_a2, self.min_type2_margin, self.assembly_sign = offset_a2, min_type2_margin, assembly_sign
         self.span_1_x, self.machine_scale_times_rounding = span_1_x, machine_scale_times_rounding
         self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
         self.machine_scale_times_plane, self.shared_product = machine_scale_times_plane, shared_product
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.assembly_sign_by_arm_length = assembly_sign_by_arm_length
+        self.assembly_sign_by_arm_length, self.one_by_arm_length = assembly_sign_by_arm_length, one_by_arm_length
 
 
 class P2XType2(OffsetKinematics):
@@ -172,23 +173,9 @@ class P2XType2(OffsetKinematics):
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a1, axis_a2 = axes
-        k = self._constants
-        arm_length, arm_length_squared_times_rounding = k.arm_length, k.arm_length_squared_times_rounding
-        machine_scale_times_rounding, offset_a1, offset_a2 = k.machine_scale_times_rounding, k.offset_a1, k.offset_a2
-        tcp_link_distance = k.tcp_link_distance
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = axis_a1 - offset_a1
-        a2 = axis_a2 - offset_a2
-        pivot_1_x = -0.5 * (a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
-        # the mirror that the machine does not have
-        if not (pivot_1_x >= -machine_scale_times_rounding):
-            return Status.IMPOSSIBLE
-        radicand_y = (arm_length + pivot_1_x) * (arm_length - pivot_1_x)  # quadratic equation for y: rod 1
-        # rod 1 cannot reach
-        if not (radicand_y >= -arm_length_squared_times_rounding):
-            return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
@@ -242,7 +229,8 @@ class P2XType2(OffsetKinematics):
         k = self._constants
         arm_length, arm_length_squared_times_rounding = k.arm_length, k.arm_length_squared_times_rounding
         assembly_sign, machine_scale_times_rounding = k.assembly_sign, k.machine_scale_times_rounding
-        offset_a1, offset_a2, span_1_x, tcp_link_distance = k.offset_a1, k.offset_a2, k.span_1_x, k.tcp_link_distance
+        offset_a1, offset_a2, one_by_arm_length, span_1_x = k.offset_a1, k.offset_a2, k.one_by_arm_length, k.span_1_x
+        tcp_link_distance = k.tcp_link_distance
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -257,9 +245,9 @@ class P2XType2(OffsetKinematics):
         if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         x = 0.5 * (a1 + a2)  # x from the x equation, which is linear in it
-        margin_meet_a2 = -2.0 * (span_1_x + x - a2) / arm_length
+        margin_meet_a2 = -2.0 * (span_1_x + x - a2) * one_by_arm_length
         y = (sqrt(radicand_y) if radicand_y > 0.0 else 0.0) * assembly_sign
-        margin_flat = y / arm_length
+        margin_flat = one_by_arm_length * y
         return (margin_meet_a2, margin_flat)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:

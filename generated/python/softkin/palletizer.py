@@ -24,10 +24,10 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 30 additions, 24 multiplications, 4 divisions, 0 square roots, 9 sines
-    inverse: 62 additions, 34 multiplications, 15 divisions, 4 square roots, 4 sines
-    inverse, all 4 branches open: 236 additions, 130 multiplications, 57 divisions, 16 square roots, 16 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 30 additions, 28 multiplications, 0 divisions, 0 square roots, 9 sines
+    inverse: 48 additions, 38 multiplications, 4 divisions, 3 square roots, 4 sines
+    inverse, all 4 branches open: 163 additions, 111 multiplications, 11 divisions, 7 square roots, 11 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 4 sines
 
 A3 is the angle of the forearm against the base: where A2 alone moves, the forearm keeps its direction.
@@ -45,7 +45,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn, turn_inside
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.palletizer import unrolled
@@ -77,29 +77,33 @@ class Constants:
         machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
         machine_scale_times_rounding = 1e-12 * machine_scale
         shoulder_offset_plus_wrist_offset_x = shoulder_offset + wrist_offset_x
+        one_by_machine_scale = 1.0 / machine_scale
         quotient_in_branch_shoulder = shoulder_offset_plus_wrist_offset_x / machine_scale
         link_length_2_by_machine_scale = link_length_2 / machine_scale
         link_length_1_by_machine_scale = link_length_1 / machine_scale
         base_height_plus_wrist_offset_z = base_height + wrist_offset_z
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+        quotient_in_cos_swing_a3_from_a2 = 0.25 / (link_length_1 * link_length_2)
+        half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         sum_in_value_a1_for_a3_from_a2 = link_length_1 * link_length_1 + link_length_2 * link_length_2
         self.base_height, self.shoulder_offset, self.link_length_1 = base_height, shoulder_offset, link_length_1
         self.link_length_2, self.wrist_offset_x, self.wrist_offset_z = link_length_2, wrist_offset_x, wrist_offset_z
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.machine_scale, self.rounding_a1 = machine_scale, rounding_a1
-        self.size_a1_for_a3_from_a2 = size_a1_for_a3_from_a2
+        self.rounding_a1, self.size_a1_for_a3_from_a2 = rounding_a1, size_a1_for_a3_from_a2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.size_a1_for_a3_from_a2_times_rounding = size_a1_for_a3_from_a2_times_rounding
         self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
         self.machine_scale_times_rounding = machine_scale_times_rounding
         self.shoulder_offset_plus_wrist_offset_x = shoulder_offset_plus_wrist_offset_x
-        self.quotient_in_branch_shoulder = quotient_in_branch_shoulder
+        self.one_by_machine_scale, self.quotient_in_branch_shoulder = one_by_machine_scale, quotient_in_branch_shoulder
         self.link_length_2_by_machine_scale = link_length_2_by_machine_scale
         self.link_length_1_by_machine_scale = link_length_1_by_machine_scale
         self.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
+        self.quotient_in_cos_swing_a3_from_a2 = quotient_in_cos_swing_a3_from_a2
+        self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
         self.sum_in_value_a1_for_a3_from_a2 = sum_in_value_a1_for_a3_from_a2
 
 
@@ -298,21 +302,22 @@ class Palletizer(OffsetKinematics, TwistChoice):
         turn_a1, turn_a2, turn_a3, turn_a4 = turns
         ref_a1, ref_a2, ref_a3, ref_a4 = reference
         k = self._constants
-        base_height_plus_wrist_offset_z, link_length_1 = k.base_height_plus_wrist_offset_z, k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        base_height_plus_wrist_offset_z = k.base_height_plus_wrist_offset_z
+        half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
-        offset_a4, shoulder_offset_plus_wrist_offset_x = k.offset_a4, k.shoulder_offset_plus_wrist_offset_x
-        single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
+        offset_a4, quotient_in_cos_swing_a3_from_a2 = k.offset_a4, k.quotient_in_cos_swing_a3_from_a2
+        shoulder_offset_plus_wrist_offset_x, single_a1 = k.shoulder_offset_plus_wrist_offset_x, k.single_a1
+        single_a2, single_a3, single_a4 = k.single_a2, k.single_a3, k.single_a4
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         wrist_z = z - base_height_plus_wrist_offset_z  # coordinate of the point that the remaining links must reach
         radius_a1 = sqrt(x * x + y * y)  # polar coordinates: the radius at angle a1
@@ -328,10 +333,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach) * (
             link_length_1_plus_link_length_2 - reach
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3_from_a2 = one_less_cos_a3_from_a2 + one_plus_cos_a3_from_a2
-        divisor_of_cos_a3_from_a2 = sum_a3_from_a2 if sum_a3_from_a2 > 0.0 else 1.0
-        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) / divisor_of_cos_a3_from_a2
+        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) * quotient_in_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005):
             missing = (
@@ -358,17 +360,16 @@ class Palletizer(OffsetKinematics, TwistChoice):
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + angle_a1 * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         # sine squared, times the squared scale
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3_from_a2 = (
-            2.0
-            * (sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0)
+            (sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0)
             * sigma_elbow
-            / divisor_of_cos_a3_from_a2
+            * half_by_link_length_1_by_link_length_2
         )
         # rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
         # reference
@@ -384,21 +385,21 @@ class Palletizer(OffsetKinematics, TwistChoice):
         angle_a2 = arctan2(direction_y_a2 + 0.0, direction_x_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_a2 / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + angle_a2 * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_a3_from_a2 = arctan2(cos_swing_a3_from_a2 + 0.0, cos_a3_from_a2 + 0.0)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         # a3 from the sum a3_from_a2 of angles about parallel axes; A3: whole turns added
-        axis_a3 = offset_a3 + (angle_a2 + angle_a3_from_a2) / DEGREE
+        axis_a3 = offset_a3 + (angle_a2 + angle_a3_from_a2) * RADIAN
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         angle_heading = arctan2(heading_across + 0.0, heading_along + 0.0)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
-        axis_a4 = offset_a4 + (angle_heading - angle_a1) / DEGREE
+        axis_a4 = offset_a4 + (angle_heading - angle_a1) * RADIAN
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         return (axis_a1, axis_a2, axis_a3, axis_a4)
@@ -420,7 +421,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             return beyond_turn("A4", axis_a4, lowest_a4, highest_a4)
         a2 = DEGREE * (axis_a2 - offset_a2)
         a3 = DEGREE * (axis_a3 - offset_a3)
-        value_elbow = (a3 - a2) / DEGREE  # the forearm relative to the rear arm
+        value_elbow = (a3 - a2) * RADIAN  # the forearm relative to the rear arm
         if not lowest_elbow <= value_elbow <= highest_elbow:
             return beyond(
                 "the forearm relative to the rear arm",
@@ -580,10 +581,10 @@ class Palletizer(OffsetKinematics, TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Status.UNREACHABLE
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
@@ -598,15 +599,16 @@ class Palletizer(OffsetKinematics, TwistChoice):
         turn_a1, turn_a2, turn_a3, _ = turns
         ref_a1, ref_a2, ref_a3, ref_a4 = reference
         k = self._constants
-        base_height, link_length_1 = k.base_height, k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        base_height, half_by_link_length_1_by_link_length_2 = k.base_height, k.half_by_link_length_1_by_link_length_2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        offset_a4, rounding_a1, shoulder_offset, single_a1 = k.offset_a4, k.rounding_a1, k.shoulder_offset, k.single_a1
-        single_a2, single_a3, size_a1_for_a3_from_a2 = k.single_a2, k.single_a3, k.size_a1_for_a3_from_a2
+        offset_a4, quotient_in_cos_swing_a3_from_a2 = k.offset_a4, k.quotient_in_cos_swing_a3_from_a2
+        rounding_a1, shoulder_offset, single_a1, single_a2 = k.rounding_a1, k.shoulder_offset, k.single_a1, k.single_a2
+        single_a3, size_a1_for_a3_from_a2 = k.single_a3, k.size_a1_for_a3_from_a2
         size_a1_for_a3_from_a2_times_rounding = k.size_a1_for_a3_from_a2_times_rounding
         sum_in_value_a1_for_a3_from_a2, wrist_offset_x = k.sum_in_value_a1_for_a3_from_a2, k.wrist_offset_x
         wrist_offset_z = k.wrist_offset_z
@@ -707,10 +709,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach) * (
             link_length_1_plus_link_length_2 - reach
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3_from_a2 = one_less_cos_a3_from_a2 + one_plus_cos_a3_from_a2
-        divisor_of_cos_a3_from_a2 = sum_a3_from_a2 if sum_a3_from_a2 > 0.0 else 1.0
-        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) / divisor_of_cos_a3_from_a2
+        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) * quotient_in_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005):
             missing = (
@@ -727,17 +726,16 @@ class Palletizer(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         # sine squared, times the squared scale
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3_from_a2 = (
-            2.0
-            * (sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0)
+            (sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0)
             * sigma_elbow
-            / divisor_of_cos_a3_from_a2
+            * half_by_link_length_1_by_link_length_2
         )
         # rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
         # reference
@@ -753,14 +751,14 @@ class Palletizer(OffsetKinematics, TwistChoice):
         angle_a2 = arctan2(direction_y_a2 + 0.0, direction_x_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_a2 / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + angle_a2 * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_a3_from_a2 = arctan2(cos_swing_a3_from_a2 + 0.0, cos_a3_from_a2 + 0.0)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         # a3 from the sum a3_from_a2 of angles about parallel axes; A3: whole turns added
-        axis_a3 = offset_a3 + (angle_a2 + angle_a3_from_a2) / DEGREE
+        axis_a3 = offset_a3 + (angle_a2 + angle_a3_from_a2) * RADIAN
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3, ref_a4)
@@ -770,8 +768,8 @@ class Palletizer(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         point_x, point_y, _ = offset
         k = self._constants
-        link_length_1, link_length_2, machine_scale = k.link_length_1, k.link_length_2, k.machine_scale
-        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
+        offset_a3, offset_a4, one_by_machine_scale = k.offset_a3, k.offset_a4, k.one_by_machine_scale
         shoulder_offset, wrist_offset_x = k.shoulder_offset, k.wrist_offset_x
         # inputs must be numbers, and of reasonable size
         if not reasonable(point_x, point_y, axis_a1, axis_a2, axis_a3, axis_a4):
@@ -802,7 +800,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         y_at_a3 = y_at_a2_a3 + link_length_2 * r21_at_a3
         y_at_a4 = y_at_a3 + wrist_offset_x * sin_a1
         y = y_at_a4 + point_y * r11_at_a4 - point_x * r12_at_a4
-        branch_shoulder = (x * cos_a1 + y * sin_a1) / machine_scale
+        branch_shoulder = one_by_machine_scale * (x * cos_a1 + y * sin_a1)
         cos_a3_from_a2 = cos(a2 - a3)
         return (branch_shoulder, cos_a3_from_a2)
 

@@ -17,9 +17,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 11 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 35 additions, 21 multiplications, 9 divisions, 2 square roots, 2 sines
-    inverse, all 2 branches open: 66 additions, 40 multiplications, 17 divisions, 4 square roots, 4 sines
+    forward: 11 additions, 8 multiplications, 0 divisions, 0 square roots, 5 sines
+    inverse: 28 additions, 25 multiplications, 2 divisions, 2 square roots, 2 sines
+    inverse, all 2 branches open: 56 additions, 43 multiplications, 4 divisions, 3 square roots, 4 sines
     a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 Angles are right-handed about +Z.
@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn, turn_inside
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.pcc import unrolled
 
@@ -62,11 +62,15 @@ class Constants:
         machine_scale_times_free_angle = 1e-11 * machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+        quotient_in_cos_a2_from_a1 = 0.25 / (link_length_1 * link_length_2)
+        half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         self.link_length_1, self.link_length_2, self.offset_a1 = link_length_1, link_length_2, offset_a1
         self.offset_a2, self.machine_scale_times_plane = offset_a2, machine_scale_times_plane
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
+        self.quotient_in_cos_a2_from_a1 = quotient_in_cos_a2_from_a1
+        self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
 
 
 class PCC(OffsetKinematics):
@@ -183,11 +187,13 @@ class PCC(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
+        half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
-        offset_a1, offset_a2, single_a1, single_a2 = k.offset_a1, k.offset_a2, k.single_a1, k.single_a2
+        offset_a1, offset_a2, quotient_in_cos_a2_from_a1 = k.offset_a1, k.offset_a2, k.quotient_in_cos_a2_from_a1
+        single_a1, single_a2 = k.single_a1, k.single_a2
         if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -203,10 +209,7 @@ class PCC(OffsetKinematics):
         one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
             link_length_1_minus_link_length_2 + reach
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = sum_a2_from_a1 if sum_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / divisor_of_cos_a2_from_a1
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * quotient_in_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             missing = (
@@ -224,10 +227,9 @@ class PCC(OffsetKinematics):
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
-            2.0
-            * (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
+            (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
             * sigma_elbow
-            / divisor_of_cos_a2_from_a1
+            * half_by_link_length_1_by_link_length_2
         )
         # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
         # reference
@@ -243,14 +245,14 @@ class PCC(OffsetKinematics):
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + angle_a1 * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2_from_a1 = arctan2(sin_a2_from_a1 + 0.0, cos_a2_from_a1 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         # a2 from the sum a2_from_a1 of angles about parallel axes; A2: whole turns added
-        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1) / DEGREE
+        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1) * RADIAN
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -267,7 +269,7 @@ class PCC(OffsetKinematics):
             return beyond_turn("A2", axis_a2, lowest_a2, highest_a2)
         a1 = DEGREE * (axis_a1 - offset_a1)
         a2 = DEGREE * (axis_a2 - offset_a2)
-        value_elbow = (a2 - a1) / DEGREE  # the outer arm relative to the inner arm
+        value_elbow = (a2 - a1) * RADIAN  # the outer arm relative to the inner arm
         if not lowest_elbow <= value_elbow <= highest_elbow:
             return beyond(
                 "the outer arm relative to the inner arm",
@@ -333,11 +335,13 @@ class PCC(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
+        half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
-        offset_a1, offset_a2, single_a1, single_a2 = k.offset_a1, k.offset_a2, k.single_a1, k.single_a2
+        offset_a1, offset_a2, quotient_in_cos_a2_from_a1 = k.offset_a1, k.offset_a2, k.quotient_in_cos_a2_from_a1
+        single_a1, single_a2 = k.single_a1, k.single_a2
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -355,10 +359,7 @@ class PCC(OffsetKinematics):
         one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
             link_length_1_minus_link_length_2 + reach
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = sum_a2_from_a1 if sum_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / divisor_of_cos_a2_from_a1
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * quotient_in_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             missing = (
@@ -376,10 +377,9 @@ class PCC(OffsetKinematics):
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
-            2.0
-            * (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
+            (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
             * sigma_elbow
-            / divisor_of_cos_a2_from_a1
+            * half_by_link_length_1_by_link_length_2
         )
         # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
         # reference
@@ -395,14 +395,14 @@ class PCC(OffsetKinematics):
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + angle_a1 * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2_from_a1 = arctan2(sin_a2_from_a1 + 0.0, cos_a2_from_a1 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         # a2 from the sum a2_from_a1 of angles about parallel axes; A2: whole turns added
-        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1) / DEGREE
+        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1) * RADIAN
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)

@@ -24,10 +24,10 @@ Singularities:
     rods_dependent: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 1024 additions, 1321 multiplications, 226 divisions, 80 square roots, 52 sines
-    inverse: 93 additions, 86 multiplications, 27 divisions, 7 square roots, 3 sines
-    inverse, all 8 branches open: 737 additions, 688 multiplications, 216 divisions, 56 square roots, 24 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 1024 additions, 1347 multiplications, 200 divisions, 80 square roots, 52 sines
+    inverse: 84 additions, 90 multiplications, 20 divisions, 7 square roots, 3 sines
+    inverse, all 8 branches open: 737 additions, 744 multiplications, 160 divisions, 56 square roots, 24 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     Newton's method: every pass improves the pose until all legs fit: at most 20 passes, all of which are
     counted
 
@@ -57,7 +57,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, solve, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, solve, sqrt
 from softkin._start import IterativeForward
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
@@ -276,15 +276,18 @@ class Constants:
         arm_length_1_times_shortest_link = 1e-9 * arm_length_1
         arm_length_2_times_shortest_link = 1e-9 * arm_length_2
         arm_length_3_times_shortest_link = 1e-9 * arm_length_3
-        machine_scale_squared = machine_scale * machine_scale
         one_by_platform_radius = 1.0 / platform_radius
+        one_by_machine_scale_squared = 1.0 / (machine_scale * machine_scale)
+        one_by_rod_length_1 = 1.0 / rod_length_1
+        one_by_rod_length_2 = 1.0 / rod_length_2
+        one_by_rod_length_3 = 1.0 / rod_length_3
         arm_length_1_minus_rod_length_1 = arm_length_1 - rod_length_1
         arm_length_1_plus_rod_length_1 = arm_length_1 + rod_length_1
         arm_length_2_minus_rod_length_2 = arm_length_2 - rod_length_2
         arm_length_2_plus_rod_length_2 = arm_length_2 + rod_length_2
         arm_length_3_minus_rod_length_3 = arm_length_3 - rod_length_3
         arm_length_3_plus_rod_length_3 = arm_length_3 + rod_length_3
-        product_in_determinant = rod_length_1 * rod_length_2 * rod_length_3
+        quotient_in_determinant = 1.0 / (rod_length_1 * rod_length_2 * rod_length_3)
         self.base_1_x, self.base_1_y, self.base_2_x, self.base_2_y = base_1_x, base_1_y, base_2_x, base_2_y
         self.base_3_x, self.base_3_y, self.platform_1_x = base_3_x, base_3_y, platform_1_x
         self.platform_1_y, self.platform_2_x, self.platform_2_y = platform_1_y, platform_2_x, platform_2_y
@@ -292,22 +295,23 @@ class Constants:
         self.arm_length_2, self.arm_length_3, self.rod_length_1 = arm_length_2, arm_length_3, rod_length_1
         self.rod_length_2, self.rod_length_3, self.home_x, self.home_y = rod_length_2, rod_length_3, home_x, home_y
         self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
-        self.min_type2_margin, self.platform_radius = min_type2_margin, platform_radius
-        self.assembly_sign, self.within, self.cos_home_heading_2 = assembly_sign, within, cos_home_heading_2
-        self.sin_home_heading_2 = sin_home_heading_2
+        self.min_type2_margin, self.assembly_sign, self.within = min_type2_margin, assembly_sign, within
+        self.cos_home_heading_2, self.sin_home_heading_2 = cos_home_heading_2, sin_home_heading_2
         self.machine_scale_times_shortest_link = machine_scale_times_shortest_link
         self.machine_scale_times_plane = machine_scale_times_plane
         self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
         self.arm_length_2_times_shortest_link = arm_length_2_times_shortest_link
         self.arm_length_3_times_shortest_link = arm_length_3_times_shortest_link
-        self.machine_scale_squared, self.one_by_platform_radius = machine_scale_squared, one_by_platform_radius
+        self.one_by_platform_radius = one_by_platform_radius
+        self.one_by_machine_scale_squared, self.one_by_rod_length_1 = one_by_machine_scale_squared, one_by_rod_length_1
+        self.one_by_rod_length_2, self.one_by_rod_length_3 = one_by_rod_length_2, one_by_rod_length_3
         self.arm_length_1_minus_rod_length_1 = arm_length_1_minus_rod_length_1
         self.arm_length_1_plus_rod_length_1 = arm_length_1_plus_rod_length_1
         self.arm_length_2_minus_rod_length_2 = arm_length_2_minus_rod_length_2
         self.arm_length_2_plus_rod_length_2 = arm_length_2_plus_rod_length_2
         self.arm_length_3_minus_rod_length_3 = arm_length_3_minus_rod_length_3
         self.arm_length_3_plus_rod_length_3 = arm_length_3_plus_rod_length_3
-        self.product_in_determinant = product_in_determinant
+        self.quotient_in_determinant = quotient_in_determinant
 
 
 class Planar3RRR(IterativeForward, TwistChoice):
@@ -472,12 +476,12 @@ class Planar3RRR(IterativeForward, TwistChoice):
         arm_length_1, arm_length_2, arm_length_3 = k.arm_length_1, k.arm_length_2, k.arm_length_3
         assembly_sign, base_1_x, base_1_y, base_2_x = k.assembly_sign, k.base_1_x, k.base_1_y, k.base_2_x
         base_2_y, base_3_x, base_3_y = k.base_2_y, k.base_3_x, k.base_3_y
-        machine_scale_squared = k.machine_scale_squared
         machine_scale_times_shortest_link, offset_a1 = k.machine_scale_times_shortest_link, k.offset_a1
-        offset_a2, offset_a3, one_by_platform_radius = k.offset_a2, k.offset_a3, k.one_by_platform_radius
-        platform_1_x, platform_1_y, platform_2_x = k.platform_1_x, k.platform_1_y, k.platform_2_x
-        platform_2_y, platform_3_x, platform_3_y = k.platform_2_y, k.platform_3_x, k.platform_3_y
-        rod_length_1, rod_length_2, rod_length_3, within = k.rod_length_1, k.rod_length_2, k.rod_length_3, k.within
+        offset_a2, offset_a3, one_by_machine_scale_squared = k.offset_a2, k.offset_a3, k.one_by_machine_scale_squared
+        one_by_platform_radius, platform_1_x, platform_1_y = k.one_by_platform_radius, k.platform_1_x, k.platform_1_y
+        platform_2_x, platform_2_y, platform_3_x = k.platform_2_x, k.platform_2_y, k.platform_3_x
+        platform_3_y, rod_length_1, rod_length_2 = k.platform_3_y, k.rod_length_1, k.rod_length_2
+        rod_length_3, within = k.rod_length_3, k.within
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         # joints of the platform, seen from its origin, in the orientation of the start
@@ -550,7 +554,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
             )
             spin_z = one_by_platform_radius * swing_z
             # size of the step, in characteristic lengths and radians
-            size = root(spin_z * spin_z + (x_rate * x_rate + y_rate * y_rate) / machine_scale_squared)
+            size = root(one_by_machine_scale_squared * (x_rate * x_rate + y_rate * y_rate) + spin_z * spin_z)
             stretch = 2.0 * size if size > 0.5 else 1.0
             one_by_stretch = 1.0 / stretch
             if (fit) and (fitted):
@@ -589,10 +593,11 @@ class Planar3RRR(IterativeForward, TwistChoice):
         k = self._constants
         base_1_x, base_1_y, base_2_x, base_2_y, base_3_x = k.base_1_x, k.base_1_y, k.base_2_x, k.base_2_y, k.base_3_x
         base_3_y, cos_home_heading_2, home_x, home_y = k.base_3_y, k.cos_home_heading_2, k.home_x, k.home_y
-        offset_a1, offset_a2, offset_a3, platform_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.platform_1_x
-        platform_1_y, platform_2_x, platform_2_y = k.platform_1_y, k.platform_2_x, k.platform_2_y
-        platform_3_x, platform_3_y, rod_length_1 = k.platform_3_x, k.platform_3_y, k.rod_length_1
-        rod_length_2, rod_length_3, sin_home_heading_2 = k.rod_length_2, k.rod_length_3, k.sin_home_heading_2
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        one_by_rod_length_1, one_by_rod_length_2 = k.one_by_rod_length_1, k.one_by_rod_length_2
+        one_by_rod_length_3, platform_1_x, platform_1_y = k.one_by_rod_length_3, k.platform_1_x, k.platform_1_y
+        platform_2_x, platform_2_y, platform_3_x = k.platform_2_x, k.platform_2_y, k.platform_3_x
+        platform_3_y, sin_home_heading_2 = k.platform_3_y, k.sin_home_heading_2
         # pose of the platform, by Newton's method from the home pose
         found = self._find_platform((axis_a1, axis_a2, axis_a3, cos_home_heading_2, sin_home_heading_2, home_x, home_y))
         if isinstance(found, Status):
@@ -604,21 +609,21 @@ class Planar3RRR(IterativeForward, TwistChoice):
         # rod 1: known part of its vector
         span_1_x = x + platform_1_x * cos_heading - base_1_x - platform_1_y * sin_heading
         span_1_y = y + platform_1_y * cos_heading + platform_1_x * sin_heading - base_1_y
-        branch_elbow_1 = (span_1_y * cos_a1 - span_1_x * sin_a1) / rod_length_1
+        branch_elbow_1 = one_by_rod_length_1 * (span_1_y * cos_a1 - span_1_x * sin_a1)
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
         cos_a2 = cos(a2)
         # rod 2: known part of its vector
         span_2_x = x + platform_2_x * cos_heading - base_2_x - platform_2_y * sin_heading
         span_2_y = y + platform_2_y * cos_heading + platform_2_x * sin_heading - base_2_y
-        branch_elbow_2 = (span_2_y * cos_a2 - span_2_x * sin_a2) / rod_length_2
+        branch_elbow_2 = one_by_rod_length_2 * (span_2_y * cos_a2 - span_2_x * sin_a2)
         a3 = DEGREE * (axis_a3 - offset_a3)
         sin_a3 = sin(a3)
         cos_a3 = cos(a3)
         # rod 3: known part of its vector
         span_3_x = x + platform_3_x * cos_heading - base_3_x - platform_3_y * sin_heading
         span_3_y = y + platform_3_y * cos_heading + platform_3_x * sin_heading - base_3_y
-        branch_elbow_3 = (span_3_y * cos_a3 - span_3_x * sin_a3) / rod_length_3
+        branch_elbow_3 = one_by_rod_length_3 * (span_3_y * cos_a3 - span_3_x * sin_a3)
         return (
             (x, y, 0.0),
             ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)),
@@ -633,9 +638,10 @@ class Planar3RRR(IterativeForward, TwistChoice):
         k = self._constants
         base_1_x, base_1_y, base_2_x, base_2_y, base_3_x = k.base_1_x, k.base_1_y, k.base_2_x, k.base_2_y, k.base_3_x
         base_3_y, offset_a1, offset_a2, offset_a3 = k.base_3_y, k.offset_a1, k.offset_a2, k.offset_a3
-        platform_1_x, platform_1_y, platform_2_x = k.platform_1_x, k.platform_1_y, k.platform_2_x
-        platform_2_y, platform_3_x, platform_3_y = k.platform_2_y, k.platform_3_x, k.platform_3_y
-        rod_length_1, rod_length_2, rod_length_3 = k.rod_length_1, k.rod_length_2, k.rod_length_3
+        one_by_rod_length_1, one_by_rod_length_2 = k.one_by_rod_length_1, k.one_by_rod_length_2
+        one_by_rod_length_3, platform_1_x, platform_1_y = k.one_by_rod_length_3, k.platform_1_x, k.platform_1_y
+        platform_2_x, platform_2_y, platform_3_x = k.platform_2_x, k.platform_2_y, k.platform_3_x
+        platform_3_y = k.platform_3_y
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= start_x <= 1e9 and -1e9 <= start_y <= 1e9):
             return Status.BAD_INPUT
@@ -658,21 +664,21 @@ class Planar3RRR(IterativeForward, TwistChoice):
         # rod 1: known part of its vector
         span_1_x = x + platform_1_x * cos_heading - base_1_x - platform_1_y * sin_heading
         span_1_y = y + platform_1_y * cos_heading + platform_1_x * sin_heading - base_1_y
-        branch_elbow_1 = (span_1_y * cos_a1 - span_1_x * sin_a1) / rod_length_1
+        branch_elbow_1 = one_by_rod_length_1 * (span_1_y * cos_a1 - span_1_x * sin_a1)
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
         cos_a2 = cos(a2)
         # rod 2: known part of its vector
         span_2_x = x + platform_2_x * cos_heading - base_2_x - platform_2_y * sin_heading
         span_2_y = y + platform_2_y * cos_heading + platform_2_x * sin_heading - base_2_y
-        branch_elbow_2 = (span_2_y * cos_a2 - span_2_x * sin_a2) / rod_length_2
+        branch_elbow_2 = one_by_rod_length_2 * (span_2_y * cos_a2 - span_2_x * sin_a2)
         a3 = DEGREE * (axis_a3 - offset_a3)
         sin_a3 = sin(a3)
         cos_a3 = cos(a3)
         # rod 3: known part of its vector
         span_3_x = x + platform_3_x * cos_heading - base_3_x - platform_3_y * sin_heading
         span_3_y = y + platform_3_y * cos_heading + platform_3_x * sin_heading - base_3_y
-        branch_elbow_3 = (span_3_y * cos_a3 - span_3_x * sin_a3) / rod_length_3
+        branch_elbow_3 = one_by_rod_length_3 * (span_3_y * cos_a3 - span_3_x * sin_a3)
         return (
             (x, y, 0.0),
             ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)),
@@ -717,21 +723,21 @@ class Planar3RRR(IterativeForward, TwistChoice):
         offset_a2, offset_a3, one_by_platform_radius = k.offset_a2, k.offset_a3, k.one_by_platform_radius
         platform_1_x, platform_1_y, platform_2_x = k.platform_1_x, k.platform_1_y, k.platform_2_x
         platform_2_y, platform_3_x, platform_3_y = k.platform_2_y, k.platform_3_x, k.platform_3_y
-        product_in_determinant, single_a1, single_a2 = k.product_in_determinant, k.single_a1, k.single_a2
+        quotient_in_determinant, single_a1, single_a2 = k.quotient_in_determinant, k.single_a1, k.single_a2
         single_a3 = k.single_a3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         arm_1_x = platform_1_x * cos_heading - platform_1_y * sin_heading
@@ -868,7 +874,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
             ((rod_1_x, rod_1_y, moment_1_z), (rod_2_x, rod_2_y, moment_2_z), (rod_3_x, rod_3_y, moment_3_z)), ()
         )
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans / product_in_determinant
+        determinant = determinant_of_spans * quotient_in_determinant
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         if not (assembly_sign * determinant >= min_type2_margin):
             missing = min_type2_margin - assembly_sign * determinant
@@ -879,17 +885,17 @@ class Planar3RRR(IterativeForward, TwistChoice):
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -914,10 +920,11 @@ class Planar3RRR(IterativeForward, TwistChoice):
         k = self._constants
         base_1_x, base_1_y, base_2_x, base_2_y, base_3_x = k.base_1_x, k.base_1_y, k.base_2_x, k.base_2_y, k.base_3_x
         base_3_y, cos_home_heading_2, home_x, home_y = k.base_3_y, k.cos_home_heading_2, k.home_x, k.home_y
-        offset_a1, offset_a2, offset_a3, platform_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.platform_1_x
-        platform_1_y, platform_2_x, platform_2_y = k.platform_1_y, k.platform_2_x, k.platform_2_y
-        platform_3_x, platform_3_y, rod_length_1 = k.platform_3_x, k.platform_3_y, k.rod_length_1
-        rod_length_2, rod_length_3, sin_home_heading_2 = k.rod_length_2, k.rod_length_3, k.sin_home_heading_2
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        one_by_rod_length_1, one_by_rod_length_2 = k.one_by_rod_length_1, k.one_by_rod_length_2
+        one_by_rod_length_3, platform_1_x, platform_1_y = k.one_by_rod_length_3, k.platform_1_x, k.platform_1_y
+        platform_2_x, platform_2_y, platform_3_x = k.platform_2_x, k.platform_2_y, k.platform_3_x
+        platform_3_y, sin_home_heading_2 = k.platform_3_y, k.sin_home_heading_2
         # pose of the platform, by Newton's method from the home pose
         found = self._find_platform((axis_a1, axis_a2, axis_a3, cos_home_heading_2, sin_home_heading_2, home_x, home_y))
         if isinstance(found, Status):
@@ -929,21 +936,21 @@ class Planar3RRR(IterativeForward, TwistChoice):
         # rod 1: known part of its vector
         span_1_x = x + platform_1_x * cos_heading - base_1_x - platform_1_y * sin_heading
         span_1_y = y + platform_1_y * cos_heading + platform_1_x * sin_heading - base_1_y
-        margin_stretched_1 = (span_1_y * cos_a1 - span_1_x * sin_a1) / rod_length_1
+        margin_stretched_1 = one_by_rod_length_1 * (span_1_y * cos_a1 - span_1_x * sin_a1)
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
         cos_a2 = cos(a2)
         # rod 2: known part of its vector
         span_2_x = x + platform_2_x * cos_heading - base_2_x - platform_2_y * sin_heading
         span_2_y = y + platform_2_y * cos_heading + platform_2_x * sin_heading - base_2_y
-        margin_stretched_2 = (span_2_y * cos_a2 - span_2_x * sin_a2) / rod_length_2
+        margin_stretched_2 = one_by_rod_length_2 * (span_2_y * cos_a2 - span_2_x * sin_a2)
         a3 = DEGREE * (axis_a3 - offset_a3)
         sin_a3 = sin(a3)
         cos_a3 = cos(a3)
         # rod 3: known part of its vector
         span_3_x = x + platform_3_x * cos_heading - base_3_x - platform_3_y * sin_heading
         span_3_y = y + platform_3_y * cos_heading + platform_3_x * sin_heading - base_3_y
-        margin_stretched_3 = (span_3_y * cos_a3 - span_3_x * sin_a3) / rod_length_3
+        margin_stretched_3 = one_by_rod_length_3 * (span_3_y * cos_a3 - span_3_x * sin_a3)
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, determinant)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -1107,10 +1114,10 @@ class Planar3RRR(IterativeForward, TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Status.UNREACHABLE
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))

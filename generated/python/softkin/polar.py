@@ -15,8 +15,8 @@ Singularities:
     machine has no length with which this distance could be compared
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 5 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 10 additions, 4 multiplications, 3 divisions, 1 square roots, 1 sines
+    forward: 5 additions, 4 multiplications, 0 divisions, 0 square roots, 2 sines
+    inverse: 10 additions, 6 multiplications, 1 divisions, 1 square roots, 1 sines
     a branch at a singular pose, more: 1 additions, 1 multiplications, 0 divisions, 0 square roots, 2 sines
 
 As CODESYS's own block it has no orientation mode "Axis": a point beside the arm has two radii.
@@ -55,9 +55,10 @@ class Constants:
         machine_scale = 1.0  # characteristic length of the machine
         machine_scale_times_plane = 1e-6 * machine_scale
         machine_scale_times_free_angle = 1e-11 * machine_scale
-        self.offset_c, self.offset_r, self.machine_scale = offset_c, offset_r, machine_scale
-        self.machine_scale_times_plane = machine_scale_times_plane
+        one_by_machine_scale = 1.0 / machine_scale
+        self.offset_c, self.offset_r, self.machine_scale_times_plane = offset_c, offset_r, machine_scale_times_plane
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
+        self.one_by_machine_scale = one_by_machine_scale
 
 
 class Polar(Mechanism):
@@ -181,7 +182,7 @@ class Polar(Mechanism):
             direction_y_c = sin(reference_c)
         open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
         near_c = 360.0 * (turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0) / DEGREE  # C: whole turns added
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0) * RADIAN  # C: whole turns added
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         axis_r = offset_r + radius_c
@@ -202,7 +203,7 @@ class Polar(Mechanism):
         """The margins, each zero at its singularity."""
         axis_c, axis_r = axes
         k = self._constants
-        machine_scale, offset_c, offset_r = k.machine_scale, k.offset_c, k.offset_r
+        offset_c, offset_r, one_by_machine_scale = k.offset_c, k.offset_r, k.one_by_machine_scale
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9):
             return Status.BAD_INPUT
@@ -216,7 +217,7 @@ class Polar(Mechanism):
         sin_c = sin(c)
         y = r * sin_c
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
-        length_free_c = radius_c / machine_scale
+        length_free_c = one_by_machine_scale * radius_c
         margin_free_c = 1.0 if length_free_c > 1e-11 else 0.0  # 0 where nothing determines the axis, else 1 or -1
         return (margin_free_c,)
 

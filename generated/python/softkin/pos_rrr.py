@@ -20,9 +20,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 26 additions, 26 multiplications, 4 divisions, 0 square roots, 8 sines
-    inverse: 51 additions, 36 multiplications, 13 divisions, 4 square roots, 3 sines
-    inverse, all 4 branches open: 201 additions, 144 multiplications, 52 divisions, 16 square roots, 12 sines
+    forward: 26 additions, 30 multiplications, 0 divisions, 0 square roots, 8 sines
+    inverse: 41 additions, 40 multiplications, 5 divisions, 4 square roots, 3 sines
+    inverse, all 4 branches open: 143 additions, 119 multiplications, 14 divisions, 9 square roots, 10 sines
     a branch at a singular pose, more: 11 additions, 11 multiplications, 2 divisions, 1 square roots, 4 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
@@ -38,7 +38,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.pos_rrr import unrolled
 
@@ -68,25 +68,29 @@ class Constants:
         machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
         machine_scale_times_rounding = 1e-12 * machine_scale
         a2_times_shortest_link = 1e-9 * a2
+        one_by_machine_scale = 1.0 / machine_scale
         d4_by_effective_q3_2 = d4 / effective_q3_2
         a3_by_effective_q3_2 = a3 / effective_q3_2
         a2_squared_plus_effective_q3_2_squared = a2_squared + effective_q3_2 * effective_q3_2
         twice_d3 = 2.0 * d3
         a2_plus_effective_q3_2 = a2 + effective_q3_2
         a2_minus_effective_q3_2 = a2 - effective_q3_2
+        quotient_in_cos_swing_q3 = 0.25 / (a2 * effective_q3_2)
+        half_by_a2_by_effective_q3_2 = 0.5 / (a2 * effective_q3_2)
         twice_a2 = 2.0 * a2
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.offset_a1 = d1, a1, a2, d3, a3, d4, offset_a1
-        self.offset_a2, self.offset_a3, self.machine_scale = offset_a2, offset_a3, machine_scale
-        self.effective_q3_2, self.rounding_q1, self.size_q1_for_q3_2 = effective_q3_2, rounding_q1, size_q1_for_q3_2
-        self.a2_squared, self.size_q1_for_q3_2_times_rounding = a2_squared, size_q1_for_q3_2_times_rounding
+        self.offset_a2, self.offset_a3, self.effective_q3_2 = offset_a2, offset_a3, effective_q3_2
+        self.rounding_q1, self.size_q1_for_q3_2, self.a2_squared = rounding_q1, size_q1_for_q3_2, a2_squared
+        self.size_q1_for_q3_2_times_rounding = size_q1_for_q3_2_times_rounding
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
         self.machine_scale_times_rounding = machine_scale_times_rounding
-        self.a2_times_shortest_link, self.d4_by_effective_q3_2 = a2_times_shortest_link, d4_by_effective_q3_2
-        self.a3_by_effective_q3_2 = a3_by_effective_q3_2
+        self.a2_times_shortest_link, self.one_by_machine_scale = a2_times_shortest_link, one_by_machine_scale
+        self.d4_by_effective_q3_2, self.a3_by_effective_q3_2 = d4_by_effective_q3_2, a3_by_effective_q3_2
         self.a2_squared_plus_effective_q3_2_squared, self.twice_d3 = a2_squared_plus_effective_q3_2_squared, twice_d3
         self.a2_plus_effective_q3_2, self.a2_minus_effective_q3_2 = a2_plus_effective_q3_2, a2_minus_effective_q3_2
-        self.twice_a2 = twice_a2
+        self.quotient_in_cos_swing_q3 = quotient_in_cos_swing_q3
+        self.half_by_a2_by_effective_q3_2, self.twice_a2 = half_by_a2_by_effective_q3_2, twice_a2
 
 
 class PosRRR(OffsetKinematics):
@@ -186,8 +190,8 @@ class PosRRR(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         a1, a2, a3, a3_by_effective_q3_2, d1, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3_2, k.d1, k.d3, k.d4
-        d4_by_effective_q3_2, machine_scale, offset_a1 = k.d4_by_effective_q3_2, k.machine_scale, k.offset_a1
-        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        d4_by_effective_q3_2, offset_a1, offset_a2 = k.d4_by_effective_q3_2, k.offset_a1, k.offset_a2
+        offset_a3, one_by_machine_scale = k.offset_a3, k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
@@ -214,7 +218,7 @@ class PosRRR(OffsetKinematics):
         cos_q2 = cos(q2)
         z_at_q3 = d1 + a2 * cos_q2
         z = z_at_q3 + a3 * cos_q23 + d4 * sin_q23
-        branch_arm = (x * cos_q1 + y * sin_q1) / machine_scale
+        branch_arm = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
         branch_elbow = d4_by_effective_q3_2 * cos_q3 - a3_by_effective_q3_2 * sin_q3
@@ -258,13 +262,14 @@ class PosRRR(OffsetKinematics):
         a2_plus_effective_q3_2 = k.a2_plus_effective_q3_2
         a2_squared_plus_effective_q3_2_squared = k.a2_squared_plus_effective_q3_2_squared
         a3_by_effective_q3_2, d1, d3, d4_by_effective_q3_2 = k.a3_by_effective_q3_2, k.d1, k.d3, k.d4_by_effective_q3_2
-        effective_q3_2, machine_scale_squared_times_plane = k.effective_q3_2, k.machine_scale_squared_times_plane
+        effective_q3_2, half_by_a2_by_effective_q3_2 = k.effective_q3_2, k.half_by_a2_by_effective_q3_2
+        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-        size_q1_for_q3_2, size_q1_for_q3_2_times_rounding = k.size_q1_for_q3_2, k.size_q1_for_q3_2_times_rounding
-        twice_d3 = k.twice_d3
+        quotient_in_cos_swing_q3, rounding_q1, single_a1 = k.quotient_in_cos_swing_q3, k.rounding_q1, k.single_a1
+        single_a2, single_a3, size_q1_for_q3_2 = k.single_a2, k.single_a3, k.size_q1_for_q3_2
+        size_q1_for_q3_2_times_rounding, twice_d3 = k.size_q1_for_q3_2_times_rounding, k.twice_d3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
@@ -343,10 +348,7 @@ class PosRRR(OffsetKinematics):
         one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_swing_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             missing = (
@@ -363,11 +365,13 @@ class PosRRR(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
+        sin_swing_q3 = (
+            -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * half_by_a2_by_effective_q3_2
+        )
         # rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
@@ -381,7 +385,7 @@ class PosRRR(OffsetKinematics):
             direction_y_q2 = sin(reference_a2)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -389,7 +393,7 @@ class PosRRR(OffsetKinematics):
         sin_q3 = a3_by_effective_q3_2 * sin_swing_q3 + d4_by_effective_q3_2 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -413,8 +417,8 @@ class PosRRR(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         a1, a2, a3, a3_by_effective_q3_2, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3_2, k.d3, k.d4
-        d4_by_effective_q3_2, machine_scale, offset_a1 = k.d4_by_effective_q3_2, k.machine_scale, k.offset_a1
-        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        d4_by_effective_q3_2, offset_a1, offset_a2 = k.d4_by_effective_q3_2, k.offset_a1, k.offset_a2
+        offset_a3, one_by_machine_scale = k.offset_a3, k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
@@ -438,7 +442,7 @@ class PosRRR(OffsetKinematics):
         r21_at_q23 = -sin_q1 * sin_q23
         r22_at_q23 = -cos_q23 * sin_q1
         y = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1 - d4 * r22_at_q23
-        margin_point_on_axis_1 = (x * cos_q1 + y * sin_q1) / machine_scale
+        margin_point_on_axis_1 = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
         margin_elbow = d4_by_effective_q3_2 * cos_q3 - a3_by_effective_q3_2 * sin_q3
@@ -656,7 +660,7 @@ class PosRRR(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
@@ -677,12 +681,12 @@ class PosRRR(OffsetKinematics):
             direction_y_q2 = sin(reference_a2)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -692,8 +696,8 @@ class PosRRR(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         point_x, point_y, point_z = offset
         k = self._constants
-        a1, a2, a3, d3, d4, machine_scale, offset_a1 = k.a1, k.a2, k.a3, k.d3, k.d4, k.machine_scale, k.offset_a1
-        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        a1, a2, a3, d3, d4, offset_a1, offset_a2 = k.a1, k.a2, k.a3, k.d3, k.d4, k.offset_a1, k.offset_a2
+        offset_a3, one_by_machine_scale = k.offset_a3, k.one_by_machine_scale
         if not reasonable(point_x, point_y, point_z, axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
@@ -719,12 +723,12 @@ class PosRRR(OffsetKinematics):
         y_at_q3 = y_at_q2 + a2 * r21_at_q2
         flange_y = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1 - d4 * r22_at_q23
         y = flange_y + point_x * r21_at_q23 - point_y * cos_q1 - point_z * r22_at_q23
-        branch_arm = (x * cos_q1 + y * sin_q1) / machine_scale
+        branch_arm = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
         tool_x = a3 + point_x  # commanded point, in the frame of the last moving joint
         tool_y = -d4 - point_z  # commanded point, in the frame of the last moving joint
-        branch_elbow = (-tool_y * cos_q3 - tool_x * sin_q3) / machine_scale
+        branch_elbow = -one_by_machine_scale * (tool_y * cos_q3 + tool_x * sin_q3)
         return (branch_arm, branch_elbow)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

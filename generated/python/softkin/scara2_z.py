@@ -17,9 +17,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 12 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 32 additions, 19 multiplications, 8 divisions, 2 square roots, 2 sines
-    inverse, all 2 branches open: 63 additions, 38 multiplications, 16 divisions, 4 square roots, 4 sines
+    forward: 12 additions, 8 multiplications, 0 divisions, 0 square roots, 5 sines
+    inverse: 25 additions, 22 multiplications, 2 divisions, 2 square roots, 2 sines
+    inverse, all 2 branches open: 52 additions, 40 multiplications, 4 divisions, 3 square roots, 4 sines
     a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
@@ -35,7 +35,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.scara2_z import unrolled
 
@@ -60,12 +60,18 @@ class Constants:
         arm_length_1_times_shortest_link = 1e-9 * arm_length_1
         arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
+        quotient_in_cos_a2 = 0.25 / (arm_length_1 * arm_length_2)
+        half_by_arm_length_1_by_arm_length_2 = 0.5 / (arm_length_1 * arm_length_2)
+        one_by_machine_scale = 1.0 / machine_scale
         self.arm_length_1, self.arm_length_2, self.offset_a1 = arm_length_1, arm_length_2, offset_a1
-        self.offset_a2, self.offset_z, self.machine_scale = offset_a2, offset_z, machine_scale
+        self.offset_a2, self.offset_z = offset_a2, offset_z
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
         self.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2
         self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
+        self.quotient_in_cos_a2 = quotient_in_cos_a2
+        self.half_by_arm_length_1_by_arm_length_2 = half_by_arm_length_1_by_arm_length_2
+        self.one_by_machine_scale = one_by_machine_scale
 
 
 class Scara2Z(OffsetKinematics):
@@ -192,9 +198,10 @@ class Scara2Z(OffsetKinematics):
         k = self._constants
         arm_length_1, arm_length_1_minus_arm_length_2 = k.arm_length_1, k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2, arm_length_2 = k.arm_length_1_plus_arm_length_2, k.arm_length_2
+        half_by_arm_length_1_by_arm_length_2 = k.half_by_arm_length_1_by_arm_length_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
-        offset_a1, offset_a2, offset_z, single_a1 = k.offset_a1, k.offset_a2, k.offset_z, k.single_a1
-        single_a2 = k.single_a2
+        offset_a1, offset_a2, offset_z, quotient_in_cos_a2 = k.offset_a1, k.offset_a2, k.offset_z, k.quotient_in_cos_a2
+        single_a1, single_a2 = k.single_a1, k.single_a2
         if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
@@ -202,10 +209,7 @@ class Scara2Z(OffsetKinematics):
         one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach) * (arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
@@ -221,7 +225,9 @@ class Scara2Z(OffsetKinematics):
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = (
+            (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow * half_by_arm_length_1_by_arm_length_2
+        )
         # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
@@ -235,12 +241,12 @@ class Scara2Z(OffsetKinematics):
             direction_y_a1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         axis_z = offset_z + z
@@ -384,12 +390,12 @@ class Scara2Z(OffsetKinematics):
             direction_y_a1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         joint_z = z - point_z  # joint_z from the z equation, which is linear in it
@@ -401,7 +407,7 @@ class Scara2Z(OffsetKinematics):
         axis_a1, axis_a2, axis_z = axes
         point_x, point_y, _ = offset
         k = self._constants
-        arm_length_2, machine_scale, offset_a2 = k.arm_length_2, k.machine_scale, k.offset_a2
+        arm_length_2, offset_a2, one_by_machine_scale = k.arm_length_2, k.offset_a2, k.one_by_machine_scale
         # inputs must be numbers, and of reasonable size
         if not reasonable(point_x, point_y, axis_a1, axis_a2, axis_z):
             return Status.BAD_INPUT
@@ -409,7 +415,7 @@ class Scara2Z(OffsetKinematics):
         sin_a2 = sin(a2)
         cos_a2 = cos(a2)
         tool_x = arm_length_2 + point_x  # commanded point, in the frame of the last moving joint
-        branch_elbow = (point_y * cos_a2 + tool_x * sin_a2) / machine_scale
+        branch_elbow = one_by_machine_scale * (point_y * cos_a2 + tool_x * sin_a2)
         return (branch_elbow,)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

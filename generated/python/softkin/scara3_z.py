@@ -19,10 +19,10 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 19 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 49 additions, 26 multiplications, 13 divisions, 3 square roots, 3 sines
-    inverse, all 2 branches open: 97 additions, 52 multiplications, 26 divisions, 6 square roots, 6 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 19 additions, 12 multiplications, 0 divisions, 0 square roots, 7 sines
+    inverse: 39 additions, 30 multiplications, 5 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches open: 79 additions, 53 multiplications, 7 divisions, 4 square roots, 5 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset interface.
@@ -39,7 +39,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.scara3_z import unrolled
@@ -65,11 +65,15 @@ class Constants:
         machine_scale_times_free_angle = 1e-11 * machine_scale
         arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
+        quotient_in_cos_a2 = 0.25 / (arm_length_1 * arm_length_2)
+        half_by_arm_length_1_by_arm_length_2 = 0.5 / (arm_length_1 * arm_length_2)
         self.arm_length_1, self.arm_length_2, self.arm_length_3 = arm_length_1, arm_length_2, arm_length_3
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_z = offset_a1, offset_a2, offset_a3, offset_z
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2
         self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
+        self.quotient_in_cos_a2 = quotient_in_cos_a2
+        self.half_by_arm_length_1_by_arm_length_2 = half_by_arm_length_1_by_arm_length_2
 
 
 class Scara3Z(TwistChoice):
@@ -216,19 +220,20 @@ class Scara3Z(TwistChoice):
         k = self._constants
         arm_length_1, arm_length_1_minus_arm_length_2 = k.arm_length_1, k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2, arm_length_2 = k.arm_length_1_plus_arm_length_2, k.arm_length_2
-        arm_length_3, machine_scale_times_free_angle = k.arm_length_3, k.machine_scale_times_free_angle
-        mid_a1, mid_a2, mid_a3, offset_a1, offset_a2 = k.mid_a1, k.mid_a2, k.mid_a3, k.offset_a1, k.offset_a2
-        offset_a3, offset_z, single_a1, single_a2 = k.offset_a3, k.offset_z, k.single_a1, k.single_a2
+        arm_length_3, half_by_arm_length_1_by_arm_length_2 = k.arm_length_3, k.half_by_arm_length_1_by_arm_length_2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        mid_a3, offset_a1, offset_a2, offset_a3, offset_z = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3, k.offset_z
+        quotient_in_cos_a2, single_a1, single_a2 = k.quotient_in_cos_a2, k.single_a1, k.single_a2
         single_a3 = k.single_a3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         wrist_x = x - arm_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across / heading_length
@@ -238,10 +243,7 @@ class Scara3Z(TwistChoice):
         one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach) * (arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
@@ -257,7 +259,9 @@ class Scara3Z(TwistChoice):
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = (
+            (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow * half_by_arm_length_1_by_arm_length_2
+        )
         # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
@@ -272,20 +276,20 @@ class Scara3Z(TwistChoice):
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + angle_a1 * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_a2 / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + angle_a2 * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
-        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2) / DEGREE
+        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2) * RADIAN
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         axis_z = offset_z + z
@@ -390,10 +394,10 @@ class Scara3Z(TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Status.UNREACHABLE
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))

@@ -20,10 +20,10 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 18 additions, 10 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 49 additions, 26 multiplications, 11 divisions, 3 square roots, 3 sines
-    inverse, all 2 branches open: 97 additions, 52 multiplications, 22 divisions, 6 square roots, 6 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 18 additions, 13 multiplications, 0 divisions, 0 square roots, 7 sines
+    inverse: 38 additions, 28 multiplications, 3 divisions, 2 square roots, 3 sines
+    inverse, all 2 branches open: 81 additions, 53 multiplications, 5 divisions, 3 square roots, 5 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 The coupling may be given as travel per turn (pitch) or per degree (gear coupling), never both.
@@ -43,7 +43,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.scara4_cczc_zccoupled import unrolled
@@ -70,23 +70,28 @@ class Constants:
         self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
         self.lowest_a3, self.highest_a3, *_ = machine._window("a3")
         self.lowest_a4, self.highest_a4, self.single_a4, self.mid_a4 = machine._window(
-            "a4", (-720.0, 720.0) if abs(gear_coupling / DEGREE - pitch_zc / (360.0 * DEGREE)) > 0.0 else None
+            "a4", (-720.0, 720.0) if abs(gear_coupling * RADIAN - pitch_zc / 360.0 * RADIAN) > 0.0 else None
         )
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
         shared_value = -1.0 if flange_down else 1.0
         machine_scale_times_free_angle = 1e-11 * machine_scale
-        shared_sum = gear_coupling / DEGREE - pitch_zc / (360.0 * DEGREE)
+        shared_sum = gear_coupling * RADIAN - pitch_zc / 360.0 * RADIAN
         link_length_1_times_shortest_link = 1e-9 * link_length_1
-        quotient_in_z = (gear_coupling - pitch_zc / 360.0) / DEGREE
+        quotient_in_z = (gear_coupling - pitch_zc / 360.0) * RADIAN
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+        quotient_in_cos_a2 = 0.25 / (link_length_1 * link_length_2)
+        half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
+        one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.flange_down = link_length_1, link_length_2, flange_down
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.machine_scale, self.shared_value = machine_scale, shared_value
-        self.machine_scale_times_free_angle, self.shared_sum = machine_scale_times_free_angle, shared_sum
-        self.link_length_1_times_shortest_link, self.quotient_in_z = link_length_1_times_shortest_link, quotient_in_z
-        self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
+        self.shared_value, self.machine_scale_times_free_angle = shared_value, machine_scale_times_free_angle
+        self.shared_sum, self.link_length_1_times_shortest_link = shared_sum, link_length_1_times_shortest_link
+        self.quotient_in_z, self.link_length_1_plus_link_length_2 = quotient_in_z, link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
+        self.quotient_in_cos_a2 = quotient_in_cos_a2
+        self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
+        self.one_by_machine_scale = one_by_machine_scale
 
 
 class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
@@ -264,13 +269,13 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         turn_a4, turn_a1, turn_a2 = turns
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self._constants
-        flange_down, link_length_1 = k.flange_down, k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        flange_down, half_by_link_length_1_by_link_length_2 = k.flange_down, k.half_by_link_length_1_by_link_length_2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
-        offset_a4, quotient_in_z, single_a1, single_a2 = k.offset_a4, k.quotient_in_z, k.single_a1, k.single_a2
-        single_a4 = k.single_a4
+        offset_a4, quotient_in_cos_a2, quotient_in_z = k.offset_a4, k.quotient_in_cos_a2, k.quotient_in_z
+        single_a1, single_a2, single_a4 = k.single_a1, k.single_a2, k.single_a4
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
@@ -280,19 +285,15 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         else:
             heading_along = r11 + r22
             heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
@@ -308,7 +309,11 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = (
+            (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+            * sigma_elbow
+            * half_by_link_length_1_by_link_length_2
+        )
         # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
@@ -323,20 +328,20 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + angle_a1 * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_a2 / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + angle_a2 * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(heading_across + 0.0, heading_along + 0.0)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
-        axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2) / DEGREE
+        axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2) * RADIAN
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         a4 = DEGREE * (axis_a4 - offset_a4)  # A4: joint value with its whole turns
@@ -443,10 +448,10 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         else:
             heading_along = r11 + r22
             heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Status.UNREACHABLE
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return (
@@ -534,12 +539,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             direction_y_a1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         # commanded point, in the frame of the last moving joint
@@ -553,8 +558,8 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         point_x, point_y, _ = offset
         k = self._constants
-        flange_down, link_length_2, machine_scale = k.flange_down, k.link_length_2, k.machine_scale
-        offset_a2, offset_a4 = k.offset_a2, k.offset_a4
+        flange_down, link_length_2, offset_a2, offset_a4 = k.flange_down, k.link_length_2, k.offset_a2, k.offset_a4
+        one_by_machine_scale = k.one_by_machine_scale
         # inputs must be numbers, and of reasonable size
         if not reasonable(point_x, point_y, axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
@@ -578,7 +583,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         tool_y = (
             point_x_times_sin_a4 - cos_a4_times_point_y if flange_down else cos_a4_times_point_y + point_x_times_sin_a4
         )
-        branch_elbow = (tool_y * cos_a2 + tool_x * sin_a2) / machine_scale
+        branch_elbow = one_by_machine_scale * (tool_y * cos_a2 + tool_x * sin_a2)
         return (branch_elbow,)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

@@ -19,10 +19,10 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 19 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 49 additions, 26 multiplications, 13 divisions, 3 square roots, 3 sines
-    inverse, all 2 branches open: 97 additions, 52 multiplications, 26 divisions, 6 square roots, 6 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 19 additions, 12 multiplications, 0 divisions, 0 square roots, 7 sines
+    inverse: 39 additions, 30 multiplications, 5 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches open: 79 additions, 53 multiplications, 7 divisions, 4 square roots, 5 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
@@ -43,7 +43,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.scara4_zccc import unrolled
@@ -70,12 +70,18 @@ class Constants:
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+        quotient_in_cos_a3 = 0.25 / (link_length_1 * link_length_2)
+        half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
+        one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.machine_scale, self.machine_scale_times_free_angle = machine_scale, machine_scale_times_free_angle
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
+        self.quotient_in_cos_a3 = quotient_in_cos_a3
+        self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
+        self.one_by_machine_scale = one_by_machine_scale
 
 
 class Scara4ZCCC(OffsetKinematics, TwistChoice):
@@ -220,21 +226,22 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         turn_a2, turn_a3, turn_a4 = turns
         _, ref_a2, ref_a3, ref_a4 = reference
         k = self._constants
+        half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         link_length_3, machine_scale_times_free_angle = k.link_length_3, k.machine_scale_times_free_angle
         mid_a2, mid_a3, mid_a4, offset_a1, offset_a2 = k.mid_a2, k.mid_a3, k.mid_a4, k.offset_a1, k.offset_a2
-        offset_a3, offset_a4, single_a2, single_a3 = k.offset_a3, k.offset_a4, k.single_a2, k.single_a3
-        single_a4 = k.single_a4
+        offset_a3, offset_a4, quotient_in_cos_a3 = k.offset_a3, k.offset_a4, k.quotient_in_cos_a3
+        single_a2, single_a3, single_a4 = k.single_a2, k.single_a3, k.single_a4
         if not reasonable(x, y, z, ref_a2, ref_a3, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         wrist_x = x - link_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across / heading_length
@@ -244,10 +251,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) * quotient_in_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
             missing = (
@@ -264,7 +268,11 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         axis_a1 = offset_a1 + z
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
-        sin_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a3
+        sin_a3 = (
+            (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
+            * sigma_elbow
+            * half_by_link_length_1_by_link_length_2
+        )
         # rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
@@ -279,20 +287,20 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         angle_a2 = arctan2(direction_y_a2 + 0.0, direction_x_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_a2 / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + angle_a2 * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_a3 = arctan2(sin_a3 + 0.0, cos_a3 + 0.0)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + angle_a3 / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + angle_a3 * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         # a4 from the sum a234 of angles about parallel axes; A4: whole turns added
-        axis_a4 = offset_a4 + (angle_heading - angle_a2 - angle_a3) / DEGREE
+        axis_a4 = offset_a4 + (angle_heading - angle_a2 - angle_a3) * RADIAN
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         return (axis_a1, axis_a2, axis_a3, axis_a4)
@@ -396,10 +404,10 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Status.UNREACHABLE
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
@@ -476,12 +484,12 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             direction_y_a2 = sin(reference_a2)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(direction_y_a2, direction_x_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(direction_y_a2, direction_x_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3, ref_a4)
@@ -491,8 +499,8 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         point_x, point_y, _ = offset
         k = self._constants
-        link_length_2, link_length_3, machine_scale = k.link_length_2, k.link_length_3, k.machine_scale
-        offset_a3, offset_a4 = k.offset_a3, k.offset_a4
+        link_length_2, link_length_3, offset_a3, offset_a4 = k.link_length_2, k.link_length_3, k.offset_a3, k.offset_a4
+        one_by_machine_scale = k.one_by_machine_scale
         # inputs must be numbers, and of reasonable size
         if not reasonable(point_x, point_y, axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
@@ -507,7 +515,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         tool_x = link_length_2 + link_length_3_plus_point_x * cos_a4 - point_y * sin_a4
         # commanded point, in the frame of the last moving joint
         tool_y = point_y * cos_a4 + link_length_3_plus_point_x * sin_a4
-        branch_elbow = (tool_y * cos_a3 + tool_x * sin_a3) / machine_scale
+        branch_elbow = one_by_machine_scale * (tool_y * cos_a3 + tool_x * sin_a3)
         return (branch_elbow,)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

@@ -21,10 +21,10 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 19 additions, 7 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 49 additions, 24 multiplications, 11 divisions, 3 square roots, 3 sines
-    inverse, all 2 branches open: 97 additions, 48 multiplications, 22 divisions, 6 square roots, 6 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 19 additions, 10 multiplications, 0 divisions, 0 square roots, 7 sines
+    inverse: 38 additions, 26 multiplications, 3 divisions, 2 square roots, 3 sines
+    inverse, all 2 branches open: 78 additions, 49 multiplications, 5 divisions, 3 square roots, 5 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 E1 is held: inverse kinematics leaves it where the reference has it (aRef in a block), and solves for the
@@ -43,7 +43,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.scaraonrail import unrolled
@@ -71,12 +71,18 @@ class Constants:
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+        quotient_in_cos_a2 = 0.25 / (link_length_1 * link_length_2)
+        half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
+        one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.offset_e1 = link_length_1, link_length_2, offset_e1
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.machine_scale, self.machine_scale_times_free_angle = machine_scale, machine_scale_times_free_angle
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
+        self.quotient_in_cos_a2 = quotient_in_cos_a2
+        self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
+        self.one_by_machine_scale = one_by_machine_scale
 
 
 class ScaraOnRail(OffsetKinematics, TwistChoice):
@@ -230,20 +236,20 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         turn_a1, turn_a2, turn_a4 = turns
         ref_e1, ref_a1, ref_a2, _, ref_a4 = reference
         k = self._constants
+        half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
-        offset_a4, offset_e1, single_a1, single_a2 = k.offset_a4, k.offset_e1, k.single_a1, k.single_a2
-        single_a4 = k.single_a4
+        offset_a4, offset_e1, quotient_in_cos_a2 = k.offset_a4, k.offset_e1, k.quotient_in_cos_a2
+        single_a1, single_a2, single_a4 = k.single_a1, k.single_a2, k.single_a4
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a4, ref_e1):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         reference_e1 = ref_e1 - offset_e1
         wrist_x = x - reference_e1  # coordinate of the point that the remaining links must reach
@@ -252,10 +258,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
@@ -271,7 +274,11 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = (
+            (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+            * sigma_elbow
+            * half_by_link_length_1_by_link_length_2
+        )
         # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
@@ -286,13 +293,13 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + angle_a1 * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_a2 / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + angle_a2 * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         axis_a3 = offset_a3 + z
@@ -300,7 +307,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
-        axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2) / DEGREE
+        axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2) * RADIAN
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         return (ref_e1, axis_a1, axis_a2, axis_a3, axis_a4)
@@ -393,10 +400,10 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Status.UNREACHABLE
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
@@ -470,12 +477,12 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
             direction_y_a1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         a3 = z - point_z  # a3 from the z equation, which is linear in it
@@ -487,7 +494,8 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         axis_e1, axis_a1, axis_a2, axis_a3, axis_a4 = axes
         point_x, point_y, _ = offset
         k = self._constants
-        link_length_2, machine_scale, offset_a2, offset_a4 = k.link_length_2, k.machine_scale, k.offset_a2, k.offset_a4
+        link_length_2, offset_a2, offset_a4 = k.link_length_2, k.offset_a2, k.offset_a4
+        one_by_machine_scale = k.one_by_machine_scale
         # inputs must be numbers, and of reasonable size
         if not reasonable(point_x, point_y, axis_a1, axis_a2, axis_a3, axis_a4, axis_e1):
             return Status.BAD_INPUT
@@ -500,7 +508,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         # commanded point, in the frame of the last moving joint
         tool_x = link_length_2 + point_x * cos_a4 - point_y * sin_a4
         tool_y = point_y * cos_a4 + point_x * sin_a4  # commanded point, in the frame of the last moving joint
-        branch_elbow = (tool_y * cos_a2 + tool_x * sin_a2) / machine_scale
+        branch_elbow = one_by_machine_scale * (tool_y * cos_a2 + tool_x * sin_a2)
         return (branch_elbow,)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

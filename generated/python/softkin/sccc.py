@@ -19,11 +19,11 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 21 additions, 12 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 59 additions, 37 multiplications, 15 divisions, 3 square roots, 3 sines
-    inverse, all 2 branches open: 111 additions, 68 multiplications, 28 divisions, 6 square roots, 6 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 9 additions, 6 multiplications, 2 divisions, 0 square roots, 2 sines
+    forward: 21 additions, 15 multiplications, 0 divisions, 0 square roots, 7 sines
+    inverse: 49 additions, 43 multiplications, 5 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches open: 96 additions, 73 multiplications, 7 divisions, 4 square roots, 5 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 9 additions, 8 multiplications, 0 divisions, 0 square roots, 2 sines
 
 A belt arm with all motors in the base typically has coupling_12 = coupling_23 = -1.
 
@@ -45,7 +45,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn, turn_inside
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.sccc import unrolled
@@ -77,22 +77,27 @@ class Constants:
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        quotient_in_open_a2 = coupling_12 / DEGREE
+        quotient_in_cos_a2 = 0.25 / (link_length_1 * link_length_2)
+        half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
+        quotient_in_open_a2 = coupling_12 * RADIAN
         shared_sum = link_length_3 + (coupling_12 + coupling_13) * link_length_3
         shared_sum_2 = link_length_2 + coupling_12 * link_length_2
         shared_sum_3 = link_length_3 + coupling_23 * link_length_3
+        one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
         self.coupling_12, self.coupling_13, self.coupling_23 = coupling_12, coupling_13, coupling_23
         self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
-        self.machine_scale, self.machine_scale_times_plane = machine_scale, machine_scale_times_plane
+        self.machine_scale_times_plane = machine_scale_times_plane
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.coupling_12_plus_coupling_13_plus_one = coupling_12_plus_coupling_13_plus_one
         self.coupling_23_plus_one = coupling_23_plus_one
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
+        self.quotient_in_cos_a2 = quotient_in_cos_a2
+        self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
         self.quotient_in_open_a2, self.shared_sum, self.shared_sum_2 = quotient_in_open_a2, shared_sum, shared_sum_2
-        self.shared_sum_3 = shared_sum_3
+        self.shared_sum_3, self.one_by_machine_scale = shared_sum_3, one_by_machine_scale
 
 
 class SCCC(OffsetKinematics, TwistChoice):
@@ -254,26 +259,27 @@ class SCCC(OffsetKinematics, TwistChoice):
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
         coupling_12, coupling_13, coupling_23 = k.coupling_12, k.coupling_13, k.coupling_23
+        half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         link_length_3, machine_scale_times_free_angle = k.link_length_3, k.machine_scale_times_free_angle
         machine_scale_times_plane, mid_a1, mid_a2, mid_a3 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2, k.mid_a3
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-        quotient_in_open_a2, single_a1, single_a2 = k.quotient_in_open_a2, k.single_a1, k.single_a2
-        single_a3 = k.single_a3
+        quotient_in_cos_a2, quotient_in_open_a2, single_a1 = k.quotient_in_cos_a2, k.quotient_in_open_a2, k.single_a1
+        single_a2, single_a3 = k.single_a2, k.single_a3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         wrist_x = x - link_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across / heading_length
@@ -283,10 +289,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
@@ -302,7 +305,11 @@ class SCCC(OffsetKinematics, TwistChoice):
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = (
+            (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+            * sigma_elbow
+            * half_by_link_length_1_by_link_length_2
+        )
         # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
@@ -317,7 +324,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + angle_a1 * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
@@ -329,8 +336,8 @@ class SCCC(OffsetKinematics, TwistChoice):
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2) * DEGREE
             reference_a2 = ref_motor_a2 + coupling_12 * reference_a1
-            near_a2 = mid_a2 if single_a2 else sum_in_axis_a2 + reference_a2 / DEGREE
-        axis_a2 = sum_in_axis_a2 + angle_a2 / DEGREE  # A2: whole turns added
+            near_a2 = mid_a2 if single_a2 else sum_in_axis_a2 + reference_a2 * RADIAN
+        axis_a2 = sum_in_axis_a2 + angle_a2 * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
@@ -347,9 +354,9 @@ class SCCC(OffsetKinematics, TwistChoice):
             else:
                 ref_motor_a3 = (ref_a3 - offset_a3) * DEGREE
                 reference_a3 = ref_motor_a3 + coupling_13 * reference_a1 + coupling_23 * ref_motor_a2
-                near_a3 = offset_a3 + (reference_a3 - sum_in_axis_a3) / DEGREE
+                near_a3 = offset_a3 + (reference_a3 - sum_in_axis_a3) * RADIAN
         # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
-        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2 - sum_in_axis_a3) / DEGREE
+        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2 - sum_in_axis_a3) * RADIAN
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -372,7 +379,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         a1 = DEGREE * (axis_a1 - offset_a1)
         motor_a2 = DEGREE * (axis_a2 - offset_a2)
         a2 = motor_a2 + a1 * coupling_12
-        value_joint_2 = a2 / DEGREE  # joint 2
+        value_joint_2 = a2 * RADIAN  # joint 2
         if not lowest_joint_2 <= value_joint_2 <= highest_joint_2:
             return beyond(
                 "joint 2",
@@ -390,7 +397,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             )
         motor_a3 = DEGREE * (axis_a3 - offset_a3)
         a3 = motor_a3 + a1 * coupling_13 + coupling_23 * motor_a2
-        value_joint_3 = a3 / DEGREE  # joint 3
+        value_joint_3 = a3 * RADIAN  # joint 3
         if not lowest_joint_3 <= value_joint_3 <= highest_joint_3:
             return beyond(
                 "joint 3",
@@ -510,10 +517,10 @@ class SCCC(OffsetKinematics, TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return Status.UNREACHABLE
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
@@ -596,7 +603,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             direction_y_a1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         motor_a1 = DEGREE * (axis_a1 - offset_a1)
@@ -605,12 +612,12 @@ class SCCC(OffsetKinematics, TwistChoice):
             near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2)
         else:
             reference_a2 = ref_motor_a2 + coupling_12 * reference_a1
-            near_a2 = mid_a2 if single_a2 else sum_in_axis_a2 + reference_a2 / DEGREE
-        axis_a2 = sum_in_axis_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+            near_a2 = mid_a2 if single_a2 else sum_in_axis_a2 + reference_a2 * RADIAN
+        axis_a2 = sum_in_axis_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         motor_a2 = DEGREE * (axis_a2 - offset_a2)
-        axis_a3 = offset_a3 + (reference_a3 - coupling_13 * motor_a1 - coupling_23 * motor_a2) / DEGREE
+        axis_a3 = offset_a3 + (reference_a3 - coupling_13 * motor_a1 - coupling_23 * motor_a2) * RADIAN
         return (axis_a1, axis_a2, axis_a3)
 
     def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
@@ -619,8 +626,8 @@ class SCCC(OffsetKinematics, TwistChoice):
         point_x, point_y, _ = offset
         k = self._constants
         coupling_12, coupling_13, coupling_23 = k.coupling_12, k.coupling_13, k.coupling_23
-        link_length_2, link_length_3, machine_scale = k.link_length_2, k.link_length_3, k.machine_scale
-        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        link_length_2, link_length_3, offset_a1, offset_a2 = k.link_length_2, k.link_length_3, k.offset_a1, k.offset_a2
+        offset_a3, one_by_machine_scale = k.offset_a3, k.one_by_machine_scale
         # inputs must be numbers, and of reasonable size
         if not reasonable(point_x, point_y, axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
@@ -638,7 +645,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         tool_x = link_length_2 + link_length_3_plus_point_x * cos_a3 - point_y * sin_a3
         # commanded point, in the frame of the last moving joint
         tool_y = point_y * cos_a3 + link_length_3_plus_point_x * sin_a3
-        branch_elbow = (tool_y * cos_a2 + tool_x * sin_a2) / machine_scale
+        branch_elbow = one_by_machine_scale * (tool_y * cos_a2 + tool_x * sin_a2)
         return (branch_elbow,)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

@@ -21,9 +21,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 49 additions, 62 multiplications, 2 divisions, 1 square roots, 0 sines
-    inverse: 61 additions, 53 multiplications, 6 divisions, 5 square roots, 2 sines
-    inverse, all 8 branches open: 481 additions, 424 multiplications, 48 divisions, 40 square roots, 16 sines
+    forward: 49 additions, 63 multiplications, 1 divisions, 1 square roots, 0 sines
+    inverse: 55 additions, 53 multiplications, 3 divisions, 5 square roots, 2 sines
+    inverse, all 8 branches open: 232 additions, 186 multiplications, 24 divisions, 22 square roots, 16 sines
 
 Verified at 120 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -39,7 +39,7 @@ from softkin._configuration import Criterion
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.tripod_linear import unrolled
 
@@ -82,10 +82,10 @@ class Constants:
         inner_radius_minus_outer_radius = inner_radius - outer_radius
         half_sin_rail_angle = 0.5 * sin_rail_angle
         sum_in_pivot_2_x = 0.5 * outer_radius - 0.5 * inner_radius
+        one_by_arm_length = 1.0 / arm_length
         sin_rail_angle_times_root_of_3 = root_of_3 * sin_rail_angle
         twice_cos_rail_angle = 2.0 * cos_rail_angle
         half_by_arm_length = 0.5 / arm_length
-        one_by_arm_length = 1.0 / arm_length
         sin_rail_angle_times_half_by_arm_length = 0.5 * sin_rail_angle / arm_length
         cos_rail_angle_by_arm_length = cos_rail_angle / arm_length
         quotient_in_branch_carriage_2 = 0.5 * root_of_3 * sin_rail_angle / arm_length
@@ -99,7 +99,7 @@ class Constants:
         root_of_3_times_half_by_arm_length = 0.5 * root_of_3 / arm_length
         one_minus_sin_rail_angle_squared = 1.0 - sin_rail_angle * sin_rail_angle
         sum_in_radicand_a2 = 1.0 - 0.75 * sin_rail_angle * sin_rail_angle
-        product_in_margin_rods_coplanar = arm_length * arm_length * arm_length
+        quotient_in_margin_rods_coplanar = 1.0 / (arm_length * arm_length * arm_length)
         twice_sin_rail_angle = 2.0 * sin_rail_angle
         sum_in_slope_1_by_x = 2.0 * inner_radius - 2.0 * outer_radius
         self.outer_radius, self.inner_radius, self.arm_length = outer_radius, inner_radius, arm_length
@@ -113,9 +113,8 @@ class Constants:
         self.product_in_pivot_2_y, self.sum_in_pivot_2_y = product_in_pivot_2_y, sum_in_pivot_2_y
         self.inner_radius_minus_outer_radius = inner_radius_minus_outer_radius
         self.half_sin_rail_angle, self.sum_in_pivot_2_x = half_sin_rail_angle, sum_in_pivot_2_x
-        self.sin_rail_angle_times_root_of_3 = sin_rail_angle_times_root_of_3
+        self.one_by_arm_length, self.sin_rail_angle_times_root_of_3 = one_by_arm_length, sin_rail_angle_times_root_of_3
         self.twice_cos_rail_angle, self.half_by_arm_length = twice_cos_rail_angle, half_by_arm_length
-        self.one_by_arm_length = one_by_arm_length
         self.sin_rail_angle_times_half_by_arm_length = sin_rail_angle_times_half_by_arm_length
         self.cos_rail_angle_by_arm_length = cos_rail_angle_by_arm_length
         self.quotient_in_branch_carriage_2 = quotient_in_branch_carriage_2
@@ -127,7 +126,7 @@ class Constants:
         self.root_of_3_times_half_by_arm_length = root_of_3_times_half_by_arm_length
         self.one_minus_sin_rail_angle_squared = one_minus_sin_rail_angle_squared
         self.sum_in_radicand_a2 = sum_in_radicand_a2
-        self.product_in_margin_rods_coplanar = product_in_margin_rods_coplanar
+        self.quotient_in_margin_rods_coplanar = quotient_in_margin_rods_coplanar
         self.twice_sin_rail_angle, self.sum_in_slope_1_by_x = twice_sin_rail_angle, sum_in_slope_1_by_x
 
 
@@ -249,7 +248,7 @@ class TripodLinear(OffsetKinematics):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared = k.arm_length_squared
         arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
         cos_rail_angle, cos_rail_angle_by_arm_length = k.cos_rail_angle, k.cos_rail_angle_by_arm_length
         half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
@@ -316,7 +315,7 @@ class TripodLinear(OffsetKinematics):
         y = foot_y + height_by_normal * normal_y
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
-        branch_carriage_1 = (a1 + z * cos_rail_angle + span_1_x * sin_rail_angle) / arm_length
+        branch_carriage_1 = (a1 + z * cos_rail_angle + span_1_x * sin_rail_angle) * one_by_arm_length
         span_2_y = y - sum_in_pivot_2_y
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
         sum_in_branch_carriage_2 = span_2_x * sin_rail_angle_times_half_by_arm_length - z * cos_rail_angle_by_arm_length
@@ -332,65 +331,8 @@ class TripodLinear(OffsetKinematics):
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3 = axes
-        k = self._constants
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding, cos_rail_angle = k.arm_length_squared_times_rounding, k.cos_rail_angle
-        half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
-        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-        product_in_normal_divisor, product_in_pivot_2_y = k.product_in_normal_divisor, k.product_in_pivot_2_y
-        sin_rail_angle, sum_in_pivot_2_x, sum_in_pivot_2_y = k.sin_rail_angle, k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a2 = axis_a2 - offset_a2
-        pivot_2_y = sum_in_pivot_2_y - a2 * product_in_pivot_2_y
-        a3 = axis_a3 - offset_a3
-        pivot_3_y = a3 * product_in_pivot_2_y - sum_in_pivot_2_y
-        a1 = axis_a1 - offset_a1
-        pivot_1_z = -a1 * cos_rail_angle
-        pivot_2_z = -a2 * cos_rail_angle
-        centre_1_to_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3 * cos_rail_angle
-        centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
-        pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1: centre about which it swings
-        pivot_2_x = sum_in_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
-        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = sum_in_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
-        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
-        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
-        # squared length of the normal
-        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
-        # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > product_in_normal_divisor):
-            return Status.IMPOSSIBLE
-        # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5 * (
-            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
-        )
-        # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5 * (
-            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
-        )
-        one_by_normal_square = 1.0 / normal_square
-        # foot of the perpendicular, seen from centre 1
-        foot_x = one_by_normal_square * (
-            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
-            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
-        )
-        foot_y = one_by_normal_square * (
-            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
-            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
-        )
-        foot_z = one_by_normal_square * (
-            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
-            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
-        )
-        # square of the height over the plane of the centres
-        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
-        # the rods do not meet
-        if not (height_square >= -arm_length_squared_times_rounding):
-            return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
@@ -406,7 +348,7 @@ class TripodLinear(OffsetKinematics):
         cos_rail_angle_times_sin_rail_angle = k.cos_rail_angle_times_sin_rail_angle
         half_by_arm_length, half_sin_rail_angle = k.half_by_arm_length, k.half_sin_rail_angle
         inner_radius_minus_outer_radius, min_type2_margin = k.inner_radius_minus_outer_radius, k.min_type2_margin
-        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        offset_a1, offset_a2, offset_a3, one_by_arm_length = k.offset_a1, k.offset_a2, k.offset_a3, k.one_by_arm_length
         one_minus_sin_rail_angle_squared = k.one_minus_sin_rail_angle_squared
         product_in_pivot_2_y, product_in_radicand_a1 = k.product_in_pivot_2_y, k.product_in_radicand_a1
         product_in_radicand_a2, product_in_radicand_a2_2 = k.product_in_radicand_a2, k.product_in_radicand_a2_2
@@ -512,14 +454,14 @@ class TripodLinear(OffsetKinematics):
                 missing,
             )
         # ball joint of rod 1
-        if not (abs(y) / arm_length <= sin_max_angle_ball_joint):
+        if not (abs(y) * one_by_arm_length <= sin_max_angle_ball_joint):
             missing = (
-                arctan2(abs(y) / arm_length + 0.0, root(1.0 - y * y / arm_length_squared) + 0.0)
+                arctan2(abs(y) * one_by_arm_length + 0.0, root(1.0 - y * y / arm_length_squared) + 0.0)
                 - arctan2(
                     sin_max_angle_ball_joint + 0.0,
                     root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
         shared_product = root_of_3_times_half_by_arm_length * x
         half_by_arm_length_times_y = half_by_arm_length * y
@@ -538,7 +480,7 @@ class TripodLinear(OffsetKinematics):
                     sin_max_angle_ball_joint + 0.0,
                     root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
         if not (abs(half_by_arm_length_times_y - shared_product) <= sin_max_angle_ball_joint):
@@ -555,7 +497,7 @@ class TripodLinear(OffsetKinematics):
                     sin_max_angle_ball_joint + 0.0,
                     root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -580,14 +522,14 @@ class TripodLinear(OffsetKinematics):
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared = k.arm_length_squared
         arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
         cos_rail_angle, cos_rail_angle_by_arm_length = k.cos_rail_angle, k.cos_rail_angle_by_arm_length
         half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
         offset_a1, offset_a2, offset_a3, one_by_arm_length = k.offset_a1, k.offset_a2, k.offset_a3, k.one_by_arm_length
-        product_in_margin_rods_coplanar = k.product_in_margin_rods_coplanar
         product_in_normal_divisor, product_in_pivot_2_y = k.product_in_normal_divisor, k.product_in_pivot_2_y
-        quotient_in_branch_carriage_2, sin_rail_angle = k.quotient_in_branch_carriage_2, k.sin_rail_angle
+        quotient_in_branch_carriage_2 = k.quotient_in_branch_carriage_2
+        quotient_in_margin_rods_coplanar, sin_rail_angle = k.quotient_in_margin_rods_coplanar, k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
         sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
@@ -647,7 +589,7 @@ class TripodLinear(OffsetKinematics):
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         x = foot_x + pivot_1_x + height_by_normal * normal_x
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
-        margin_square_1 = (a1 + z * cos_rail_angle + span_1_x * sin_rail_angle) / arm_length
+        margin_square_1 = (a1 + z * cos_rail_angle + span_1_x * sin_rail_angle) * one_by_arm_length
         y = foot_y + height_by_normal * normal_y
         span_2_y = y - sum_in_pivot_2_y
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
@@ -663,11 +605,11 @@ class TripodLinear(OffsetKinematics):
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
         rod_3_z = z - pivot_3_z
-        margin_rods_coplanar = (
-            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
-            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
-            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
-        ) / product_in_margin_rods_coplanar
+        margin_rods_coplanar = -quotient_in_margin_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+            + (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
+        )
         return (margin_square_1, margin_square_2, margin_square_3, margin_rods_coplanar)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -822,7 +764,7 @@ class TripodLinear(OffsetKinematics):
         cos_rail_angle_times_sin_rail_angle = k.cos_rail_angle_times_sin_rail_angle
         half_by_arm_length, half_sin_rail_angle = k.half_by_arm_length, k.half_sin_rail_angle
         inner_radius_minus_outer_radius, min_type2_margin = k.inner_radius_minus_outer_radius, k.min_type2_margin
-        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        offset_a1, offset_a2, offset_a3, one_by_arm_length = k.offset_a1, k.offset_a2, k.offset_a3, k.one_by_arm_length
         one_minus_sin_rail_angle_squared = k.one_minus_sin_rail_angle_squared
         product_in_pivot_2_y, product_in_radicand_a1 = k.product_in_pivot_2_y, k.product_in_radicand_a1
         product_in_radicand_a2, product_in_radicand_a2_2 = k.product_in_radicand_a2, k.product_in_radicand_a2_2
@@ -934,14 +876,16 @@ class TripodLinear(OffsetKinematics):
                 missing,
             )
         # ball joint of rod 1
-        if not (abs(flange_y) / arm_length <= sin_max_angle_ball_joint):
+        if not (abs(flange_y) * one_by_arm_length <= sin_max_angle_ball_joint):
             missing = (
-                arctan2(abs(flange_y) / arm_length + 0.0, root(1.0 - flange_y * flange_y / arm_length_squared) + 0.0)
+                arctan2(
+                    abs(flange_y) * one_by_arm_length + 0.0, root(1.0 - flange_y * flange_y / arm_length_squared) + 0.0
+                )
                 - arctan2(
                     sin_max_angle_ball_joint + 0.0,
                     root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
         shared_product = flange_x * root_of_3_times_half_by_arm_length
         half_by_arm_length_times_flange_y = flange_y * half_by_arm_length
@@ -961,7 +905,7 @@ class TripodLinear(OffsetKinematics):
                     sin_max_angle_ball_joint + 0.0,
                     root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
         if not (abs(half_by_arm_length_times_flange_y - shared_product) <= sin_max_angle_ball_joint):
@@ -979,7 +923,7 @@ class TripodLinear(OffsetKinematics):
                     sin_max_angle_ball_joint + 0.0,
                     root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -990,7 +934,7 @@ class TripodLinear(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared = k.arm_length_squared
         arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
         cos_rail_angle, cos_rail_angle_by_arm_length = k.cos_rail_angle, k.cos_rail_angle_by_arm_length
         half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
@@ -1056,7 +1000,7 @@ class TripodLinear(OffsetKinematics):
         flange_z = foot_z + pivot_1_z + height_by_normal * normal_z
         flange_x = foot_x + pivot_1_x + height_by_normal * normal_x
         span_1_x = flange_x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
-        branch_carriage_1 = (a1 + flange_z * cos_rail_angle + span_1_x * sin_rail_angle) / arm_length
+        branch_carriage_1 = (a1 + flange_z * cos_rail_angle + span_1_x * sin_rail_angle) * one_by_arm_length
         flange_y = foot_y + height_by_normal * normal_y
         span_2_y = flange_y - sum_in_pivot_2_y
         span_2_x = flange_x - sum_in_pivot_2_x  # rod 2: known part of its vector

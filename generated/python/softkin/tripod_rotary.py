@@ -24,9 +24,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 60 additions, 69 multiplications, 5 divisions, 2 square roots, 6 sines
-    inverse: 85 additions, 67 multiplications, 22 divisions, 9 square roots, 3 sines
-    inverse, all 8 branches open: 673 additions, 536 multiplications, 176 divisions, 72 square roots, 24 sines
+    forward: 60 additions, 73 multiplications, 1 divisions, 2 square roots, 6 sines
+    inverse: 84 additions, 75 multiplications, 18 divisions, 9 square roots, 5 sines
+    inverse, all 8 branches open: 279 additions, 232 multiplications, 51 divisions, 26 square roots, 22 sines
 
 Verified at 120 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -41,7 +41,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.tripod_rotary import unrolled
 
@@ -102,11 +102,12 @@ class Constants:
         sum_in_pivot_2_y = 0.5 * fixed_length_1 * root_of_3 - 0.5 * arm_1_radius * root_of_3
         half_arm_length_1 = 0.5 * arm_length_1
         sum_in_pivot_2_x = 0.5 * arm_1_radius - 0.5 * fixed_length_1
+        one_by_arm_length_2 = 1.0 / arm_length_2
         half_by_arm_length_2 = 0.5 / arm_length_2
         twice_arm_length_1 = 2.0 * arm_length_1
         quotient_in_type2_rods_coplanar = assembly_sign / (arm_length_2 * arm_length_2 * arm_length_2)
         root_of_3_times_half_by_arm_length_2 = 0.5 * root_of_3 / arm_length_2
-        product_in_margin_rods_coplanar = arm_length_2 * arm_length_2 * arm_length_2
+        quotient_in_margin_rods_coplanar = 1.0 / (arm_length_2 * arm_length_2 * arm_length_2)
         sum_in_slope_1_by_x = 2.0 * fixed_length_1 - 2.0 * arm_1_radius
         arm_length_1_times_root_of_3 = arm_length_1 * root_of_3
         self.arm_length_1, self.arm_length_2, self.arm_1_radius = arm_length_1, arm_length_2, arm_1_radius
@@ -123,11 +124,11 @@ class Constants:
         self.product_in_determinant_divisor = product_in_determinant_divisor
         self.arm_length_1_times_root_of_3_times_half = arm_length_1_times_root_of_3_times_half
         self.sum_in_pivot_2_y, self.half_arm_length_1 = sum_in_pivot_2_y, half_arm_length_1
-        self.sum_in_pivot_2_x, self.half_by_arm_length_2 = sum_in_pivot_2_x, half_by_arm_length_2
-        self.twice_arm_length_1 = twice_arm_length_1
+        self.sum_in_pivot_2_x, self.one_by_arm_length_2 = sum_in_pivot_2_x, one_by_arm_length_2
+        self.half_by_arm_length_2, self.twice_arm_length_1 = half_by_arm_length_2, twice_arm_length_1
         self.quotient_in_type2_rods_coplanar = quotient_in_type2_rods_coplanar
         self.root_of_3_times_half_by_arm_length_2 = root_of_3_times_half_by_arm_length_2
-        self.product_in_margin_rods_coplanar = product_in_margin_rods_coplanar
+        self.quotient_in_margin_rods_coplanar = quotient_in_margin_rods_coplanar
         self.sum_in_slope_1_by_x, self.arm_length_1_times_root_of_3 = sum_in_slope_1_by_x, arm_length_1_times_root_of_3
 
 
@@ -266,12 +267,13 @@ class TripodRotary(OffsetKinematics):
         k = self._constants
         arm_length_1 = k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
-        arm_length_2, arm_length_2_squared = k.arm_length_2, k.arm_length_2_squared
+        arm_length_2_squared = k.arm_length_2_squared
         arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
-        offset_a2, offset_a3, product_in_normal_divisor = k.offset_a2, k.offset_a3, k.product_in_normal_divisor
-        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
+        product_in_normal_divisor, sum_in_pivot_2_x = k.product_in_normal_divisor, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y = k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -337,7 +339,7 @@ class TripodRotary(OffsetKinematics):
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         span_1_z = z - fixed_length_2
-        branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / arm_length_2
+        branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) * one_by_arm_length_2
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - sum_in_pivot_2_y
         root_of_3_2 = root(3.0)
@@ -353,73 +355,8 @@ class TripodRotary(OffsetKinematics):
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3 = axes
-        k = self._constants
-        arm_length_1 = k.arm_length_1
-        arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
-        arm_length_2_squared = k.arm_length_2_squared
-        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
-        half_arm_length_1, offset_a1, offset_a2, offset_a3 = k.half_arm_length_1, k.offset_a1, k.offset_a2, k.offset_a3
-        product_in_normal_divisor, sum_in_pivot_2_x = k.product_in_normal_divisor, k.sum_in_pivot_2_x
-        sum_in_pivot_2_y = k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a2 = DEGREE * (axis_a2 - offset_a2)
-        cos_a2 = cos(a2)
-        pivot_2_y = sum_in_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
-        a3 = DEGREE * (axis_a3 - offset_a3)
-        cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - sum_in_pivot_2_y
-        a1 = DEGREE * (axis_a1 - offset_a1)
-        sin_a1 = sin(a1)
-        pivot_1_z = fixed_length_2 - arm_length_1 * sin_a1
-        sin_a2 = sin(a2)
-        pivot_2_z = fixed_length_2 - arm_length_1 * sin_a2
-        centre_1_to_2_z = pivot_2_z - pivot_1_z
-        sin_a3 = sin(a3)
-        pivot_3_z = fixed_length_2 - arm_length_1 * sin_a3
-        centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
-        cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
-        pivot_2_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
-        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
-        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
-        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
-        # squared length of the normal
-        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
-        # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > product_in_normal_divisor):
-            return Status.IMPOSSIBLE
-        # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5 * (
-            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
-        )
-        # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5 * (
-            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
-        )
-        one_by_normal_square = 1.0 / normal_square
-        # foot of the perpendicular, seen from centre 1
-        foot_x = one_by_normal_square * (
-            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
-            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
-        )
-        foot_y = one_by_normal_square * (
-            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
-            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
-        )
-        foot_z = one_by_normal_square * (
-            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
-            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
-        )
-        # square of the height over the plane of the centres
-        height_square = arm_length_2_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
-        # the rods do not meet
-        if not (height_square >= -arm_length_2_squared_times_rounding):
-            return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
@@ -438,8 +375,8 @@ class TripodRotary(OffsetKinematics):
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, mid_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.mid_a1
         mid_a2, mid_a3, min_type2_margin, offset_a1 = k.mid_a2, k.mid_a3, k.min_type2_margin, k.offset_a1
-        offset_a2, offset_a3, product_in_divisor_a2 = k.offset_a2, k.offset_a3, k.product_in_divisor_a2
-        product_in_scaled_cosine_a1 = k.product_in_scaled_cosine_a1
+        offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
+        product_in_divisor_a2, product_in_scaled_cosine_a1 = k.product_in_divisor_a2, k.product_in_scaled_cosine_a1
         quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
         root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
         sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
@@ -610,14 +547,14 @@ class TripodRotary(OffsetKinematics):
                 missing,
             )
         # ball joint of rod 1
-        if not (abs(y) / arm_length_2 <= sin_max_angle_ball_joint):
+        if not (abs(y) * one_by_arm_length_2 <= sin_max_angle_ball_joint):
             missing = (
-                arctan2(abs(y) / arm_length_2 + 0.0, root(1.0 - y * y / arm_length_2_squared) + 0.0)
+                arctan2(abs(y) * one_by_arm_length_2 + 0.0, root(1.0 - y * y / arm_length_2_squared) + 0.0)
                 - arctan2(
                     sin_max_angle_ball_joint + 0.0,
                     root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
         shared_product = root_of_3_times_half_by_arm_length_2 * x
         half_by_arm_length_2_times_y = half_by_arm_length_2 * y
@@ -637,7 +574,7 @@ class TripodRotary(OffsetKinematics):
                     sin_max_angle_ball_joint + 0.0,
                     root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
         if not (abs(half_by_arm_length_2_times_y - shared_product) <= sin_max_angle_ball_joint):
@@ -655,21 +592,21 @@ class TripodRotary(OffsetKinematics):
                     sin_max_angle_ball_joint + 0.0,
                     root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -694,13 +631,13 @@ class TripodRotary(OffsetKinematics):
         k = self._constants
         arm_length_1 = k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
-        arm_length_2, arm_length_2_squared = k.arm_length_2, k.arm_length_2_squared
+        arm_length_2_squared = k.arm_length_2_squared
         arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
-        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
-        product_in_margin_rods_coplanar = k.product_in_margin_rods_coplanar
-        product_in_normal_divisor, sum_in_pivot_2_x = k.product_in_normal_divisor, k.sum_in_pivot_2_x
+        offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
+        product_in_normal_divisor = k.product_in_normal_divisor
+        quotient_in_margin_rods_coplanar, sum_in_pivot_2_x = k.quotient_in_margin_rods_coplanar, k.sum_in_pivot_2_x
         sum_in_pivot_2_y = k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
@@ -766,7 +703,7 @@ class TripodRotary(OffsetKinematics):
         span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_z = z - fixed_length_2
-        margin_stretched_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / arm_length_2
+        margin_stretched_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) * one_by_arm_length_2
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
         y = foot_y + height_by_normal * normal_y
         span_2_y = y - sum_in_pivot_2_y
@@ -786,11 +723,11 @@ class TripodRotary(OffsetKinematics):
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
         rod_3_z = z - pivot_3_z
-        margin_rods_coplanar = (
+        margin_rods_coplanar = quotient_in_margin_rods_coplanar * (
             rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
             + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
-        ) / product_in_margin_rods_coplanar
+        )
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, margin_rods_coplanar)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -957,8 +894,8 @@ class TripodRotary(OffsetKinematics):
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, mid_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.mid_a1
         mid_a2, mid_a3, min_type2_margin, offset_a1 = k.mid_a2, k.mid_a3, k.min_type2_margin, k.offset_a1
-        offset_a2, offset_a3, product_in_divisor_a2 = k.offset_a2, k.offset_a3, k.product_in_divisor_a2
-        product_in_scaled_cosine_a1 = k.product_in_scaled_cosine_a1
+        offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
+        product_in_divisor_a2, product_in_scaled_cosine_a1 = k.product_in_divisor_a2, k.product_in_scaled_cosine_a1
         quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
         root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
         sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
@@ -1134,16 +1071,17 @@ class TripodRotary(OffsetKinematics):
                 missing,
             )
         # ball joint of rod 1
-        if not (abs(flange_y) / arm_length_2 <= sin_max_angle_ball_joint):
+        if not (abs(flange_y) * one_by_arm_length_2 <= sin_max_angle_ball_joint):
             missing = (
                 arctan2(
-                    abs(flange_y) / arm_length_2 + 0.0, root(1.0 - flange_y * flange_y / arm_length_2_squared) + 0.0
+                    abs(flange_y) * one_by_arm_length_2 + 0.0,
+                    root(1.0 - flange_y * flange_y / arm_length_2_squared) + 0.0,
                 )
                 - arctan2(
                     sin_max_angle_ball_joint + 0.0,
                     root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
         shared_product = flange_x * root_of_3_times_half_by_arm_length_2
         half_by_arm_length_2_times_flange_y = flange_y * half_by_arm_length_2
@@ -1163,7 +1101,7 @@ class TripodRotary(OffsetKinematics):
                     sin_max_angle_ball_joint + 0.0,
                     root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
         if not (abs(half_by_arm_length_2_times_flange_y - shared_product) <= sin_max_angle_ball_joint):
@@ -1181,21 +1119,21 @@ class TripodRotary(OffsetKinematics):
                     sin_max_angle_ball_joint + 0.0,
                     root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-            ) / DEGREE
+            ) * RADIAN
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) / DEGREE  # A3: whole turns added
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -1206,12 +1144,13 @@ class TripodRotary(OffsetKinematics):
         k = self._constants
         arm_length_1 = k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
-        arm_length_2, arm_length_2_squared = k.arm_length_2, k.arm_length_2_squared
+        arm_length_2_squared = k.arm_length_2_squared
         arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
-        offset_a2, offset_a3, product_in_normal_divisor = k.offset_a2, k.offset_a3, k.product_in_normal_divisor
-        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
+        product_in_normal_divisor, sum_in_pivot_2_x = k.product_in_normal_divisor, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y = k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -1276,7 +1215,7 @@ class TripodRotary(OffsetKinematics):
         span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         flange_z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_z = flange_z - fixed_length_2
-        branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / arm_length_2
+        branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) * one_by_arm_length_2
         span_2_x = flange_x - sum_in_pivot_2_x  # rod 2: known part of its vector
         flange_y = foot_y + height_by_normal * normal_y
         span_2_y = flange_y - sum_in_pivot_2_y

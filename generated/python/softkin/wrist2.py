@@ -17,10 +17,10 @@ Singularities:
     tool_along_a: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 13 additions, 14 multiplications, 2 divisions, 0 square roots, 4 sines
-    inverse: 22 additions, 11 multiplications, 8 divisions, 1 square roots, 2 sines
-    inverse, all 2 branches open: 43 additions, 22 multiplications, 16 divisions, 2 square roots, 4 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 13 additions, 16 multiplications, 0 divisions, 0 square roots, 4 sines
+    inverse: 16 additions, 15 multiplications, 2 divisions, 1 square roots, 2 sines
+    inverse, all 2 branches open: 40 additions, 28 multiplications, 4 divisions, 1 square roots, 4 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
@@ -36,7 +36,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._orientation import OrientationKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.wrist2 import unrolled
 
@@ -67,10 +67,12 @@ class Constants:
         wrist_offset = abs(roll_axis_offset_x)
         unmet_offset = abs(roll_axis_offset_y)  # part of the tool in directions that are not commanded
         tool_length_times_tool_side = tool_side * tool_length
+        one_by_tool_side = 1.0 / tool_side
         self.roll_axis_offset_x, self.roll_axis_offset_y = roll_axis_offset_x, roll_axis_offset_y
         self.roll_axis_offset_z, self.tool_side, self.offset_a = roll_axis_offset_z, tool_side, offset_a
         self.offset_b, self.unnoticed_shift, self.wrist_offset = offset_b, unnoticed_shift, wrist_offset
         self.unmet_offset, self.tool_length_times_tool_side = unmet_offset, tool_length_times_tool_side
+        self.one_by_tool_side = one_by_tool_side
 
 
 class Wrist2(OrientationKinematics):
@@ -220,13 +222,13 @@ class Wrist2(OrientationKinematics):
         turn_a, turn_b = turns
         ref_a, ref_b = reference
         k = self._constants
-        mid_a, mid_b, offset_a, offset_b, single_a = k.mid_a, k.mid_b, k.offset_a, k.offset_b, k.single_a
-        single_b, tool_side = k.single_b, k.tool_side
+        mid_a, mid_b, offset_a, offset_b = k.mid_a, k.mid_b, k.offset_a, k.offset_b
+        one_by_tool_side, single_a, single_b = k.one_by_tool_side, k.single_a, k.single_b
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        r13_of_a = r13 / tool_side
-        r23_of_a = r23 / tool_side
+        r13_of_a = one_by_tool_side * r13
+        r23_of_a = one_by_tool_side * r23
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
         # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
         # reference
@@ -239,13 +241,13 @@ class Wrist2(OrientationKinematics):
             direction_y_a = sin(reference_a)
         open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
         near_a = 360.0 * (turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
-        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0) / DEGREE  # A: whole turns added
+        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0) * RADIAN  # A: whole turns added
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
         a_radius_of_b = sigma_roll * radius_a
         open_b = mid_b if single_b else ref_b  # B: without a commanded turn, the value nearest to this
         near_b = 360.0 * (turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
-        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0) / DEGREE  # B: whole turns added
+        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0) * RADIAN  # B: whole turns added
         if not -180.000000001 <= axis_b - near_b < 179.999999999:
             axis_b = nearest_period(axis_b, near_b)
         return (axis_a, axis_b)

@@ -18,10 +18,10 @@ Singularities:
     a_parallel_c: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 22 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
-    inverse: 34 additions, 18 multiplications, 9 divisions, 1 square roots, 3 sines
-    inverse, all 2 branches open: 67 additions, 36 multiplications, 18 divisions, 2 square roots, 6 sines
-    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    forward: 22 additions, 29 multiplications, 0 divisions, 0 square roots, 6 sines
+    inverse: 25 additions, 21 multiplications, 3 divisions, 1 square roots, 3 sines
+    inverse, all 2 branches open: 63 additions, 43 multiplications, 6 divisions, 1 square roots, 6 sines
+    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._orientation import OrientationKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, reasonable, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.wrist3 import unrolled
 
@@ -234,18 +234,18 @@ class Wrist3(OrientationKinematics):
         direction_y_a = -direction_x_c * r12 - direction_y_c * r11
         open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
         near_a = 360.0 * (turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
-        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c + 0.0) / DEGREE  # A: whole turns added
+        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c + 0.0) * RADIAN  # A: whole turns added
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
         c_radius_of_b = sigma_hand * radius_c
         open_b = mid_b if single_b else ref_b  # B: without a commanded turn, the value nearest to this
         near_b = 360.0 * (turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
-        axis_b = offset_b + arctan2(c_radius_of_b, r33 + 0.0) / DEGREE  # B: whole turns added
+        axis_b = offset_b + arctan2(c_radius_of_b, r33 + 0.0) * RADIAN  # B: whole turns added
         if not -180.000000001 <= axis_b - near_b < 179.999999999:
             axis_b = nearest_period(axis_b, near_b)
         open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
         near_c = 360.0 * (turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0) / DEGREE  # C: whole turns added
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0) * RADIAN  # C: whole turns added
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         return (axis_a, axis_b, axis_c)

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import re
+from dataclasses import astuple
 from functools import cache
 from typing import Any
 
 import pytest
 
+from bench.counting import counting_library
 from derive.description.mechanism import Mechanism
 from tests.harness.library import Library, compile_st
 from tests.mechanisms import catalogue
 from tests.text.breakage import MECHANISM, WRONG, texts
+from tests.text.counting import counted
 from tests.text.selftest.planted import planted
 from tests.text.units import FOLDER, file_of, shared_texts, text_of
 
 ALL = tuple(m for _, m in catalogue())
 PROGRAM = "PRG_SoftkinSelfTest"
 SELF_TESTS = {path.name: path.read_text(encoding="utf-8") for path in sorted((FOLDER / "selftest").glob("*.st"))}
+UNBOUNDED = 10**9
+"""More operations than any case needs."""
 WORST = 1e-6
 """What rounding the expected numbers to 6 decimals leaves is half of it."""
 
@@ -39,6 +44,7 @@ def counts(name: str) -> int:
 def run(library: Library, name: str) -> Any:
     """An instance that has run to its end: a case in every cycle, no more and no less."""
     test = library.new(name)
+    test.udiOperations = UNBOUNDED
     cycles = 0
     while not test.xDone:
         test()
@@ -58,12 +64,13 @@ def test_all_blocks_pass_one_after_the_other(order: str) -> None:
     """The program as a controller runs it: never more than a single case in a cycle."""
     everything = {str(p): p.read_text(encoding="utf-8") for p in sorted(FOLDER.rglob("*.st"))}
     program = compile_st(everything, order).new(PROGRAM)
+    program.udiOperations = UNBOUNDED
     total = sum(counts(name) for name in SELF_TESTS if name != f"{PROGRAM}.st")
     for _ in range(total):
         assert not program.xDone
         program()
     assert program.xDone
-    assert (program.iPassed, program.iFailed) == (total, 0)
+    assert (program.iPassed, program.iFailed, program.iLeftOut) == (total, 0, 0)
     assert (program.sFirstBlock, program.iFirstCase, program.sFirstCall) == ("", -1, "")
     assert 0.0 < program.dWorst < WORST
     program()
@@ -73,13 +80,39 @@ def test_all_blocks_pass_one_after_the_other(order: str) -> None:
 
 
 @pytest.mark.parametrize("mechanism", ALL, ids=lambda m: m.name)
+def test_no_cycle_does_more_than_it_may(mechanism: Mechanism) -> None:
+    """Counted while it runs: with the bound as it comes, with a small one, and with none every case within its own."""
+    name = f"{mechanism.block_name}_SelfTest"
+    texts = {**shared_texts(), **self_test(mechanism), file_of(mechanism): text_of(mechanism)}
+    library = counting_library(texts)
+    least = min(stated_operations(name))
+    for allowed in (UNBOUNDED, None, 1000, least):
+        test = library.new(name)
+        if allowed is not None:
+            test.udiOperations = allowed
+        for stated in stated_operations(name):
+            spent = sum(astuple(counted(test)))
+            assert spent <= min(stated, test.udiOperations)
+        assert (test.xDone, test.iFailed) == (True, 0)
+        assert test.iPassed + test.iLeftOut == counts(f"{name}.st")
+        assert (test.iLeftOut == 0) == (allowed == UNBOUNDED or max(stated_operations(name)) <= test.udiOperations)
+
+
+def stated_operations(name: str) -> list[int]:
+    """What the table of a self-test says that each case needs at most."""
+    found = re.search(r"OPERATIONS : [^[]*\[[^[]*\[([\d,\s]*)\]", SELF_TESTS[f"{name}.st"])
+    assert found is not None
+    return [int(number) for number in found.group(1).split(",")]
+
+
+@pytest.mark.parametrize("mechanism", ALL, ids=lambda m: m.name)
 def test_every_planted_fault_is_found(mechanism: Mechanism) -> None:
     """And a test that is restarted with a block that is right again passes again."""
     spoiled = planted(mechanism)
     library = compile_st({**shared_texts(), **self_test(mechanism), file_of(mechanism): spoiled.text})
     name = f"{mechanism.block_name}_SelfTest"
     test = run(library, name)
-    assert (test.iFailed, test.iFirstCase, test.sFirstCall) == (0, -1, "")
+    assert (test.iFailed, test.iLeftOut, test.iFirstCase, test.sFirstCall) == (0, 0, -1, "")
     assert test.iPassed == counts(f"{name}.st")
     assert test.dWorst < WORST
     missed = []

@@ -121,8 +121,16 @@ class ArrayPrograms(Programs):
         sum_in_one_plus_cos_q3_tried_2 = k.a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = -sum_in_one_plus_cos_q3_tried * sum_in_one_plus_cos_q3_tried_2
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * k.quotient_in_cos_swing_q3_tried
+        # sine squared, times the squared scale
+        sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
+        root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
+        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
+        product_in_sin_swing_q3_tried = k.half_by_a2_by_effective_q3_tried * sign_elbow_tried
+        sin_swing_q3_tried = product_in_sin_swing_q3_tried * root_of_sin_swing_q3_tried
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
+        sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
         slope_wrist_z_tried = k.j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried * cos_q1_tried
@@ -142,25 +150,9 @@ class ArrayPrograms(Programs):
         slope_one_plus_cos_q3_tried = (
             sum_in_one_plus_cos_q3_tried_2 - sum_in_one_plus_cos_q3_tried
         ) * slope_reach_tried
-        slope_divisor_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-        holds = sum_q3_tried > 0.0
-        divisor_of_cos_q3_tried = select(holds, sum_q3_tried, 1.0)
-        slope_divisor_of_cos_q3_tried = select(holds, slope_divisor_of_cos_q3_tried, 0.0)
-        one_by_sum_q3_tried = 1.0 / divisor_of_cos_q3_tried
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_q3_tried
-        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
-        # sine squared, times the squared scale
-        sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
-        root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
-        sin_swing_q3_tried = 2.0 * one_by_sum_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
-        sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
-            slope_one_plus_cos_q3_tried
-            - slope_one_less_cos_q3_tried
-            - slope_divisor_of_cos_q3_tried * cos_swing_q3_tried
-        ) * one_by_sum_q3_tried
+            slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
+        ) * k.quotient_in_cos_swing_q3_tried
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried * slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried * slope_one_less_cos_q3_tried
         )
@@ -171,10 +163,7 @@ class ArrayPrograms(Programs):
             / select(root_of_sin_swing_q3_tried > 0.0, root_of_sin_swing_q3_tried, 1.0),
             0.0,
         )
-        slope_sin_swing_q3_tried = (
-            2.0 * sign_elbow_tried * slope_root_of_sin_swing_q3_tried
-            - slope_divisor_of_cos_q3_tried * sin_swing_q3_tried
-        ) * one_by_sum_q3_tried
+        slope_sin_swing_q3_tried = product_in_sin_swing_q3_tried * slope_root_of_sin_swing_q3_tried
         slope_cos_q3_tried = (
             k.a3_by_effective_q3_tried * slope_cos_swing_q3_tried
             + k.d4_by_effective_q3_tried * slope_sin_swing_q3_tried
@@ -352,14 +341,11 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_tried = (reach_tried - k.a2_minus_effective_q3_tried) * (
             k.a2_minus_effective_q3_tried + reach_tried
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        divisor_of_cos_q3_tried = select(sum_q3_tried > 0.0, sum_q3_tried, 1.0)
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * k.quotient_in_cos_swing_q3_tried
         sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
-        sin_swing_q3_tried = 2.0 * root(sine_square_q3_tried) * sign_elbow_tried / divisor_of_cos_q3_tried
+        sin_swing_q3_tried = root(sine_square_q3_tried) * k.half_by_a2_by_effective_q3_tried * sign_elbow_tried
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
@@ -532,7 +518,7 @@ class ArrayPrograms(Programs):
             rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
             rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
             x_minus_x_at_q4 = x - x_at_q4
-            rate_2_4 = (-r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23) * k.one_by_machine_scale
+            rate_2_4 = -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
             rate_2_5 = (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * k.one_by_machine_scale
             x_minus_x_at_q6 = x - x_at_q6
             rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
@@ -870,7 +856,7 @@ class ArrayPrograms(Programs):
                     k.one_by_machine_scale * x,
                     z_minus_d1 * sin_q1_times_one_by_machine_scale,
                     z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale,
-                    (-r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23) * k.one_by_machine_scale,
+                    -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23),
                     (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * k.one_by_machine_scale,
                     (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale,
                 ),
@@ -963,10 +949,7 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_closed = (reach_closed - k.a2_minus_effective_q3_tried) * (
             k.a2_minus_effective_q3_tried + reach_closed
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-        divisor_of_cos_q3_closed = select(sum_q3_closed > 0.0, sum_q3_closed, 1.0)
-        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
+        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) * k.quotient_in_cos_swing_q3_tried
         reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
         reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
         reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
@@ -1035,7 +1018,7 @@ class ArrayPrograms(Programs):
             q1 = atan2(sin_q1_closed, cos_q1_closed)
             # sine squared, times the squared scale
             sine_square_q3_closed = one_less_cos_q3_closed * one_plus_cos_q3_closed
-            sin_swing_q3_closed = 2.0 * root(sine_square_q3_closed) * sigma_elbow / divisor_of_cos_q3_closed
+            sin_swing_q3_closed = root(sine_square_q3_closed) * sigma_elbow * k.half_by_a2_by_effective_q3_tried
 
             def elsewhere_cos_q2_closed(reference_a2: Real) -> Reals:
                 cos_q2_closed = cos(reference_a2)
@@ -1235,7 +1218,7 @@ class ArrayPrograms(Programs):
                     k.one_by_machine_scale * x,
                     z_minus_d1 * sin_q1_times_one_by_machine_scale,
                     z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale,
-                    (-r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23) * k.one_by_machine_scale,
+                    -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23),
                     (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * k.one_by_machine_scale,
                     (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale,
                 ),

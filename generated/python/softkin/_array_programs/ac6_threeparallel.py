@@ -100,7 +100,7 @@ class ArrayPrograms(Programs):
         r32_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
         wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
         wrist_y = y - d6_times_r22_at_q5
-        branch_shoulder = (-wrist_x * cos_q1 - wrist_y * sin_q1) / k.machine_scale
+        branch_shoulder = -k.one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         return (
             (x, y, z),
@@ -733,15 +733,12 @@ class ArrayPrograms(Programs):
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (k.a2_plus_a3 + reach) * (k.a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - k.a2_minus_a3) * (k.a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = select(absolute(sum_q3) > 0.0, sum_q3, 1.0)
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * k.quotient_in_cos_q3
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = 2.0 * root(sine_square_q3) * sigma_elbow / absolute(divisor_of_cos_q3)
+        sin_q3 = root(sine_square_q3) * sigma_elbow * k.quotient_in_sin_q3
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
@@ -851,7 +848,7 @@ class ArrayPrograms(Programs):
         y_at_q6 = y_at_q5 - k.d5 * r22_at_q234
         y = d6_times_r22_at_q5 + y_at_q6
         wrist_y = y - d6_times_r22_at_q5
-        margin_wrist_on_axis_1 = (-wrist_x * cos_q1 - wrist_y * sin_q1) / k.machine_scale
+        margin_wrist_on_axis_1 = -k.one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         return (margin_wrist_on_axis_1, sin_q3, sin_q5), status
 

@@ -141,7 +141,7 @@ class ArrayPrograms(Programs):
         y = r_times_sin_phi * sin_theta  # y from the y equation, which is linear in it
         radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
         radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
-        length_free_phi = radius_phi / k.machine_scale
+        length_free_phi = k.one_by_machine_scale * radius_phi
         # 0 where nothing determines the axis, else 1 or -1
         margin_free_phi = select(length_free_phi > 1e-11, 1.0, 0.0)
         # R where the machine has no pose

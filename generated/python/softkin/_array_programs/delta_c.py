@@ -101,7 +101,7 @@ class ArrayPrograms(Programs):
         cos_a4 = cos(a4)
         sin_a4 = sin(a4)
         span_1_x = x - k.base_radius_minus_plate_radius  # rod 1: known part of its vector
-        branch_knee_1 = (-z * cos_a1 - span_1_x * sin_a1) / k.rod_length
+        branch_knee_1 = -k.one_by_rod_length * (z * cos_a1 + span_1_x * sin_a1)
         span_2_x = x - k.half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         span_2_y = y - k.sum_in_pivot_2_y
         root_of_3_2 = root(3.0)
@@ -137,7 +137,6 @@ class ArrayPrograms(Programs):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         span_1_x = x - k.base_radius_minus_plate_radius  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + z * z)  # effective length of the arm that a1 turns
         third_square_a1 = (k.rod_length + y) * (k.rod_length - y)  # square of the third side of the triangle
@@ -238,7 +237,7 @@ class ArrayPrograms(Programs):
         # A4: whole turns added
         axis_a4 = nearest_period(k.offset_a4 + degrees(heading_across, heading_along), near_a4)
         # the tool points exactly the opposite way
-        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
         # a1: its effective length is too short
         # a1: out of reach
         require(
@@ -344,7 +343,7 @@ class ArrayPrograms(Programs):
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         x = foot_x + pivot_1_x + height_by_normal * normal_x
         span_1_x = x - k.base_radius_minus_plate_radius  # rod 1: known part of its vector
-        margin_stretched_1 = (-z * cos_a1 - span_1_x * sin_a1) / k.rod_length
+        margin_stretched_1 = -k.one_by_rod_length * (z * cos_a1 + span_1_x * sin_a1)
         span_2_x = x - k.half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         y = foot_y + height_by_normal * normal_y
         span_2_y = y - k.sum_in_pivot_2_y
@@ -360,11 +359,11 @@ class ArrayPrograms(Programs):
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
         rod_3_z = z - pivot_3_z
-        margin_rods_coplanar = (
+        margin_rods_coplanar = k.quotient_in_margin_rods_coplanar * (
             rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
             + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
-        ) / k.product_in_margin_rods_coplanar
+        )
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
@@ -654,9 +653,11 @@ class ArrayPrograms(Programs):
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
-        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        heading_divisor = select(
+            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+        )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

@@ -103,19 +103,19 @@ class ArrayPrograms(Programs):
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_x = x - k.sum_in_pivot_1_x  # rod 1: known part of its vector
         span_1_y = y - k.sum_in_pivot_1_y
-        branch_knee_1 = (
-            (-span_1_x * k.cos_azimuth_1 - span_1_y * k.sin_azimuth_1) * sin_a1 - z * cos_a1
-        ) / k.outer_arm_1
+        branch_knee_1 = -k.one_by_outer_arm_1 * (
+            z * cos_a1 + (span_1_x * k.cos_azimuth_1 + span_1_y * k.sin_azimuth_1) * sin_a1
+        )
         span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - k.sum_in_pivot_2_y
-        branch_knee_2 = (
-            (-span_2_x * k.cos_azimuth_2 - span_2_y * k.sin_azimuth_2) * sin_a2 - z * cos_a2
-        ) / k.outer_arm_2
+        branch_knee_2 = -k.one_by_outer_arm_2 * (
+            z * cos_a2 + (span_2_x * k.cos_azimuth_2 + span_2_y * k.sin_azimuth_2) * sin_a2
+        )
         span_3_x = x - k.sum_in_pivot_3_x  # rod 3: known part of its vector
         span_3_y = y - k.sum_in_pivot_3_y
-        branch_knee_3 = (
-            (-span_3_x * k.cos_azimuth_3 - span_3_y * k.sin_azimuth_3) * sin_a3 - z * cos_a3
-        ) / k.outer_arm_3
+        branch_knee_3 = -k.one_by_outer_arm_3 * (
+            z * cos_a3 + (span_3_x * k.cos_azimuth_3 + span_3_y * k.sin_azimuth_3) * sin_a3
+        )
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
@@ -347,19 +347,19 @@ class ArrayPrograms(Programs):
         span_1_x = x - k.sum_in_pivot_1_x  # rod 1: known part of its vector
         y = foot_y + pivot_1_y + height_by_normal * normal_y
         span_1_y = y - k.sum_in_pivot_1_y
-        margin_stretched_1 = (
-            (-span_1_x * k.cos_azimuth_1 - span_1_y * k.sin_azimuth_1) * sin_a1 - z * cos_a1
-        ) / k.outer_arm_1
+        margin_stretched_1 = -k.one_by_outer_arm_1 * (
+            z * cos_a1 + (span_1_x * k.cos_azimuth_1 + span_1_y * k.sin_azimuth_1) * sin_a1
+        )
         span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - k.sum_in_pivot_2_y
-        margin_stretched_2 = (
-            (-span_2_x * k.cos_azimuth_2 - span_2_y * k.sin_azimuth_2) * sin_a2 - z * cos_a2
-        ) / k.outer_arm_2
+        margin_stretched_2 = -k.one_by_outer_arm_2 * (
+            z * cos_a2 + (span_2_x * k.cos_azimuth_2 + span_2_y * k.sin_azimuth_2) * sin_a2
+        )
         span_3_x = x - k.sum_in_pivot_3_x  # rod 3: known part of its vector
         span_3_y = y - k.sum_in_pivot_3_y
-        margin_stretched_3 = (
-            (-span_3_x * k.cos_azimuth_3 - span_3_y * k.sin_azimuth_3) * sin_a3 - z * cos_a3
-        ) / k.outer_arm_3
+        margin_stretched_3 = -k.one_by_outer_arm_3 * (
+            z * cos_a3 + (span_3_x * k.cos_azimuth_3 + span_3_y * k.sin_azimuth_3) * sin_a3
+        )
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         rod_1_z = z - pivot_1_z
@@ -369,11 +369,11 @@ class ArrayPrograms(Programs):
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
         rod_3_z = z - pivot_3_z
-        margin_rods_coplanar = (
-            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
-            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * rod_1_y
-            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
-        ) / k.product_in_margin_rods_coplanar
+        margin_rods_coplanar = -k.quotient_in_margin_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+        )
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(

@@ -78,9 +78,9 @@ class ArrayPrograms(Programs):
         cos_a4 = cos(a4)
         sin_a4 = sin(a4)
         span_1_x = k.half_base_distance + x  # rod 1: known part of its vector
-        branch_elbow_1 = (span_1_x * sin_a1 - y * cos_a1) / k.rod_length_1
+        branch_elbow_1 = (span_1_x * sin_a1 - y * cos_a1) * k.one_by_rod_length_1
         span_2_x = x - k.half_base_distance  # rod 2: known part of its vector
-        branch_elbow_2 = (y * cos_a2 - span_2_x * sin_a2) / k.rod_length_2
+        branch_elbow_2 = k.one_by_rod_length_2 * (y * cos_a2 - span_2_x * sin_a2)
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
@@ -110,7 +110,6 @@ class ArrayPrograms(Programs):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         span_1_x = k.half_base_distance + x  # rod 1: known part of its vector
         y_squared = y * y
         effective_a1 = root(y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
@@ -171,7 +170,7 @@ class ArrayPrograms(Programs):
         # A4: whole turns added
         axis_a4 = nearest_period(k.offset_a4 + degrees(heading_across, heading_along), near_a4)
         # the tool points exactly the opposite way
-        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
         # a1: its effective length is too short
         # a1: out of reach
         require(
@@ -247,14 +246,14 @@ class ArrayPrograms(Programs):
         foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         span_1_x = k.half_base_distance + x  # rod 1: known part of its vector
-        margin_stretched_1 = (span_1_x * sin_a1 - y * cos_a1) / k.rod_length_1
+        margin_stretched_1 = (span_1_x * sin_a1 - y * cos_a1) * k.one_by_rod_length_1
         span_2_x = x - k.half_base_distance  # rod 2: known part of its vector
-        margin_stretched_2 = (y * cos_a2 - span_2_x * sin_a2) / k.rod_length_2
+        margin_stretched_2 = k.one_by_rod_length_2 * (y * cos_a2 - span_2_x * sin_a2)
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        margin_rods_aligned = (rod_1_x * rod_2_y - rod_1_y * rod_2_x) / k.rod_length_1_times_rod_length_2
+        margin_rods_aligned = k.quotient_in_margin_rods_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
@@ -436,9 +435,11 @@ class ArrayPrograms(Programs):
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
-        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        heading_divisor = select(
+            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+        )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

@@ -242,10 +242,10 @@ class ArrayPrograms(StartedPrograms):
             yaw_rate = spin_z + roll_rate * sin_pitch
             # size of the step, in characteristic lengths and radians
             size = root(
-                pitch_rate * pitch_rate
+                k.one_by_machine_scale_squared * (x_rate * x_rate + y_rate * y_rate + z_rate * z_rate)
+                + pitch_rate * pitch_rate
                 + roll_rate * roll_rate
                 + yaw_rate * yaw_rate
-                + (x_rate * x_rate + y_rate * y_rate + z_rate * z_rate) / k.machine_scale_squared
             )
             stretch = select(size > 0.5, 2.0 * size, 1.0)
             one_by_stretch = 1.0 / stretch
@@ -578,7 +578,7 @@ class ArrayPrograms(StartedPrograms):
             (),
         )
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans / k.product_in_determinant
+        determinant = determinant_of_spans * k.quotient_in_determinant
         axis_a1 = a1 + k.offset_a1
         axis_a2 = a2 + k.offset_a2
         axis_a3 = a3 + k.offset_a3

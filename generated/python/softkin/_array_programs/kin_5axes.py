@@ -80,8 +80,8 @@ class ArrayPrograms(Programs):
         axis_y = k.offset_y + wrist_y
         wrist_z = z - r33 * k.tool_length_times_tool_side
         axis_z = k.offset_z + wrist_z
-        r13_of_a = r13 / k.tool_side
-        r23_of_a = r23 / k.tool_side
+        r13_of_a = k.one_by_tool_side * r13
+        r23_of_a = k.one_by_tool_side * r23
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
 
         def elsewhere_direction_x_a(ref_a: Real) -> Reals:

@@ -96,13 +96,13 @@ class ArrayPrograms(Programs):
         else:
             span_upper_x = x  # rod upper: known part of its vector
             span_upper_y = y
-        branch_t = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / k.link_length_2
+        branch_t = k.one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
         span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -k.link_length_3_by_link_length_2 * span_upper_y
-        branch_w = (
+        branch_w = k.quotient_in_branch_w * (
             (k.product_in_branch_w * cos_a1 - k.link_length_2 * span_rear_y) * cos_a2
             + (k.product_in_branch_w * sin_a1 - k.link_length_2 * span_rear_x) * sin_a2
-        ) / k.link_length_2_times_link_length_4
+        )
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
@@ -301,13 +301,13 @@ class ArrayPrograms(Programs):
         else:
             span_upper_x = x  # rod upper: known part of its vector
             span_upper_y = y
-        margin_stretched_1 = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / k.link_length_2
+        margin_stretched_1 = k.one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
         span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -k.link_length_3_by_link_length_2 * span_upper_y
-        margin_stretched_2 = (
+        margin_stretched_2 = k.quotient_in_branch_w * (
             (k.product_in_branch_w * cos_a1 - k.link_length_2 * span_rear_y) * cos_a2
             + (k.product_in_branch_w * sin_a1 - k.link_length_2 * span_rear_x) * sin_a2
-        ) / k.link_length_2_times_link_length_4
+        )
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
         rod_2_x = x - centre_2_x

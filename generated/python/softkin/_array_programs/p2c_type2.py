@@ -70,9 +70,9 @@ class ArrayPrograms(Programs):
         foot_y = 0.5 * centre_1_to_2_y
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         span_1_x = x - k.sum_in_pivot_1_x  # rod 1: known part of its vector
-        branch_knee_1 = (y * cos_a1 - span_1_x * sin_a1) / k.outer_arm
+        branch_knee_1 = k.one_by_outer_arm * (y * cos_a1 - span_1_x * sin_a1)
         span_2_x = k.sum_in_pivot_1_x + x  # rod 2: known part of its vector
-        branch_knee_2 = (span_2_x * sin_a2 - y * cos_a2) / k.outer_arm
+        branch_knee_2 = (span_2_x * sin_a2 - y * cos_a2) * k.one_by_outer_arm
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
@@ -214,14 +214,14 @@ class ArrayPrograms(Programs):
         foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         span_1_x = x - k.sum_in_pivot_1_x  # rod 1: known part of its vector
-        margin_stretched_1 = (y * cos_a1 - span_1_x * sin_a1) / k.outer_arm
+        margin_stretched_1 = k.one_by_outer_arm * (y * cos_a1 - span_1_x * sin_a1)
         span_2_x = k.sum_in_pivot_1_x + x  # rod 2: known part of its vector
-        margin_stretched_2 = (span_2_x * sin_a2 - y * cos_a2) / k.outer_arm
+        margin_stretched_2 = (span_2_x * sin_a2 - y * cos_a2) * k.one_by_outer_arm
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        margin_arms_aligned = (rod_1_x * rod_2_y - rod_1_y * rod_2_x) / k.outer_arm_squared
+        margin_arms_aligned = k.one_by_outer_arm_squared * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(

@@ -52,8 +52,8 @@ class ArrayPrograms(Programs):
         x = foot_x + pivot_1_x - k.centre_1_to_2_y * height_by_normal
         foot_y = k.centre_1_to_2_y * foot_fraction
         y = foot_y + k.rail_y_1 + centre_1_to_2_x * height_by_normal
-        branch_carriage_1 = (x - pivot_1_x) / k.arm_length_1
-        branch_carriage_2 = (pivot_2_x - x) / k.arm_length_2
+        branch_carriage_1 = (x - pivot_1_x) * k.one_by_arm_length_1
+        branch_carriage_2 = k.one_by_arm_length_2 * (pivot_2_x - x)
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
@@ -144,14 +144,14 @@ class ArrayPrograms(Programs):
         height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
         x = foot_x + pivot_1_x - k.centre_1_to_2_y * height_by_normal
         rod_1_x = x - pivot_1_x
-        margin_upright_1 = rod_1_x / k.arm_length_1
+        margin_upright_1 = k.one_by_arm_length_1 * rod_1_x
         rod_2_x = x - pivot_2_x
-        margin_upright_2 = -rod_2_x / k.arm_length_2
+        margin_upright_2 = -k.one_by_arm_length_2 * rod_2_x
         foot_y = k.centre_1_to_2_y * foot_fraction
         y = foot_y + k.rail_y_1 + centre_1_to_2_x * height_by_normal
         rod_1_y = y - k.rail_y_1
         rod_2_y = y - k.rail_y_2
-        margin_arms_aligned = (rod_1_x * rod_2_y - rod_1_y * rod_2_x) / k.arm_length_1_times_arm_length_2
+        margin_arms_aligned = k.quotient_in_margin_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(

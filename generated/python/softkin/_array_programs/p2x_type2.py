@@ -84,9 +84,9 @@ class ArrayPrograms(Programs):
         pivot_1_x = -0.5 * (a1 + k.tcp_link_distance - a2)  # rod 1: centre about which it swings
         radicand_y = (k.arm_length + pivot_1_x) * (k.arm_length - pivot_1_x)  # quadratic equation for y: rod 1
         x = 0.5 * (a1 + a2)  # x from the x equation, which is linear in it
-        margin_meet_a2 = -2.0 * (k.span_1_x + x - a2) / k.arm_length
+        margin_meet_a2 = -2.0 * (k.span_1_x + x - a2) * k.one_by_arm_length
         y = root(radicand_y) * k.assembly_sign
-        margin_flat = y / k.arm_length
+        margin_flat = k.one_by_arm_length * y
         # the mirror that the machine does not have
         require(status, pivot_1_x >= -k.machine_scale_times_rounding, Status.IMPOSSIBLE)
         # rod 1 cannot reach

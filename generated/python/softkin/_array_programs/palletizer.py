@@ -97,7 +97,6 @@ class ArrayPrograms(Programs):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # coordinate of the point that the remaining links must reach
         wrist_z = z - k.base_height_plus_wrist_offset_z
         radius_a1 = sqrt(x * x + y * y)  # polar coordinates: the radius at angle a1
@@ -113,10 +112,7 @@ class ArrayPrograms(Programs):
         one_plus_cos_a3_from_a2 = (k.link_length_1_plus_link_length_2 + reach) * (
             k.link_length_1_plus_link_length_2 - reach
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3_from_a2 = one_less_cos_a3_from_a2 + one_plus_cos_a3_from_a2
-        divisor_of_cos_a3_from_a2 = select(sum_a3_from_a2 > 0.0, sum_a3_from_a2, 1.0)
-        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) / divisor_of_cos_a3_from_a2
+        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) * k.quotient_in_cos_swing_a3_from_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
@@ -141,7 +137,7 @@ class ArrayPrograms(Programs):
         # sine squared, times the squared scale
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a3_from_a2 = 2.0 * root(sine_square_a3_from_a2) * sigma_elbow / divisor_of_cos_a3_from_a2
+        cos_a3_from_a2 = root(sine_square_a3_from_a2) * sigma_elbow * k.half_by_link_length_1_by_link_length_2
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
@@ -176,7 +172,7 @@ class ArrayPrograms(Programs):
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4 = nearest_period(k.offset_a4 + (angle_heading - angle_a1) / DEGREE, near_a4)
         # the tool points exactly the opposite way
-        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
         # a3_from_a2: out of reach
         require(status, absolute(cos_swing_a3_from_a2) <= 1.0000000000005, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
@@ -330,9 +326,11 @@ class ArrayPrograms(Programs):
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
-        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        heading_divisor = select(
+            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+        )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

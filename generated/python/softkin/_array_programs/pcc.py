@@ -74,13 +74,10 @@ class ArrayPrograms(Programs):
         one_plus_cos_a2_from_a1 = (reach - k.link_length_1_minus_link_length_2) * (
             k.link_length_1_minus_link_length_2 + reach
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = select(sum_a2_from_a1 > 0.0, sum_a2_from_a1, 1.0)
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / divisor_of_cos_a2_from_a1
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * k.quotient_in_cos_a2_from_a1
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
-        sin_a2_from_a1 = 2.0 * root(sine_square_a2_from_a1) * sigma_elbow / divisor_of_cos_a2_from_a1
+        sin_a2_from_a1 = root(sine_square_a2_from_a1) * sigma_elbow * k.half_by_link_length_1_by_link_length_2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE

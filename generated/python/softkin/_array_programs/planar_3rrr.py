@@ -112,7 +112,7 @@ class ArrayPrograms(StartedPrograms):
             )
             spin_z = k.one_by_platform_radius * swing_z
             # size of the step, in characteristic lengths and radians
-            size = root(spin_z * spin_z + (x_rate * x_rate + y_rate * y_rate) / k.machine_scale_squared)
+            size = root(k.one_by_machine_scale_squared * (x_rate * x_rate + y_rate * y_rate) + spin_z * spin_z)
             stretch = select(size > 0.5, 2.0 * size, 1.0)
             one_by_stretch = 1.0 / stretch
             done = fit & fitted
@@ -161,21 +161,21 @@ class ArrayPrograms(StartedPrograms):
         # rod 1: known part of its vector
         span_1_x = x + k.platform_1_x * cos_heading - k.base_1_x - k.platform_1_y * sin_heading
         span_1_y = y + k.platform_1_y * cos_heading + k.platform_1_x * sin_heading - k.base_1_y
-        branch_elbow_1 = (span_1_y * cos_a1 - span_1_x * sin_a1) / k.rod_length_1
+        branch_elbow_1 = k.one_by_rod_length_1 * (span_1_y * cos_a1 - span_1_x * sin_a1)
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         sin_a2 = sin(a2)
         cos_a2 = cos(a2)
         # rod 2: known part of its vector
         span_2_x = x + k.platform_2_x * cos_heading - k.base_2_x - k.platform_2_y * sin_heading
         span_2_y = y + k.platform_2_y * cos_heading + k.platform_2_x * sin_heading - k.base_2_y
-        branch_elbow_2 = (span_2_y * cos_a2 - span_2_x * sin_a2) / k.rod_length_2
+        branch_elbow_2 = k.one_by_rod_length_2 * (span_2_y * cos_a2 - span_2_x * sin_a2)
         a3 = DEGREE * (axis_a3 - k.offset_a3)
         sin_a3 = sin(a3)
         cos_a3 = cos(a3)
         # rod 3: known part of its vector
         span_3_x = x + k.platform_3_x * cos_heading - k.base_3_x - k.platform_3_y * sin_heading
         span_3_y = y + k.platform_3_y * cos_heading + k.platform_3_x * sin_heading - k.base_3_y
-        branch_elbow_3 = (span_3_y * cos_a3 - span_3_x * sin_a3) / k.rod_length_3
+        branch_elbow_3 = k.one_by_rod_length_3 * (span_3_y * cos_a3 - span_3_x * sin_a3)
         return (
             (x, y, 0.0),
             ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)),
@@ -212,21 +212,21 @@ class ArrayPrograms(StartedPrograms):
         # rod 1: known part of its vector
         span_1_x = x + k.platform_1_x * cos_heading - k.base_1_x - k.platform_1_y * sin_heading
         span_1_y = y + k.platform_1_y * cos_heading + k.platform_1_x * sin_heading - k.base_1_y
-        branch_elbow_1 = (span_1_y * cos_a1 - span_1_x * sin_a1) / k.rod_length_1
+        branch_elbow_1 = k.one_by_rod_length_1 * (span_1_y * cos_a1 - span_1_x * sin_a1)
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         sin_a2 = sin(a2)
         cos_a2 = cos(a2)
         # rod 2: known part of its vector
         span_2_x = x + k.platform_2_x * cos_heading - k.base_2_x - k.platform_2_y * sin_heading
         span_2_y = y + k.platform_2_y * cos_heading + k.platform_2_x * sin_heading - k.base_2_y
-        branch_elbow_2 = (span_2_y * cos_a2 - span_2_x * sin_a2) / k.rod_length_2
+        branch_elbow_2 = k.one_by_rod_length_2 * (span_2_y * cos_a2 - span_2_x * sin_a2)
         a3 = DEGREE * (axis_a3 - k.offset_a3)
         sin_a3 = sin(a3)
         cos_a3 = cos(a3)
         # rod 3: known part of its vector
         span_3_x = x + k.platform_3_x * cos_heading - k.base_3_x - k.platform_3_y * sin_heading
         span_3_y = y + k.platform_3_y * cos_heading + k.platform_3_x * sin_heading - k.base_3_y
-        branch_elbow_3 = (span_3_y * cos_a3 - span_3_x * sin_a3) / k.rod_length_3
+        branch_elbow_3 = k.one_by_rod_length_3 * (span_3_y * cos_a3 - span_3_x * sin_a3)
         return (
             (x, y, 0.0),
             ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)),
@@ -250,7 +250,9 @@ class ArrayPrograms(StartedPrograms):
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
-        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        heading_divisor = select(
+            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+        )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         arm_1_x = k.platform_1_x * cos_heading - k.platform_1_y * sin_heading
@@ -342,7 +344,7 @@ class ArrayPrograms(StartedPrograms):
             ((rod_1_x, rod_1_y, moment_1_z), (rod_2_x, rod_2_y, moment_2_z), (rod_3_x, rod_3_y, moment_3_z)), ()
         )
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans / k.product_in_determinant
+        determinant = determinant_of_spans * k.quotient_in_determinant
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: whole turns added
@@ -353,7 +355,7 @@ class ArrayPrograms(StartedPrograms):
         near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(k.offset_a3 + degrees(sin_a3, cos_a3), near_a3)  # A3: whole turns added
         # the tool points exactly the opposite way
-        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
         # a1: its effective length is too short
@@ -410,21 +412,21 @@ class ArrayPrograms(StartedPrograms):
         # rod 1: known part of its vector
         span_1_x = x + k.platform_1_x * cos_heading - k.base_1_x - k.platform_1_y * sin_heading
         span_1_y = y + k.platform_1_y * cos_heading + k.platform_1_x * sin_heading - k.base_1_y
-        margin_stretched_1 = (span_1_y * cos_a1 - span_1_x * sin_a1) / k.rod_length_1
+        margin_stretched_1 = k.one_by_rod_length_1 * (span_1_y * cos_a1 - span_1_x * sin_a1)
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         sin_a2 = sin(a2)
         cos_a2 = cos(a2)
         # rod 2: known part of its vector
         span_2_x = x + k.platform_2_x * cos_heading - k.base_2_x - k.platform_2_y * sin_heading
         span_2_y = y + k.platform_2_y * cos_heading + k.platform_2_x * sin_heading - k.base_2_y
-        margin_stretched_2 = (span_2_y * cos_a2 - span_2_x * sin_a2) / k.rod_length_2
+        margin_stretched_2 = k.one_by_rod_length_2 * (span_2_y * cos_a2 - span_2_x * sin_a2)
         a3 = DEGREE * (axis_a3 - k.offset_a3)
         sin_a3 = sin(a3)
         cos_a3 = cos(a3)
         # rod 3: known part of its vector
         span_3_x = x + k.platform_3_x * cos_heading - k.base_3_x - k.platform_3_y * sin_heading
         span_3_y = y + k.platform_3_y * cos_heading + k.platform_3_x * sin_heading - k.base_3_y
-        margin_stretched_3 = (span_3_y * cos_a3 - span_3_x * sin_a3) / k.rod_length_3
+        margin_stretched_3 = k.one_by_rod_length_3 * (span_3_y * cos_a3 - span_3_x * sin_a3)
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, determinant), status
 
     def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
@@ -578,9 +580,11 @@ class ArrayPrograms(StartedPrograms):
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
-        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        heading_divisor = select(
+            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+        )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

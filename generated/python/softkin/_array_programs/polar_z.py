@@ -106,7 +106,7 @@ class ArrayPrograms(Programs):
         sin_c = sin(c)
         y = r * sin_c
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
-        length_free_c = radius_c / k.machine_scale
+        length_free_c = k.one_by_machine_scale * radius_c
         margin_free_c = select(length_free_c > 1e-11, 1.0, 0.0)  # 0 where nothing determines the axis, else 1 or -1
         # R where the machine has no pose
         require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)

@@ -74,12 +74,9 @@ class ArrayPrograms(Programs):
         one_less_cos_a2 = (k.arm_length_1_plus_arm_length_2 + reach) * (k.arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.arm_length_1_minus_arm_length_2) * (k.arm_length_1_minus_arm_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * k.quotient_in_cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * root(sine_square_a2) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = root(sine_square_a2) * sigma_elbow * k.half_by_arm_length_1_by_arm_length_2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE

@@ -78,7 +78,9 @@ class ArrayPrograms(Programs):
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
-        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        heading_divisor = select(
+            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+        )
         cos_heading = heading_along / heading_divisor
         wrist_x = x - k.arm_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across / heading_divisor
@@ -88,12 +90,9 @@ class ArrayPrograms(Programs):
         one_less_cos_a2 = (k.arm_length_1_plus_arm_length_2 + reach) * (k.arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.arm_length_1_minus_arm_length_2) * (k.arm_length_1_minus_arm_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * k.quotient_in_cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * root(sine_square_a2) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = root(sine_square_a2) * sigma_elbow * k.half_by_arm_length_1_by_arm_length_2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
@@ -128,7 +127,7 @@ class ArrayPrograms(Programs):
         axis_a3 = nearest_period(k.offset_a3 + (angle_heading - angle_a1 - angle_a2) / DEGREE, near_a3)
         axis_z = k.offset_z + z
         # the tool points exactly the opposite way
-        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
         # a2: out of reach
         require(status, absolute(cos_a2) <= 1.0000000000005, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_z), status
@@ -227,9 +226,11 @@ class ArrayPrograms(Programs):
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
-        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        heading_divisor = select(
+            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+        )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

@@ -76,7 +76,7 @@ class ArrayPrograms(Programs):
         y = foot_y + height_by_normal * normal_y
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_x = x - k.inner_radius_minus_outer_radius  # rod 1: known part of its vector
-        branch_carriage_1 = (a1 + z * k.cos_rail_angle + span_1_x * k.sin_rail_angle) / k.arm_length
+        branch_carriage_1 = (a1 + z * k.cos_rail_angle + span_1_x * k.sin_rail_angle) * k.one_by_arm_length
         span_2_y = y - k.sum_in_pivot_2_y
         span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
         sum_in_branch_carriage_2 = (
@@ -178,7 +178,7 @@ class ArrayPrograms(Programs):
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_rods_coplanar >= k.min_type2_margin, Status.UNREACHABLE)
         # ball joint of rod 1
-        require(status, absolute(y) / k.arm_length <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
+        require(status, absolute(y) * k.one_by_arm_length <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 2
         require(
             status,
@@ -263,7 +263,7 @@ class ArrayPrograms(Programs):
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         x = foot_x + pivot_1_x + height_by_normal * normal_x
         span_1_x = x - k.inner_radius_minus_outer_radius  # rod 1: known part of its vector
-        margin_square_1 = (a1 + z * k.cos_rail_angle + span_1_x * k.sin_rail_angle) / k.arm_length
+        margin_square_1 = (a1 + z * k.cos_rail_angle + span_1_x * k.sin_rail_angle) * k.one_by_arm_length
         y = foot_y + height_by_normal * normal_y
         span_2_y = y - k.sum_in_pivot_2_y
         span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
@@ -281,11 +281,11 @@ class ArrayPrograms(Programs):
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
         rod_3_z = z - pivot_3_z
-        margin_rods_coplanar = (
-            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
-            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
-            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
-        ) / k.product_in_margin_rods_coplanar
+        margin_rods_coplanar = -k.quotient_in_margin_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+            + (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
+        )
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(

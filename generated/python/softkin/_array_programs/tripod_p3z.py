@@ -197,11 +197,11 @@ class ArrayPrograms(Programs):
         rod_2_y = y - k.pivot_2_y
         rod_3_x = x - k.pivot_3_x
         rod_3_y = y - k.pivot_3_y
-        margin_rods_coplanar = (
+        margin_rods_coplanar = k.quotient_in_margin_rods_coplanar * (
             rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_1_y * rod_3_x - rod_1_x * rod_3_y) * rod_2_z
             + (rod_1_x * rod_2_y - rod_1_y * rod_2_x) * rod_3_z
-        ) / k.product_in_margin_rods_coplanar
+        )
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(

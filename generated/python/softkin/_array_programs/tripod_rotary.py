@@ -98,7 +98,7 @@ class ArrayPrograms(Programs):
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_x = x - k.fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         span_1_z = z - k.fixed_length_2
-        branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / k.arm_length_2
+        branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) * k.one_by_arm_length_2
         span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - k.sum_in_pivot_2_y
         root_of_3_2 = root(3.0)
@@ -245,7 +245,7 @@ class ArrayPrograms(Programs):
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         require(status, type2_rods_coplanar >= k.min_type2_margin, Status.UNREACHABLE)
         # ball joint of rod 1
-        require(status, absolute(y) / k.arm_length_2 <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
+        require(status, absolute(y) * k.one_by_arm_length_2 <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 2
         require(
             status,
@@ -338,7 +338,7 @@ class ArrayPrograms(Programs):
         span_1_x = x - k.fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_z = z - k.fixed_length_2
-        margin_stretched_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / k.arm_length_2
+        margin_stretched_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) * k.one_by_arm_length_2
         span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
         y = foot_y + height_by_normal * normal_y
         span_2_y = y - k.sum_in_pivot_2_y
@@ -358,11 +358,11 @@ class ArrayPrograms(Programs):
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
         rod_3_z = z - pivot_3_z
-        margin_rods_coplanar = (
+        margin_rods_coplanar = k.quotient_in_margin_rods_coplanar * (
             rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
             + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
             + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
-        ) / k.product_in_margin_rods_coplanar
+        )
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(

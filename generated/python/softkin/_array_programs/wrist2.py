@@ -72,8 +72,8 @@ class ArrayPrograms(OrientationPrograms):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a, ref_b), Status.BAD_INPUT)
-        r13_of_a = r13 / k.tool_side
-        r23_of_a = r23 / k.tool_side
+        r13_of_a = k.one_by_tool_side * r13
+        r23_of_a = k.one_by_tool_side * r23
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
 
         def elsewhere_direction_x_a(ref_a: Real) -> Reals:

@@ -27,9 +27,10 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
     offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-    offset_a6, product_in_cos_q6, rounding_q1 = k.offset_a6, k.product_in_cos_q6, k.rounding_q1
-    single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
-    single_a5, single_a6, size_q1_for_q3 = k.single_a5, k.single_a6, k.size_q1_for_q3
+    offset_a6, product_in_cos_q6, quotient_in_cos_q3 = k.offset_a6, k.product_in_cos_q6, k.quotient_in_cos_q3
+    quotient_in_sin_q3, rounding_q1, single_a1 = k.quotient_in_sin_q3, k.rounding_q1, k.single_a1
+    single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
+    single_a6, size_q1_for_q3 = k.single_a6, k.size_q1_for_q3
     size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
@@ -201,14 +202,11 @@ def unrolled(k: Constants) -> Unrolled:
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
         refusal_left_down = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left) * RADIAN
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / abs(divisor_of_cos_q3)
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_sin_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -335,13 +333,10 @@ def unrolled(k: Constants) -> Unrolled:
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
         refusal_left_up = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / abs(divisor_of_cos_q3)
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_sin_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -490,14 +485,11 @@ def unrolled(k: Constants) -> Unrolled:
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
         refusal_right_down = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right) * RADIAN
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / abs(divisor_of_cos_q3)
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_sin_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -624,13 +616,10 @@ def unrolled(k: Constants) -> Unrolled:
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
         refusal_right_up = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / abs(divisor_of_cos_q3)
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_sin_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -878,15 +867,12 @@ def unrolled(k: Constants) -> Unrolled:
         # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
-        divisor_of_cos_q3 = sum_q3 if abs(sum_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):
             return None
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / abs(divisor_of_cos_q3)
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_sin_q3
         if reach > machine_scale_times_free_angle:
             angle_q2 = arctan2(wrist_y_from_q1, wrist_x_from_q1) - arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
         else:

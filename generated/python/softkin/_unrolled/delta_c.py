@@ -42,9 +42,8 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return 8 * (refused[Status.UNREACHABLE],)
         span_1_x = x - base_radius_minus_plate_radius  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + z * z)  # effective length of the arm that a1 turns
@@ -281,9 +280,8 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return None
         span_1_x = x - base_radius_minus_plate_radius  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + z * z)  # effective length of the arm that a1 turns

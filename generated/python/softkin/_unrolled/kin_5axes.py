@@ -23,6 +23,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_x, offset_y, offset_z, single_a, single_b = k.offset_x, k.offset_y, k.offset_z, k.single_a, k.single_b
     tool_length, tool_side = k.tool_length, k.tool_side
     tool_length_times_tool_side_2 = tool_length * tool_side
+    one_by_tool_side_2 = 1.0 / tool_side
     no_offsets = not any((offset_a, offset_b, offset_x, offset_y, offset_z))
 
     def branches(
@@ -35,8 +36,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_x = offset_x + wrist_x
         axis_y = offset_y + (y - r23 * tool_length_times_tool_side_2)
         axis_z = offset_z + (z - r33 * tool_length_times_tool_side_2)
-        r13_of_a = r13 / tool_side
-        r23_of_a = r23 / tool_side
+        r13_of_a = one_by_tool_side_2 * r13
+        r23_of_a = one_by_tool_side_2 * r23
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
         # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
         # reference
@@ -69,8 +70,8 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_roll,) = signs
         _, _, _, ref_a, _ = 5 * (0.0,) if reference is None else reference
         wrist_x = x - r13 * tool_length_times_tool_side_2  # wrist centre: the last joints do not move this point
-        r13_of_a = r13 / tool_side
-        r23_of_a = r23 / tool_side
+        r13_of_a = one_by_tool_side_2 * r13
+        r23_of_a = one_by_tool_side_2 * r23
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
         # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
         # reference

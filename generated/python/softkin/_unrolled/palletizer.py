@@ -17,11 +17,13 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    base_height_plus_wrist_offset_z, link_length_1 = k.base_height_plus_wrist_offset_z, k.link_length_1
-    link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+    base_height_plus_wrist_offset_z = k.base_height_plus_wrist_offset_z
+    half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
+    link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
     link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
     machine_scale_times_free_angle, offset_a1 = k.machine_scale_times_free_angle, k.offset_a1
     offset_a2, offset_a3, offset_a4 = k.offset_a2, k.offset_a3, k.offset_a4
+    quotient_in_cos_swing_a3_from_a2 = k.quotient_in_cos_swing_a3_from_a2
     shoulder_offset_plus_wrist_offset_x = k.shoulder_offset_plus_wrist_offset_x
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4))
 
@@ -34,9 +36,8 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return 4 * (refused[Status.UNREACHABLE],)
         radius_a1 = sqrt(x * x + y * y)  # polar coordinates: the radius at angle a1
         # coordinate of the point that the remaining links must reach
@@ -52,10 +53,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach) * (
             link_length_1_plus_link_length_2 - reach
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3_from_a2 = one_less_cos_a3_from_a2 + one_plus_cos_a3_from_a2
-        divisor_of_cos_a3_from_a2 = sum_a3_from_a2 if sum_a3_from_a2 > 0.0 else 1.0
-        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) / divisor_of_cos_a3_from_a2
+        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) * quotient_in_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
         refusal_front = 0 if -1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005 else 3
         # polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
@@ -75,8 +73,8 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3_from_a2 = (
-            2.0 * (sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0) / divisor_of_cos_a3_from_a2
-        )
+            sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0
+        ) * half_by_link_length_1_by_link_length_2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a2 = arctan2(
                 link_length_2 * cos_a3_from_a2, link_length_1 - link_length_2 * cos_swing_a3_from_a2
@@ -108,10 +106,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach) * (
             link_length_1_plus_link_length_2 - reach
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3_from_a2 = one_less_cos_a3_from_a2 + one_plus_cos_a3_from_a2
-        divisor_of_cos_a3_from_a2 = sum_a3_from_a2 if sum_a3_from_a2 > 0.0 else 1.0
-        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) / divisor_of_cos_a3_from_a2
+        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) * quotient_in_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
         refusal_back = 0 if -1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005 else 3
         # cosine and sine of a4 from the cos heading and sin heading equations
@@ -126,8 +121,8 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3_from_a2 = (
-            2.0 * (sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0) / divisor_of_cos_a3_from_a2
-        )
+            sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0
+        ) * half_by_link_length_1_by_link_length_2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a2 = arctan2(
                 link_length_2 * cos_a3_from_a2, link_length_1 - link_length_2 * cos_swing_a3_from_a2
@@ -167,9 +162,8 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return None
         wrist_z = z - base_height_plus_wrist_offset_z  # coordinate of the point that the remaining links must reach
         radius_a1 = sqrt(x * x + y * y)  # polar coordinates: the radius at angle a1
@@ -185,10 +179,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach) * (
             link_length_1_plus_link_length_2 - reach
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3_from_a2 = one_less_cos_a3_from_a2 + one_plus_cos_a3_from_a2
-        divisor_of_cos_a3_from_a2 = sum_a3_from_a2 if sum_a3_from_a2 > 0.0 else 1.0
-        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) / divisor_of_cos_a3_from_a2
+        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) * quotient_in_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005):
             return None
@@ -206,10 +197,9 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3_from_a2 = (
-            2.0
-            * (sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0)
+            (sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0)
             * sigma_elbow
-            / divisor_of_cos_a3_from_a2
+            * half_by_link_length_1_by_link_length_2
         )
         if reach > machine_scale_times_free_angle:
             angle_a2 = arctan2(wrist_a1_radius, wrist_z) - arctan2(

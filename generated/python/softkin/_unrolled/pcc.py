@@ -17,10 +17,12 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
+    half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
     link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
     link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
     machine_scale_times_free_angle = k.machine_scale_times_free_angle
     machine_scale_times_plane, offset_a1, offset_a2 = k.machine_scale_times_plane, k.offset_a1, k.offset_a2
+    quotient_in_cos_a2_from_a1 = k.quotient_in_cos_a2_from_a1
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -41,18 +43,15 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
             link_length_1_minus_link_length_2 + reach
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = sum_a2_from_a1 if sum_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / divisor_of_cos_a2_from_a1
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * quotient_in_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             return 2 * (refused[Status.UNREACHABLE],)
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
-            2.0 * (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0) / divisor_of_cos_a2_from_a1
-        )
+            sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0
+        ) * half_by_link_length_1_by_link_length_2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(
                 link_length_2 * sin_a2_from_a1, link_length_1 + link_length_2 * cos_a2_from_a1
@@ -90,20 +89,16 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
             link_length_1_minus_link_length_2 + reach
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = sum_a2_from_a1 if sum_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / divisor_of_cos_a2_from_a1
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * quotient_in_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             return None
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
-            2.0
-            * (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
+            (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
             * sigma_elbow
-            / divisor_of_cos_a2_from_a1
+            * half_by_link_length_1_by_link_length_2
         )
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(

@@ -32,10 +32,11 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_a1, lowest_a2, lowest_a3 = k.lowest_a1, k.lowest_a2, k.lowest_a3
     machine_scale_times_plane, mid_a1, mid_a2, mid_a3 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2, k.mid_a3
     min_type2_margin, offset_a1, offset_a2, offset_a3 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.offset_a3
-    platform_1_x, platform_1_y, platform_2_x = k.platform_1_x, k.platform_1_y, k.platform_2_x
-    platform_2_y, platform_3_x, platform_3_y = k.platform_2_y, k.platform_3_x, k.platform_3_y
-    platform_radius, product_in_determinant, single_a1 = k.platform_radius, k.product_in_determinant, k.single_a1
-    single_a2, single_a3 = k.single_a2, k.single_a3
+    one_by_platform_radius, platform_1_x, platform_1_y = k.one_by_platform_radius, k.platform_1_x, k.platform_1_y
+    platform_2_x, platform_2_y, platform_3_x = k.platform_2_x, k.platform_2_y, k.platform_3_x
+    platform_3_y, rod_length_1, rod_length_2 = k.platform_3_y, k.rod_length_1, k.rod_length_2
+    rod_length_3, single_a1, single_a2, single_a3 = k.rod_length_3, k.single_a1, k.single_a2, k.single_a3
+    quotient_in_determinant_right_right_right = 1.0 / (rod_length_1 * rod_length_2 * rod_length_3)
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -47,7 +48,7 @@ def unrolled(k: Constants) -> Unrolled:
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
+        heading_divisor = heading_length if (abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11) else 1.0
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         arm_1_x = platform_1_x * cos_heading - platform_1_y * sin_heading
@@ -77,7 +78,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1_right = (cos_swing_a1_times_span_1_y - sin_swing_a1_left_times_span_1_x) / divisor_a1
         rod_1_y = span_1_y - arm_length_1 * sin_a1_right
         # leg 1: the moment of its span about the platform's origin
-        moment_1_z = (arm_1_x * rod_1_y - arm_1_y * rod_1_x) / platform_radius
+        moment_1_z = (arm_1_x * rod_1_y - arm_1_y * rod_1_x) * one_by_platform_radius
         arm_2_x = platform_2_x * cos_heading - platform_2_y * sin_heading
         span_2_x = arm_2_x + x - base_2_x  # rod 2: known part of its vector
         arm_2_y = platform_2_y * cos_heading + platform_2_x * sin_heading
@@ -105,7 +106,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_right = (cos_swing_a2_times_span_2_y - sin_swing_a2_left_times_span_2_x) / divisor_a2
         rod_2_y_right = span_2_y - arm_length_2 * sin_a2_right
         # leg 2: the moment of its span about the platform's origin
-        moment_2_z_right = (arm_2_x * rod_2_y_right - arm_2_y * rod_2_x_right) / platform_radius
+        moment_2_z_right = (arm_2_x * rod_2_y_right - arm_2_y * rod_2_x_right) * one_by_platform_radius
         arm_3_x = platform_3_x * cos_heading - platform_3_y * sin_heading
         span_3_x = arm_3_x + x - base_3_x  # rod 3: known part of its vector
         arm_3_y = platform_3_y * cos_heading + platform_3_x * sin_heading
@@ -133,7 +134,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a3_right = (cos_swing_a3_times_span_3_y - sin_swing_a3_left_times_span_3_x) / divisor_a3
         rod_3_y_right = span_3_y - arm_length_3 * sin_a3_right
         # leg 3: the moment of its span about the platform's origin
-        moment_3_z_right = (arm_3_x * rod_3_y_right - arm_3_y * rod_3_x_right) / platform_radius
+        moment_3_z_right = (arm_3_x * rod_3_y_right - arm_3_y * rod_3_x_right) * one_by_platform_radius
         # determinant of the spans of the legs and their moments
         (determinant_of_spans_right_right_right,) = solve(
             (
@@ -150,7 +151,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a3_left = (cos_swing_a3_times_span_3_y + sin_swing_a3_left_times_span_3_x) / divisor_a3
         rod_3_y_left = span_3_y - arm_length_3 * sin_a3_left
         # leg 3: the moment of its span about the platform's origin
-        moment_3_z_left = (arm_3_x * rod_3_y_left - arm_3_y * rod_3_x_left) / platform_radius
+        moment_3_z_left = (arm_3_x * rod_3_y_left - arm_3_y * rod_3_x_left) * one_by_platform_radius
         # determinant of the spans of the legs and their moments
         (determinant_of_spans_right_right_left,) = solve(
             (
@@ -167,7 +168,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_left = (cos_swing_a2_times_span_2_y + sin_swing_a2_left_times_span_2_x) / divisor_a2
         rod_2_y_left = span_2_y - arm_length_2 * sin_a2_left
         # leg 2: the moment of its span about the platform's origin
-        moment_2_z_left = (arm_2_x * rod_2_y_left - arm_2_y * rod_2_x_left) / platform_radius
+        moment_2_z_left = (arm_2_x * rod_2_y_left - arm_2_y * rod_2_x_left) * one_by_platform_radius
         # determinant of the spans of the legs and their moments
         (determinant_of_spans_right_left_right,) = solve(
             (
@@ -193,7 +194,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1_left = (cos_swing_a1_times_span_1_y + sin_swing_a1_left_times_span_1_x) / divisor_a1
         rod_1_y = span_1_y - arm_length_1 * sin_a1_left
         # leg 1: the moment of its span about the platform's origin
-        moment_1_z = (arm_1_x * rod_1_y - arm_1_y * rod_1_x) / platform_radius
+        moment_1_z = (arm_1_x * rod_1_y - arm_1_y * rod_1_x) * one_by_platform_radius
         # determinant of the spans of the legs and their moments
         (determinant_of_spans_left_right_right,) = solve(
             (
@@ -231,7 +232,7 @@ def unrolled(k: Constants) -> Unrolled:
             (),
         )
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return 8 * (refused[Status.UNREACHABLE],)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -252,41 +253,41 @@ def unrolled(k: Constants) -> Unrolled:
         ):
             return 8 * (refused[Status.UNREACHABLE],)
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans_right_right_right / product_in_determinant
+        determinant = determinant_of_spans_right_right_right * quotient_in_determinant_right_right_right
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         refusal_right_right_right = 0 if assembly_sign * determinant >= min_type2_margin else 3
         axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right) * RADIAN
         axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right) * RADIAN
         axis_a3_right = offset_a3 + arctan2(sin_a3_right, cos_a3_right) * RADIAN
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans_right_right_left / product_in_determinant
+        determinant = determinant_of_spans_right_right_left * quotient_in_determinant_right_right_right
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         refusal_right_right_left = 0 if assembly_sign * determinant >= min_type2_margin else 3
         axis_a3_left = offset_a3 + arctan2(sin_a3_left, cos_a3_left) * RADIAN
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans_right_left_right / product_in_determinant
+        determinant = determinant_of_spans_right_left_right * quotient_in_determinant_right_right_right
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         refusal_right_left_right = 0 if assembly_sign * determinant >= min_type2_margin else 3
         axis_a2_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left) * RADIAN
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans_right_left_left / product_in_determinant
+        determinant = determinant_of_spans_right_left_left * quotient_in_determinant_right_right_right
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         refusal_right_left_left = 0 if assembly_sign * determinant >= min_type2_margin else 3
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans_left_right_right / product_in_determinant
+        determinant = determinant_of_spans_left_right_right * quotient_in_determinant_right_right_right
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         refusal_left_right_right = 0 if assembly_sign * determinant >= min_type2_margin else 3
         axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left) * RADIAN
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans_left_right_left / product_in_determinant
+        determinant = determinant_of_spans_left_right_left * quotient_in_determinant_right_right_right
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         refusal_left_right_left = 0 if assembly_sign * determinant >= min_type2_margin else 3
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans_left_left_right / product_in_determinant
+        determinant = determinant_of_spans_left_left_right * quotient_in_determinant_right_right_right
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         refusal_left_left_right = 0 if assembly_sign * determinant >= min_type2_margin else 3
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans_left_left_left / product_in_determinant
+        determinant = determinant_of_spans_left_left_left * quotient_in_determinant_right_right_right
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         refusal_left_left_left = 0 if assembly_sign * determinant >= min_type2_margin else 3
         return (
@@ -323,14 +324,14 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return None
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        heading_divisor = heading_length if (abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11) else 1.0
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         arm_1_x = platform_1_x * cos_heading - platform_1_y * sin_heading
@@ -404,7 +405,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = (span_1_y * cos_swing_a1 + span_1_x * sin_swing_a1) / divisor_a1
         rod_1_y = span_1_y - arm_length_1 * sin_a1
         # leg 1: the moment of its span about the platform's origin
-        moment_1_z = (arm_1_x * rod_1_y - arm_1_y * rod_1_x) / platform_radius
+        moment_1_z = (arm_1_x * rod_1_y - arm_1_y * rod_1_x) * one_by_platform_radius
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = (
             -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow_2 / divisor_of_cos_a2
@@ -416,7 +417,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = (span_2_y * cos_swing_a2 + span_2_x * sin_swing_a2) / divisor_a2
         rod_2_y = span_2_y - arm_length_2 * sin_a2
         # leg 2: the moment of its span about the platform's origin
-        moment_2_z = (arm_2_x * rod_2_y - arm_2_y * rod_2_x) / platform_radius
+        moment_2_z = (arm_2_x * rod_2_y - arm_2_y * rod_2_x) * one_by_platform_radius
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_swing_a3 = (
             -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_elbow_3 / divisor_of_cos_a3
@@ -428,13 +429,13 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a3 = (span_3_y * cos_swing_a3 + span_3_x * sin_swing_a3) / divisor_a3
         rod_3_y = span_3_y - arm_length_3 * sin_a3
         # leg 3: the moment of its span about the platform's origin
-        moment_3_z = (arm_3_x * rod_3_y - arm_3_y * rod_3_x) / platform_radius
+        moment_3_z = (arm_3_x * rod_3_y - arm_3_y * rod_3_x) * one_by_platform_radius
         # determinant of the spans of the legs and their moments
         (determinant_of_spans,) = solve(
             ((rod_1_x, rod_1_y, moment_1_z), (rod_2_x, rod_2_y, moment_2_z), (rod_3_x, rod_3_y, moment_3_z)), ()
         )
         # the same of unit vectors: margin of the platform, zero in a type 2 singularity
-        determinant = determinant_of_spans / product_in_determinant
+        determinant = determinant_of_spans * quotient_in_determinant_right_right_right
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         if not (assembly_sign * determinant >= min_type2_margin):
             return None

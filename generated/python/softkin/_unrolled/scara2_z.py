@@ -20,10 +20,11 @@ def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
     arm_length_1, arm_length_1_minus_arm_length_2 = k.arm_length_1, k.arm_length_1_minus_arm_length_2
     arm_length_1_plus_arm_length_2, arm_length_2 = k.arm_length_1_plus_arm_length_2, k.arm_length_2
-    highest_a1, highest_a2, highest_z, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_z, k.lowest_a1
-    lowest_a2, lowest_z, machine_scale_times_free_angle = k.lowest_a2, k.lowest_z, k.machine_scale_times_free_angle
-    mid_a1, mid_a2, offset_a1, offset_a2, offset_z = k.mid_a1, k.mid_a2, k.offset_a1, k.offset_a2, k.offset_z
-    single_a1, single_a2 = k.single_a1, k.single_a2
+    half_by_arm_length_1_by_arm_length_2, highest_a1 = k.half_by_arm_length_1_by_arm_length_2, k.highest_a1
+    highest_a2, highest_z, lowest_a1, lowest_a2 = k.highest_a2, k.highest_z, k.lowest_a1, k.lowest_a2
+    lowest_z, machine_scale_times_free_angle, mid_a1 = k.lowest_z, k.machine_scale_times_free_angle, k.mid_a1
+    mid_a2, offset_a1, offset_a2, offset_z = k.mid_a2, k.offset_a1, k.offset_a2, k.offset_z
+    quotient_in_cos_a2, single_a1, single_a2 = k.quotient_in_cos_a2, k.single_a1, k.single_a2
     no_offsets = not any((offset_a1, offset_a2, offset_z))
 
     def branches(
@@ -37,15 +38,12 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach) * (arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2 * (refused[Status.UNREACHABLE],)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * half_by_arm_length_1_by_arm_length_2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(arm_length_2 * sin_a2, arm_length_1 + arm_length_2 * cos_a2)
             angle_of_x = arctan2(y, x)
@@ -71,15 +69,14 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach) * (arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return None
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = (
+            (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow * half_by_arm_length_1_by_arm_length_2
+        )
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(arm_length_2 * sin_a2, arm_length_1 + arm_length_2 * cos_a2)
         else:

@@ -18,13 +18,14 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    highest_a1, highest_a2, highest_a3, link_length_1 = k.highest_a1, k.highest_a2, k.highest_a3, k.link_length_1
+    half_by_link_length_1_by_link_length_2, highest_a1 = k.half_by_link_length_1_by_link_length_2, k.highest_a1
+    highest_a2, highest_a3, link_length_1 = k.highest_a2, k.highest_a3, k.link_length_1
     link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
     link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
     lowest_a1, lowest_a2, lowest_a3 = k.lowest_a1, k.lowest_a2, k.lowest_a3
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
-    offset_a1, offset_a2, offset_a3, single_a1 = k.offset_a1, k.offset_a2, k.offset_a3, k.single_a1
-    single_a2 = k.single_a2
+    offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+    quotient_in_cos_a2, single_a1, single_a2 = k.quotient_in_cos_a2, k.single_a1, k.single_a2
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -38,15 +39,12 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2 * (refused[Status.UNREACHABLE],)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * half_by_link_length_1_by_link_length_2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
             angle_of_x = arctan2(y, x)
@@ -72,15 +70,16 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return None
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = (
+            (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+            * sigma_elbow
+            * half_by_link_length_1_by_link_length_2
+        )
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
         else:

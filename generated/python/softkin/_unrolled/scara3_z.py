@@ -20,11 +20,13 @@ def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
     arm_length_1, arm_length_1_minus_arm_length_2 = k.arm_length_1, k.arm_length_1_minus_arm_length_2
     arm_length_1_plus_arm_length_2, arm_length_2 = k.arm_length_1_plus_arm_length_2, k.arm_length_2
-    arm_length_3, highest_a1, highest_a2, highest_a3 = k.arm_length_3, k.highest_a1, k.highest_a2, k.highest_a3
-    highest_z, lowest_a1, lowest_a2, lowest_a3 = k.highest_z, k.lowest_a1, k.lowest_a2, k.lowest_a3
-    lowest_z, machine_scale_times_free_angle, mid_a1 = k.lowest_z, k.machine_scale_times_free_angle, k.mid_a1
-    mid_a2, mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a2, k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-    offset_z, single_a1, single_a2, single_a3 = k.offset_z, k.single_a1, k.single_a2, k.single_a3
+    arm_length_3, half_by_arm_length_1_by_arm_length_2 = k.arm_length_3, k.half_by_arm_length_1_by_arm_length_2
+    highest_a1, highest_a2, highest_a3, highest_z = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_z
+    lowest_a1, lowest_a2, lowest_a3, lowest_z = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_z
+    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+    mid_a3, offset_a1, offset_a2, offset_a3, offset_z = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3, k.offset_z
+    quotient_in_cos_a2, single_a1, single_a2 = k.quotient_in_cos_a2, k.single_a1, k.single_a2
+    single_a3 = k.single_a3
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_z))
 
     def branches(
@@ -36,11 +38,11 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return 2 * (refused[Status.UNREACHABLE],)
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        heading_divisor = heading_length if (abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11) else 1.0
         cos_heading = heading_along / heading_divisor
         wrist_x = x - arm_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across / heading_divisor
@@ -50,15 +52,12 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach) * (arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2 * (refused[Status.UNREACHABLE],)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * half_by_arm_length_1_by_arm_length_2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(arm_length_2 * sin_a2, arm_length_1 + arm_length_2 * cos_a2)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
@@ -88,11 +87,11 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return None
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        heading_divisor = heading_length if (abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11) else 1.0
         cos_heading = heading_along / heading_divisor
         wrist_x = x - arm_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across / heading_divisor
@@ -102,15 +101,14 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach) * (arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return None
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = (
+            (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow * half_by_arm_length_1_by_arm_length_2
+        )
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(arm_length_2 * sin_a2, arm_length_1 + arm_length_2 * cos_a2)
         else:

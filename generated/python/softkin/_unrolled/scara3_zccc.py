@@ -18,13 +18,15 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
-    link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+    half_by_link_length_1_by_link_length_2, highest_a1 = k.half_by_link_length_1_by_link_length_2, k.highest_a1
+    highest_a2, highest_a3, highest_a4, link_length_1 = k.highest_a2, k.highest_a3, k.highest_a4, k.link_length_1
+    link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
     link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
     link_length_3, lowest_a1, lowest_a2, lowest_a3 = k.link_length_3, k.lowest_a1, k.lowest_a2, k.lowest_a3
     lowest_a4, machine_scale_times_free_angle, mid_a2 = k.lowest_a4, k.machine_scale_times_free_angle, k.mid_a2
     mid_a3, mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
-    offset_a4, single_a2, single_a3, single_a4 = k.offset_a4, k.single_a2, k.single_a3, k.single_a4
+    offset_a4, quotient_in_cos_a3, single_a2 = k.offset_a4, k.quotient_in_cos_a3, k.single_a2
+    single_a3, single_a4 = k.single_a3, k.single_a4
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4))
 
     def branches(
@@ -36,11 +38,11 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return 2 * (refused[Status.UNREACHABLE],)
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        heading_divisor = heading_length if (abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11) else 1.0
         cos_heading = heading_along / heading_divisor
         wrist_x = x - link_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across / heading_divisor
@@ -50,16 +52,13 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) * quotient_in_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
             return 2 * (refused[Status.UNREACHABLE],)
         axis_a1 = offset_a1 + z
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
-        sin_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) / divisor_of_cos_a3
+        sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * half_by_link_length_1_by_link_length_2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a2 = arctan2(link_length_2 * sin_a3, link_length_1 + link_length_2 * cos_a3)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
@@ -88,11 +87,11 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return None
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        heading_divisor = heading_length if (abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11) else 1.0
         cos_heading = heading_along / heading_divisor
         wrist_x = x - link_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across / heading_divisor
@@ -102,15 +101,16 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
-        divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) * quotient_in_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
             return None
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
-        sin_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a3
+        sin_a3 = (
+            (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
+            * sigma_elbow
+            * half_by_link_length_1_by_link_length_2
+        )
         if reach > machine_scale_times_free_angle:
             angle_a2 = arctan2(wrist_y, wrist_x) - arctan2(
                 link_length_2 * sin_a3, link_length_1 + link_length_2 * cos_a3

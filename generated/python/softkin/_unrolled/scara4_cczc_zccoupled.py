@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    flange_down, highest_a1, highest_a2, highest_a3 = k.flange_down, k.highest_a1, k.highest_a2, k.highest_a3
-    highest_a4, link_length_1 = k.highest_a4, k.link_length_1
-    link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+    flange_down, half_by_link_length_1_by_link_length_2 = k.flange_down, k.half_by_link_length_1_by_link_length_2
+    highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
+    link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
     link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
     lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
-    offset_a4, quotient_in_z, single_a1, single_a2 = k.offset_a4, k.quotient_in_z, k.single_a1, k.single_a2
-    single_a4 = k.single_a4
+    offset_a4, quotient_in_cos_a2, quotient_in_z = k.offset_a4, k.quotient_in_cos_a2, k.quotient_in_z
+    single_a1, single_a2, single_a4 = k.single_a1, k.single_a2, k.single_a4
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4))
 
     def branches(
@@ -42,24 +42,20 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             heading_along = r11 + r22
             heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return 2 * (refused[Status.UNREACHABLE],)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2 * (refused[Status.UNREACHABLE],)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * half_by_link_length_1_by_link_length_2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
             angle_of_x = arctan2(y, x)
@@ -73,13 +69,13 @@ def unrolled(k: Constants) -> Unrolled:
         angle_heading = arctan2(heading_across, heading_along)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
-        axis_a4_right = offset_a4 + (angle_heading - angle_a1_right - angle_a2) / DEGREE
+        axis_a4_right = offset_a4 + (angle_heading - angle_a1_right - angle_a2) * RADIAN
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
         a4 = DEGREE * (axis_a4_right - offset_a4)  # A4: joint value with its whole turns
         a3_right = z - a4 * quotient_in_z  # a3 from the z equation, which is linear in it
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
-        axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left) / DEGREE
+        axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left) * RADIAN
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
         a4 = DEGREE * (axis_a4_left - offset_a4)  # A4: joint value with its whole turns
@@ -101,24 +97,24 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             heading_along = r11 + r22
             heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return None
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return None
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = (
+            (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+            * sigma_elbow
+            * half_by_link_length_1_by_link_length_2
+        )
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
         else:
@@ -127,7 +123,7 @@ def unrolled(k: Constants) -> Unrolled:
         angle_heading = arctan2(heading_across, heading_along)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
-        axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2) / DEGREE
+        axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2) * RADIAN
         if not -180.000000001 <= axis_a4 - open_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, open_a4)
         a4 = DEGREE * (axis_a4 - offset_a4)  # A4: joint value with its whole turns

@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
-    highest_e1, link_length_1 = k.highest_e1, k.link_length_1
-    link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+    half_by_link_length_1_by_link_length_2, highest_a1 = k.half_by_link_length_1_by_link_length_2, k.highest_a1
+    highest_a2, highest_a3, highest_a4, highest_e1 = k.highest_a2, k.highest_a3, k.highest_a4, k.highest_e1
+    link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
     link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
     lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
     lowest_e1, machine_scale_times_free_angle, mid_a1 = k.lowest_e1, k.machine_scale_times_free_angle, k.mid_a1
     mid_a2, mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a2, k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
-    offset_a4, offset_e1, single_a1, single_a2 = k.offset_a4, k.offset_e1, k.single_a1, k.single_a2
-    single_a4 = k.single_a4
+    offset_a4, offset_e1, quotient_in_cos_a2 = k.offset_a4, k.offset_e1, k.quotient_in_cos_a2
+    single_a1, single_a2, single_a4 = k.single_a1, k.single_a2, k.single_a4
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_e1))
 
     def branches(
@@ -38,9 +38,8 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return 2 * (refused[Status.UNREACHABLE],)
         wrist_x = x - (ref_e1 - offset_e1)  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + y * y)  # distance that the remaining links must span
@@ -48,15 +47,12 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2 * (refused[Status.UNREACHABLE],)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * half_by_link_length_1_by_link_length_2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
             angle_of_wrist_x = arctan2(y, wrist_x)
@@ -86,9 +82,8 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return None
         wrist_x = x - (ref_e1 - offset_e1)  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + y * y)  # distance that the remaining links must span
@@ -96,15 +91,16 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return None
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = (
+            (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+            * sigma_elbow
+            * half_by_link_length_1_by_link_length_2
+        )
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, wrist_x) - arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
         else:

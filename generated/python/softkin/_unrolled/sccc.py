@@ -18,12 +18,14 @@ if TYPE_CHECKING:
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
     coupling_12, coupling_13, coupling_23 = k.coupling_12, k.coupling_13, k.coupling_23
+    half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
     link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
     link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
     link_length_3, machine_scale_times_free_angle = k.link_length_3, k.machine_scale_times_free_angle
     machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
     offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-    quotient_in_open_a2, single_a1, single_a2 = k.quotient_in_open_a2, k.single_a1, k.single_a2
+    quotient_in_cos_a2, quotient_in_open_a2, single_a1 = k.quotient_in_cos_a2, k.quotient_in_open_a2, k.single_a1
+    single_a2 = k.single_a2
 
     def branches(
         frame: PlainFrame, reference: Reals | None = None, refused: Sequence[Any] = NOTHING
@@ -34,14 +36,14 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return 2 * (refused[Status.UNREACHABLE],)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 2 * (refused[Status.UNREACHABLE],)
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        heading_divisor = heading_length if (abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11) else 1.0
         cos_heading = heading_along / heading_divisor
         wrist_x = x - link_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across / heading_divisor
@@ -51,15 +53,12 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2 * (refused[Status.UNREACHABLE],)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) / divisor_of_cos_a2
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * half_by_link_length_1_by_link_length_2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
@@ -70,12 +69,12 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = reference_a1
             angle_a1_left = reference_a1
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        axis_a1_right = offset_a1 + angle_a1_right / DEGREE  # A1: whole turns added
+        axis_a1_right = offset_a1 + angle_a1_right * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         motor_a1_right = DEGREE * (axis_a1_right - offset_a1)
         sum_in_axis_a2_right = offset_a2 - motor_a1_right * quotient_in_open_a2
-        axis_a1_left = offset_a1 + angle_a1_left / DEGREE  # A1: whole turns added
+        axis_a1_left = offset_a1 + angle_a1_left * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         motor_a1_left = DEGREE * (axis_a1_left - offset_a1)
@@ -132,14 +131,14 @@ def unrolled(k: Constants) -> Unrolled:
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return None
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        heading_divisor = heading_length if (abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11) else 1.0
         cos_heading = heading_along / heading_divisor
         wrist_x = x - link_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across / heading_divisor
@@ -149,15 +148,16 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return None
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
+        sin_a2 = (
+            (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+            * sigma_elbow
+            * half_by_link_length_1_by_link_length_2
+        )
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(
                 link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2
@@ -166,7 +166,7 @@ def unrolled(k: Constants) -> Unrolled:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             angle_a1 = reference_a1
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
+        axis_a1 = offset_a1 + angle_a1 * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - open_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, open_a1)
         angle_a2 = arctan2(sin_a2, cos_a2)
@@ -178,7 +178,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             open_a2 = sum_in_axis_a2 + ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
-        axis_a2 = sum_in_axis_a2 + angle_a2 / DEGREE  # A2: whole turns added
+        axis_a2 = sum_in_axis_a2 + angle_a2 * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - open_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, open_a2)
         # a3 from the sum a123 of angles about parallel axes

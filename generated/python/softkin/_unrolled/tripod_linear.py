@@ -26,7 +26,7 @@ def unrolled(k: Constants) -> Unrolled:
     highest_a2, highest_a3, inner_radius = k.highest_a2, k.highest_a3, k.inner_radius
     inner_radius_minus_outer_radius, lowest_a1 = k.inner_radius_minus_outer_radius, k.lowest_a1
     lowest_a2, lowest_a3, min_type2_margin, offset_a1 = k.lowest_a2, k.lowest_a3, k.min_type2_margin, k.offset_a1
-    offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+    offset_a2, offset_a3, one_by_arm_length = k.offset_a2, k.offset_a3, k.one_by_arm_length
     one_minus_sin_rail_angle_squared, outer_radius = k.one_minus_sin_rail_angle_squared, k.outer_radius
     product_in_radicand_a1 = k.product_in_radicand_a1
     quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
@@ -98,7 +98,7 @@ def unrolled(k: Constants) -> Unrolled:
                 return 8 * (refused[Status.UNREACHABLE],)
             root_of_radicand_a3 = 0.0
         # ball joint of rod 1
-        if not (abs(y) / arm_length <= sin_max_angle_ball_joint):
+        if not (abs(y) * one_by_arm_length <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
         shared_product = root_of_3_times_half_by_arm_length_2 * x
         half_by_arm_length_times_y = half_by_arm_length * y
@@ -307,7 +307,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
         # ball joint of rod 1
-        if not (abs(y) / arm_length <= sin_max_angle_ball_joint):
+        if not (abs(y) * one_by_arm_length <= sin_max_angle_ball_joint):
             return None
         shared_product = root_of_3_times_half_by_arm_length_2 * x
         half_by_arm_length_times_y = half_by_arm_length * y

@@ -26,7 +26,7 @@ def unrolled(k: Constants) -> Unrolled:
     highest_a3, lowest_a1, lowest_a2, lowest_a3 = k.highest_a3, k.lowest_a1, k.lowest_a2, k.lowest_a3
     mid_a1, mid_a2, mid_a3, min_type2_margin = k.mid_a1, k.mid_a2, k.mid_a3, k.min_type2_margin
     offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-    product_in_divisor_a2 = k.product_in_divisor_a2
+    one_by_arm_length_2, product_in_divisor_a2 = k.one_by_arm_length_2, k.product_in_divisor_a2
     quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
     sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
     single_a3, sum_in_pivot_2_x, twice_arm_length_1 = k.single_a3, k.sum_in_pivot_2_x, k.twice_arm_length_1
@@ -110,7 +110,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return 8 * (refused[Status.UNREACHABLE],)
         # ball joint of rod 1
-        if not (abs(y) / arm_length_2 <= sin_max_angle_ball_joint):
+        if not (abs(y) * one_by_arm_length_2 <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
         shared_product = root_of_3_times_half_by_arm_length_2_2 * x
         half_by_arm_length_2_times_y = half_by_arm_length_2 * y
@@ -374,7 +374,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
         # ball joint of rod 1
-        if not (abs(y) / arm_length_2 <= sin_max_angle_ball_joint):
+        if not (abs(y) * one_by_arm_length_2 <= sin_max_angle_ball_joint):
             return None
         shared_product = root_of_3_times_half_by_arm_length_2_2 * x
         half_by_arm_length_2_times_y = half_by_arm_length_2 * y

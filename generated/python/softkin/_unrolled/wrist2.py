@@ -20,6 +20,7 @@ def unrolled(k: Constants) -> Unrolled:
     highest_a, highest_b, lowest_a, lowest_b, mid_a = k.highest_a, k.highest_b, k.lowest_a, k.lowest_b, k.mid_a
     mid_b, offset_a, offset_b, single_a, single_b = k.mid_b, k.offset_a, k.offset_b, k.single_a, k.single_b
     tool_side = k.tool_side
+    one_by_tool_side_2 = 1.0 / tool_side
     no_offsets = not any((offset_a, offset_b))
 
     def branches(
@@ -28,8 +29,8 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         _, ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         ref_a, _ = 2 * (0.0,) if reference is None else reference
-        r13_of_a = r13 / tool_side
-        r23_of_a = r23 / tool_side
+        r13_of_a = one_by_tool_side_2 * r13
+        r23_of_a = one_by_tool_side_2 * r23
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
         # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
         # reference
@@ -58,8 +59,8 @@ def unrolled(k: Constants) -> Unrolled:
         _, ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         (sigma_roll,) = signs
         ref_a, _ = 2 * (0.0,) if reference is None else reference
-        r13_of_a = r13 / tool_side
-        r23_of_a = r23 / tool_side
+        r13_of_a = one_by_tool_side_2 * r13
+        r23_of_a = one_by_tool_side_2 * r23
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
         # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
         # reference

@@ -1,0 +1,99 @@
+"""Stretches of a branch: what depends on some signs alone is the same in all branches that share these signs.
+
+A language that solves one branch after the other keeps the values of a stretch for the next branch: a delta then solves
+each leg twice, not eight times. Statements keep their order, but one that divides nothing moves up to the first stretch
+with the same signs that has what it reads: a program is total.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.ir.constants import DEGREE
+from derive.ir.program import Let, Program, Require, told
+from derive.ir.symbols import names_in
+from derive.ir.tree import If, Item, bound_in, expressions_in, given_to, read_in
+from derive.ir.types import Type, type_of
+from derive.kept import kept_by_identity
+from derive.lowering.scheduling import structured
+
+_SIGN = "sigma_"
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Consecutive statements of a branch."""
+
+    items: tuple[Item, ...]
+    signs: tuple[sp.Symbol, ...]
+    """The signs on which they depend, in the order of the inputs."""
+    kept: tuple[sp.Symbol, ...]
+    """Where branches share the stretch, the values that the rest reads; nothing where they do not."""
+    is_shared: bool
+
+    @property
+    def sides(self) -> int:
+        """How many times it is computed for all branches together."""
+        return int(2 ** len(self.signs))
+
+
+@kept_by_identity(50)
+def stretches_of(program: Program) -> tuple[Stretch, ...]:
+    """The stretches of a branch; one that is not shared where there is nothing to share."""
+    items = structured(program)
+    signs = tuple(s for s in program.inputs if s.name.startswith(_SIGN))
+    if len(items) < 2 or not signs or not all(isinstance(i, Let | Require | If) for i in items):
+        return (Stretch(items, signs, (), is_shared=False),)
+    groups = _groups(items, signs)
+    wanted = {s for o in program.outputs for s in names_in(o.value)}
+    found: list[Stretch] = []
+    for supported, group in reversed(groups):
+        is_shared = len(supported) < len(signs) and any(map(_computes, expressions_in(group)))
+        kept = tuple(name for name in bound_in(group) if name in wanted) if is_shared else ()
+        if not all(type_of(name) in (Type.REAL, Type.ANGLE) for name in kept):
+            is_shared, kept = False, ()
+        found.insert(0, Stretch(tuple(group), tuple(s for s in signs if s in supported), kept, is_shared))
+        wanted |= read_in(group).union(*map(_told, group))
+    return tuple(found)
+
+
+def _groups(items: Sequence[Item], signs: Sequence[sp.Symbol]) -> list[tuple[frozenset[sp.Symbol], list[Item]]]:
+    """The statements by the signs on which they depend, one stretch after the other."""
+    support: dict[sp.Symbol, frozenset[sp.Symbol]] = {s: frozenset({s}) for s in signs}
+    place: dict[sp.Symbol, int] = {}
+    groups: list[tuple[frozenset[sp.Symbol], list[Item]]] = []
+    for item in items:
+        needed = given_to((item,)) | _told(item)
+        own = frozenset[sp.Symbol]().union(*(support.get(name, frozenset()) for name in needed))
+        first = max((place[name] for name in needed if name in place), default=0)
+        earlier = [k for k in range(first, len(groups)) if groups[k][0] == own]
+        if earlier and (earlier[0] == len(groups) - 1 or not _must_stay(item)):
+            at = earlier[0]
+        elif groups and groups[-1][0] == own:
+            at = len(groups) - 1
+        else:
+            groups.append((own, []))
+            at = len(groups) - 1
+        groups[at][1].append(item)
+        for name in bound_in((item,)):
+            support[name], place[name] = own, at
+    return groups
+
+
+def _told(item: Item) -> set[sp.Symbol]:
+    """What the reason of a refusal reads."""
+    return {s for value in told(item) for s in names_in(value)} if isinstance(item, Require) else set()
+
+
+def _must_stay(item: Item) -> bool:
+    """Whether a statement refuses, or divides by what an earlier refusal may keep from zero."""
+    powers = (power for e in expressions_in((item,)) for power in e.atoms(sp.Pow))
+    return isinstance(item, Require) or any(power.exp.is_negative and power.base != DEGREE for power in powers)
+
+
+def _computes(expression: sp.Basic) -> bool:
+    """Whether an expression takes operations, and is not merely a choice."""
+    return bool(expression.atoms(sp.Add, sp.Mul, sp.Pow, sp.Function))

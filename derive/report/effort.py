@@ -1,0 +1,62 @@
+"""The effort of a call of the self-test: its floating operations, at most.
+
+Without a loop these are the bounds in the header of the block. A loop is counted as often as the reference interpreter
+ran it for this call, and a fifth more often: the block looks for roots in another order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from derive.ir.interpret import Repeats, repeats_counted
+from derive.ir.program import Program
+from derive.kinematics.reference_cases import Called, Case
+from derive.report.cost import Cost, cost_of, costs_of
+from derive.report.reference_calls import Machine, forward, inverse
+
+_OF_THE_TEST = 120
+"""What the self-test itself does in a cycle: it finds the order of a matrix, and compares numbers."""
+_MORE = 1.2
+"""How many times as many trials or passes as the reference needed a block may need."""
+_OPEN = (0, 3)
+
+
+def with_operations(case: Case, machine: Machine) -> Case:
+    """The case with its operations."""
+    return replace(case, operations=_OF_THE_TEST + sum(_cost(case, machine).counts))
+
+
+def _cost(case: Case, machine: Machine) -> Cost:
+    kinematics = machine.kinematics
+    if case.called is Called.INITIALIZE:
+        return cost_of(kinematics.setup)
+    if case.called is Called.SINGULARITY:
+        return cost_of(kinematics.singularity)
+    costs = costs_of(kinematics)
+    with repeats_counted() as repeats:
+        if case.called is Called.FORWARD:
+            forward(machine, case.axes)
+        else:
+            inverse(machine, case.frame, case.configuration, case.reference)
+    program = kinematics.forward if case.called is Called.FORWARD else kinematics.branch
+    if case.called is Called.FORWARD:
+        return costs.forward + _loops(program, _more(repeats)) + cost_of(program) * -1 + _once(program)
+    slots = 1 << sum(byte in _OPEN for byte in case.configuration[: len(kinematics.branches)])
+    one = costs.inverse if slots == 1 else costs.tried
+    unlooped = one + costs.corners + cost_of(program) * -1 + _once(program)
+    whole: Cost = unlooped * slots + _loops(program, _more(repeats)) + costs.repair + costs.limits
+    return whole
+
+
+def _once(program: Program) -> Cost:
+    """The program without what its loops repeat."""
+    return cost_of(program, repeats=Repeats())
+
+
+def _loops(program: Program, repeats: Repeats) -> Cost:
+    """What the loops repeat."""
+    return cost_of(program, repeats=repeats) + _once(program) * -1
+
+
+def _more(found: Repeats) -> Repeats:
+    return Repeats(*(int(_MORE * n) for n in (found.trials, found.finished, found.passes)))
