@@ -54,9 +54,6 @@ if TYPE_CHECKING:
 
     from softkin._array import Programs
 
-SINGULAR = 0.001
-"""A pose is singular where a margin is smaller than this in size."""
-
 TWIST = ("x", "y", "z", "turn x", "turn y", "turn z")
 """The rows of a twist: along and about the axes of the machine."""
 _IDENTITY: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -326,7 +323,8 @@ class Mechanism(ABC):
         margins = self._singularity(reals(axes, len(self.AXES), "axes"))
         if isinstance(margins, Status):
             return Singularity(True, dict.fromkeys(self.MARGINS, nan))
-        is_singular = any(abs(margin) < SINGULAR for margin in margins)
+        near = self.parameters["warning_distance"]
+        is_singular = any(abs(margin) < near for margin in margins)
         return Singularity(is_singular, dict(zip(self.MARGINS, margins, strict=True)))
 
     def orientation_image(self) -> OrientationImage:
