@@ -54,6 +54,9 @@ if TYPE_CHECKING:
 
     from softkin._array import Programs
 
+WARNING_DISTANCE = 0.001
+"""A pose of a coupling, which has no parameters, is singular where a margin is smaller than this in size."""
+
 TWIST = ("x", "y", "z", "turn x", "turn y", "turn z")
 """The rows of a twist: along and about the axes of the machine."""
 _IDENTITY: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -323,7 +326,7 @@ class Mechanism(ABC):
         margins = self._singularity(reals(axes, len(self.AXES), "axes"))
         if isinstance(margins, Status):
             return Singularity(True, dict.fromkeys(self.MARGINS, nan))
-        near = self.parameters["warning_distance"]
+        near = self.parameters.get("warning_distance", WARNING_DISTANCE)
         is_singular = any(abs(margin) < near for margin in margins)
         return Singularity(is_singular, dict(zip(self.MARGINS, margins, strict=True)))
 
