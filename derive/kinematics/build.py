@@ -205,7 +205,7 @@ class _Hoisted:
     """All programs, with the values that depend on parameters alone moved into the setup."""
 
     setup: Program
-    setup_less_windows: Program | None
+    setup_less_windows: Program
     derived_branch: Program
     """The branch before the lowering."""
     programs: tuple[Program, ...]
@@ -224,11 +224,7 @@ def _hoisted(
     derived = next(program for program in whole if program.name == "branch")
     read = frozenset(s for program in (*shorter, derived) for s in program.inputs)
     setup = setup_program(mechanism, parameters, hoisted, read, at_home=at_home)
-    settable = (
-        setup_program(mechanism, parameters, hoisted, read, has_settings=True, at_home=at_home)
-        if mechanism.period_joints
-        else None
-    )
+    settable = setup_program(mechanism, parameters, hoisted, read, has_settings=True, at_home=at_home)
     called = {program.name for program in shared(shorter)}
     for program in (p for p in shorter if p.name not in called):  # a caller gives what those read
         _check_inputs(mechanism, program, {o.name for o in setup.outputs})

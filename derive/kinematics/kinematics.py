@@ -78,9 +78,8 @@ class Kinematics:
                      programs read. Its conditions are what Initialize refuses; all carry NOT_INITIALIZED. Among its
                      outputs per axis: `unlimited_a1` (a flag), `lower_a1`, `upper_a1` (effective limits as
                      GetAxisProperties reports them), and `check_limits` (a flag).
-    setup_less_windows   as setup, without `lowest_a1` `highest_a1` `single_a1` `mid_a1` of the axes: where drives hand
-                         over limits of their own, `windows.limits_of_axis` computes these; None where no axis has
-                         several turns
+    setup_less_windows   as setup, without `lowest_a1` `highest_a1` `single_a1` `mid_a1` of the axes: drives may hand
+                         over limits of their own, so `windows.limits_of_axis` computes these
     forward          axis_* → x y z r11…r33, and `branch_<name>` per branch: the signed margin, positive = byte 1, at
                      most 1e-11 in size = byte 3 (the branches coincide)
     forward_from     axis_*, start_x … start_z, start_r11 … start_r33 → as forward, which is iterative and starts at a
@@ -132,7 +131,7 @@ class Kinematics:
     margins: tuple[Margin, ...]
     freedom: Freedom
     reads_rotation: bool
-    setup_less_windows: Program | None = None
+    setup_less_windows: Program
     forward_from: Program | None = None
     search_given: Program | None = None
     from_joints: Program | None = None

@@ -14,6 +14,7 @@ from derive.equations.windows import windows
 from derive.geometry.frames import Motion
 from derive.ir.constants import (
     LARGEST,
+    SINGULAR,
     TIE_SHARE,
 )
 from derive.ir.passes import without_assumptions
@@ -37,7 +38,7 @@ from derive.ir.symbols import (
 from derive.ir.verify import verify
 from derive.plate.plate import home_branches, home_flag, machine_constants, machine_statements
 
-CHECK_LIMITS = "check_limits"
+CHECK_LIMITS, WARNING_DISTANCE = "check_limits", "warning_distance"
 TIE_OF_LENGTHS = real("tie")
 """Squared distances of linear axes that differ by less than this are equal."""
 _LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH)
@@ -72,7 +73,10 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
         1.0,
         1.0,
     )
-    return (*parameters, check)
+    meaning = "a pose counts as singular where a margin, a number without a unit, is smaller than this in size"
+    near = float(SINGULAR)
+    warning = Parameter(real(WARNING_DISTANCE), WARNING_DISTANCE, Role.RATIO, meaning, "1", 0.0, 1.0, False, near, near)
+    return (*parameters, check, warning)
 
 
 def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:

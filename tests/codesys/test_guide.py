@@ -69,7 +69,7 @@ def test_the_limits_of_a_drive_are_handed_over() -> None:
     made.xHanded = True
     made()
     assert made.status == "SMC_NO_ERROR" and made.back.a0 == pytest.approx(-160.0)
-    assert made.scara.driveLimitedA1 == 1.0
+    assert made.scara.axes[0].driveLimited == 1.0
 
 
 def test_the_demo_moves_a_group() -> None:

@@ -150,15 +150,22 @@ def test_what_the_standard_has_no_element_for() -> None:
     root = parse(ROOT / "scara/Softkin_Scara2_Z.xml")
     pou = _only(root, ".//p:pou[@name='Softkin_Scara2_Z']")
     implemented = [e.text for e in _only(pou, "p:interface//p:Inheritance")]
-    assert "TRAFO.ISMPositionKinematics_Offset2" in implemented and len(implemented) == 6
+    assert "TRAFO.ISMPositionKinematics_Offset2" in implemented and len(implemented) == 7
     pragmas = {e.attrib["Name"]: e.attrib["Value"] for e in _only(pou, "p:interface/p:addData/p:data/p:Attributes")}
     assert pragmas == {"sm_kin_libdoc": "", "sm_kin_axes": "A1, A2, Z"}
     given = _only(pou, "p:interface/p:inputVars/p:variable[@name='dArmLength1']")
     assert [e.attrib["Value"] for e in given.iter("{*}Attribute")] == ["]0 .. +inf[", "u"]
-    private = [
-        e.attrib["name"] for e in pou.iter("{*}Method") if e.find(".//{*}AccessModifiers[@Private='true']") is not None
-    ]
-    assert private == ["LimitsOfAxis", "SolveBranch", "TestLimits", "SolveOffsetBranch"]
+    private, protected = (
+        [
+            e.attrib["name"]
+            for e in pou.iter("{*}Method")
+            if e.find(f".//{{*}}AccessModifiers[@{word}='true']") is not None
+        ]
+        for word in ("Private", "Protected")
+    )
+    assert protected == ["Describe", "ReadInputs", "TestLimits", "FindMargins", "FindJacobian"]
+    assert [e.text for e in pou.iter("{*}Extends")] == ["Softkin_Kinematics"]
+    assert private == ["SolveBranch", "SolveOffsetBranch"]
 
 
 def test_an_independent_class_model_reads_it() -> None:

@@ -6,6 +6,8 @@ from .facts import Facts, Scope
 from .faults import StError
 
 WRITERS = ("Initialize", "AxisSettings")
+READER = "ReadInputs"
+"""What Initialize alone calls: see `test_contract`."""
 """The methods that may change an instance: all others are called by several tasks at once."""
 
 
@@ -66,7 +68,7 @@ def _check_foreign(node: ast.Expression, facts: Facts) -> None:
 def _check_member(variable: types.Variable, node: ast.Expression, scope: Scope) -> None:
     if scope.is_method and variable.scope == "VAR_INPUT":
         raise StError(node.at, f"a method writes the input {variable.name}")
-    if scope.is_method and scope.owner.lower() not in map(str.lower, WRITERS):
+    if scope.is_method and scope.owner.lower() not in map(str.lower, (*WRITERS, READER)):
         raise StError(node.at, f"only {' and '.join(WRITERS)} may write the instance variable {variable.name}")
     block = scope.block
     if not scope.is_method and block is not None and block.methods and block.declaration.kind != "PROGRAM":

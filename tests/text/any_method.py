@@ -12,6 +12,7 @@ from tests.text.controller import OK, Controller
 from tests.text.samples import Sample
 from tests.text.serial_pairs import SerialPair
 from tests.text.settings import settings
+from tests.text.units import public_methods
 
 
 @dataclass(frozen=True)
@@ -46,8 +47,7 @@ class Call:
 
 def methods_of(controller: Controller) -> list[str]:
     """The public methods of a block, but for Initialize."""
-    block = controller.library.objects[controller.mechanism.block_name]
-    return [method.name for method in block.methods if method.access != "PRIVATE" and method.name != "Initialize"]
+    return [name for name in public_methods(controller.mechanism) if name != "Initialize"]
 
 
 def call_of(pair: SerialPair, controller: Controller, method: str, sample: Sample) -> Call:
@@ -86,6 +86,7 @@ def _fitting(pair: SerialPair, sample: Sample) -> dict[str, Any]:
         "cd1": configuration,
         "cd2": configuration,
         "cdSrc": configuration,
+        "aTwist": [1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
         "as": settings(library, None),
         "udiAxis": 0,
     }

@@ -27,7 +27,7 @@ def texts(change: Break | None = None, mechanism: Mechanism = MECHANISM) -> Mapp
     """The unit of a mechanism and the shared objects, with a change to one of them."""
     found = {**shared_texts(), file_of(mechanism): text_of(mechanism)}
     if change is not None:
-        (file,) = [
+        *_, file = [
             file for file, text in found.items() if change.where in text and f"{change.where}\n" in declared(text)
         ]
         start = found[file].index(change.where)
@@ -42,13 +42,18 @@ def declared(text: str) -> str:
     """The lines of declarations, up to the name."""
     words = ("METHOD ", "FUNCTION", "PROPERTY ")
     lines = [line for line in text.split("\n") if line.startswith(words)]
-    return "\n".join(line.split(" :")[0].removesuffix(" IMPLEMENTS") for line in lines) + "\n"
+    return "\n".join(line.split(" :")[0].split(" EXTENDS ")[0].removesuffix(" IMPLEMENTS") for line in lines) + "\n"
 
 
 _BLOCK = f"FUNCTION_BLOCK {MECHANISM.block_name}"
-_INITIALIZE, _FORWARD = "METHOD PUBLIC Initialize", "METHOD PUBLIC AxesToCartesian"
-_INVERSE, _BRANCH, _LIMITS = "METHOD PUBLIC CartesianToAxes", "METHOD PRIVATE SolveBranch", "METHOD PRIVATE TestLimits"
-_SINGULAR, _JACOBIAN = "METHOD PUBLIC IsSingularity", "METHOD PUBLIC Jacobian"
+_INITIALIZE, _FORWARD = "METHOD PROTECTED ReadInputs", "METHOD PUBLIC AxesToCartesian"
+_INVERSE, _BRANCH, _LIMITS = (
+    "METHOD PUBLIC CartesianToAxes",
+    "METHOD PRIVATE SolveBranch",
+    "METHOD PROTECTED TestLimits",
+)
+_SINGULAR, _JACOBIAN = "METHOD PUBLIC IsSingularity", "METHOD PROTECTED FindJacobian"
+_DESCRIBE, _MARGINS = "METHOD PROTECTED Describe", "METHOD PROTECTED FindMargins"
 
 REFUSED = {
     "a missing semicolon": Break("METHOD PUBLIC IsInitialized", ":= initialized;", ":= initialized", "missing ';'"),
@@ -65,12 +70,12 @@ REFUSED = {
         "Softkin_ReadMatrix(m := f.mR, aElements := rot, eOrder := matrixOrder);",
         "VAR_IN_OUT CONSTANT rot",
     ),
-    "a write outside Initialize": Break(_SINGULAR, "sinA2 := ", "linkLength2 := ", "Initialize"),
+    "a write outside Initialize": Break(_MARGINS, "sinA2 := ", "machineScale := ", "Initialize"),
     "a write to an input of the block": Break(
         _FORWARD, "f.vT.dX := x;", "dLinkLength1 := x;", "writes the input dLinkLength1"
     ),
-    "a missing method": Break(_BLOCK, "PUBLIC IsConfigSingular", "PUBLIC Other", "IsConfigSingular"),
-    "a missing property": Break("PROPERTY PUBLIC NumAxes", "NumAxes", "Axes", "NumAxes"),
+    "a missing method": Break(_BLOCK, "PUBLIC AxesToOrientation", "PUBLIC Other", "AxesToOrientation"),
+    "a missing property": Break("PROPERTY PUBLIC NumAxes", "NumAxes", "Count", "NumAxes"),
     "parameters in another order": Break(
         "METHOD PUBLIC CPConnectible", "  cd1 : TRAFO.CONFIGDATA;\n  cd2", "  cd2 : TRAFO.CONFIGDATA;\n  cd1", "cd1"
     ),
@@ -81,8 +86,8 @@ REFUSED = {
     "a result that is never given": Break(
         "METHOD PUBLIC GetKinematicsName", "GetKinematicsName := ", "// ", "never assigns"
     ),
-    "the same name twice": Break(_FORWARD, "  x : LREAL;", "  x : LREAL;\n  X : LREAL;", "duplicate name"),
-    "a name of a method": Break(_BRANCH, "  reach : LREAL;", "  jacobian : LREAL;", "hides a member"),
+    "the same name twice": Break(_FORWARD, "sinA12, y,", "sinA12, y, X,", "duplicate name"),
+    "a name of a method": Break(_BRANCH, "headingLength, reach,", "headingLength, jacobian,", "hides a member"),
     "an error that does not exist": Break(_FORWARD, "Softkin_Names.NotInitialized", "Softkin_Names.Fine", "no member"),
     "an axis that does not exist": Break(_BRANCH, "a.a5 := 0.0;", "a.a6 := 0.0;", "no field a6"),
     "a byte that does not exist": Break(_FORWARD, "abyData[3]", "abyData[32]", "outside"),
@@ -93,7 +98,7 @@ FAULTS = {
     "a division by zero": Break(_BRANCH, "angleA1*RADIAN", "angleA1/0.0", "division by zero"),
     "a root of a negative": Break(_BRANCH, "reach := SQRT(", "reach := SQRT(-1.0E12 + ", "SQRT of a negative"),
     "a product that overflows": Break(_FORWARD, "cosA1 := COS(a1)", "cosA1 := 1.0E200*COS(a1)*1.0E200", "not finite"),
-    "an unused axis that is read": Break(_FORWARD, "a.a2 - offsetA3", "a.a2 - a.a4", "not finite"),
+    "an unused axis that is read": Break(_FORWARD, "a.a2 - axes[2].offset", "a.a2 - a.a4", "not finite"),
     "an integer that overflows": Break(_INVERSE, ":= slot MOD 2 + 1", ":= slot + 32767", "overflow"),
     "numbers that are not checked": Break(_FORWARD, "(a.a0 >= -1.0E9) AND (a.a0 <= 1.0E9) AND ", "", "not finite"),
 }
@@ -101,7 +106,7 @@ FAULTS = {
 WRONG = {
     "CartesianToAxes: a sign": Break(_BRANCH, "f.vT.dY - armAcrossA1*f.vT.dX", "f.vT.dY + armAcrossA1*f.vT.dX"),
     "AxesToCartesian: a sign": Break(_FORWARD, "z := a3 - ", "z := a3 + "),
-    "CartesianToAxes: an offset": Break(_BRANCH, "axisA3 := a3 + offsetA3;", "axisA3 := a3;"),
+    "CartesianToAxes: an offset": Break(_BRANCH, "axisA3 := a3 + axes[2].offset;", "axisA3 := a3;"),
     "CartesianToAxes: two axes exchanged": Break(
         _BRANCH, "a.a0 := axisA1;\na.a1 := axisA2;", "a.a0 := axisA2;\na.a1 := axisA1;"
     ),
@@ -115,19 +120,19 @@ WRONG = {
         "iReason := 2;\n    SolveBranch := Softkin_Names.Unreachable",
         "iReason := 2;\n    SolveBranch := Softkin_Names.InvalidCoupling",
     ),
-    "CartesianToAxes: a limit": Break(_LIMITS, "(a.a3 <= highestA4)", "(a.a3 <= 2.0*highestA4)"),
+    "CartesianToAxes: a limit": Break(_LIMITS, "dValue := a.a3", "dValue := 0.5*a.a3"),
     "CartesianToAxes: an output before a refusal": Break(
         _INVERSE, "status := TestLimits(", "a := solution;\nstatus := TestLimits("
     ),
     "CartesianToAxes: a turn": Break(_BRANCH, "SEL(turnA4 > 0, turnA4, turnA4 - 1)", "SEL(turnA4 > 0, turnA4, turnA4)"),
     "CartesianToAxes: byte 3": Break("FUNCTION Softkin_AdmitsBranch", "(byConfigured = 3)", "(byConfigured = 7)"),
     "Jacobian: a column": Break(_JACOBIAN, "J[3, 3] := 1.0;", "J[3, 3] := 0.0;"),
-    "Jacobian: an element outside": Break(_JACOBIAN, "J[row, column] := 0.0;", "J[row, 0] := 0.0;"),
+    "Jacobian: an element outside": Break("METHOD PUBLIC Jacobian", "J := found;", "J := found;\n  J[5, 5] := 1.0;"),
     "AxesToOrientation: an element": Break(
         "METHOD PUBLIC AxesToOrientation", "rot[2, 1] := sinA124", "rot[2, 1] := cosA124"
     ),
-    "IsSingularity: a threshold": Break(_SINGULAR, "< 0.001", "< 0.9"),
-    "GetAxisProperties: a type": Break("METHOD PUBLIC GetAxisProperties", "RotaryAxis", "LinearAxis"),
+    "IsSingularity: a threshold": Break(_SINGULAR, "< warningDistance", "< 900.0*warningDistance"),
+    "GetAxisProperties: a type": Break(_DESCRIBE, "aRotary[0] := TRUE", "aRotary[2] := TRUE"),
     "GetOrientationImage: a freedom": Break(
         "METHOD PUBLIC GetOrientationImage", "Softkin_Names.TurningOrientation", "Softkin_Names.FixedOrientation"
     ),
@@ -138,9 +143,9 @@ WRONG = {
         "METHOD PUBLIC AxesToConfiguration_Offset", "toolX*sinA2", "toolY*sinA2"
     ),
     "CartesianToAxes_Offset: a sign": Break("METHOD PRIVATE SolveOffsetBranch", "v_MCS.dZ - toolZ", "v_MCS.dZ + toolZ"),
-    "GetKinematicsName: a name": Break("METHOD PUBLIC GetKinematicsName", "'Kin_Scara4_ZCcoupled'", "'Kin_Scara4'"),
-    "GetPeriods: an axis": Break("METHOD PUBLIC GetPeriods", "aPeriods[3]", "aPeriods[2]"),
-    "CPConnectible: anything": Break("METHOD PUBLIC CPConnectible", "CPConnectible := (", "CPConnectible := TRUE OR ("),
+    "GetKinematicsName: a name": Break(_DESCRIBE, "'Kin_Scara4_ZCcoupled'", "'Kin_Scara4'"),
+    "GetPeriods: an axis": Break(_DESCRIBE, "aAxisOfTurn[0] := 3", "aAxisOfTurn[0] := 2"),
+    "CPConnectible: anything": Break("METHOD PUBLIC CPConnectible", "CPConnectible := FALSE", "CPConnectible := TRUE"),
     "CartesianToAxes: a constant of the machine": Break(
         _INITIALIZE, "linkLength2 := dLinkLength2;", "linkLength2 := 1.01*dLinkLength2;"
     ),

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import lru_cache
+from math import isnan, pi
 
 import numpy as np
 
 from derive.description.mechanism import Joint, Kind, Turning
 from derive.equations.chain_splits import is_spatial
 from tests.catalogue.machines import Machine
+from tests.text import values
 from tests.text.closeness import asked, assert_same, is_close
 from tests.text.controller import NOT_INITIALIZED, OK, UNREACHABLE, Answer, Controller
 from tests.text.reasons import compare_reason
@@ -194,6 +196,47 @@ def jacobian(pair: SerialPair, sample: Sample) -> None:
     assert_same(pair.controller.jacobian(sample.axes), (status, expected), pair, sample)
 
 
+def margins(pair: SerialPair, sample: Sample) -> None:
+    """Margins writes those of Python, and zeros in all other places."""
+    found = [values.MEANINGLESS] * 8
+    block = pair.controller.block
+    given = {"aMargins": found, "a": values.axes(pair.library, sample.axes)}
+    status, outputs = block.call_with_outputs("Margins", **given)
+    expected = tuple(pair.robot.singularity(sample.axes).margins.values())
+    if status == OK:
+        assert outputs["iCount"] == len(expected)
+        assert_same((status, tuple(found)), (OK, (*expected, *(0.0,) * (8 - len(expected)))), pair, sample)
+    else:
+        assert found == [values.MEANINGLESS] * 8 and all(map(isnan, expected))
+
+
+def axis_velocities(pair: SerialPair, sample: Sample) -> None:
+    """AxisVelocities gives what the Jacobian of Python turns into the twist; where that is singular, a status and
+    zeros.
+    """
+    twist = [40.0, -30.0, 20.0, 10.0, -15.0, 25.0]
+    found = [values.MEANINGLESS] * 6
+    given = {"aVelocities": found, "aTwist": twist, "a": values.axes(pair.library, sample.axes)}
+    status = pair.controller.block.call("AxisVelocities", **given)
+    wanted, rows = asked(pair.robot.jacobian, sample.axes)
+    if status != OK:
+        assert found == [0.0] * 6
+        assert wanted == status or min(map(abs, pair.robot.singularity(sample.axes).margins.values())) < 1e-9
+        return
+    assert wanted == OK
+    speeds = [v * pi / 180 if j.in_degrees else v for v, j in zip(found, pair.mechanism.joints, strict=False)]
+    for row, name, value in zip(rows, pair.robot.JACOBIAN_ROWS, twist, strict=False):
+        size = max(1.0, sum(abs(a * b) for a, b in zip(row, speeds, strict=True)))
+        expected = value * pi / 180 if name.startswith("turn") else value
+        assert abs(sum(a * b for a, b in zip(row, speeds, strict=True)) - expected) < 1e-9 * size, f"{pair} {sample}"
+    assert not any(found[len(speeds) :])
+
+
+def why_initialize(pair: SerialPair, sample: Sample) -> None:
+    """InitializeReason is empty after success."""
+    assert pair.controller.block.call("InitializeReason") == ""
+
+
 def image(pair: SerialPair, sample: Sample) -> None:
     """The methods without a commanded rotation write the orientations that Python gives."""
     for method in ("GetOrientationImage", "GetFlangeOrientationImageTotal"):
@@ -321,6 +364,9 @@ COMPARISONS: dict[str, Comparison] = {
     "AxesToOrientation": orientation,
     "IsSingularity": singularity,
     "Jacobian": jacobian,
+    "Margins": margins,
+    "AxisVelocities": axis_velocities,
+    "InitializeReason": why_initialize,
     "Diagnose": diagnose,
     "GetOrientationImage": image,
     "GetFlangeOrientationImageTotal": image,
@@ -337,6 +383,7 @@ COMPARISONS: dict[str, Comparison] = {
 """By the name of the method."""
 
 POSELESS = {
+    "InitializeReason",
     "Initialize",
     "IsInitialized",
     "GetKinematicsName",

@@ -58,10 +58,17 @@ class Controller:
         return found.eType, found.limits.xUnlimited, found.limits.dLower, found.limits.dUpper
 
     def state(self) -> dict[str, object]:
-        """All instance variables, without the inputs."""
-        sections = self.library.objects[self.mechanism.block_name].sections
-        names = [v.name for s in sections if s.scope == "VAR" for v in s.variables]
-        return {name: getattr(self.block, name) for name in names}
+        """All instance variables, without the inputs; those in the structure of an axis by their names and that of the
+        axis.
+        """
+        blocks = [self.library.objects[self.mechanism.block_name]]
+        if blocks[0].extends:
+            blocks.append(self.library.objects[blocks[0].extends])
+        names = [v.name for block in blocks for s in block.sections if s.scope == "VAR" for v in s.variables]
+        state = {name: getattr(self.block, name) for name in names}
+        for joint, axis in zip(self.mechanism.joints, state.pop("axes"), strict=False):
+            state |= {f"{field}{joint.name}": getattr(axis, field) for field in axis._fields}
+        return state
 
     def forward(self, axes: Numbers) -> Answer:
         """AxesToCartesian: position, rotation, all configuration bytes."""

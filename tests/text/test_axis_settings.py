@@ -68,14 +68,16 @@ def heard(block: Controller) -> dict[str, object]:
     for joint in block.mechanism.joints:
         if not state[f"driveLimited{joint.name}"]:
             del state[f"driveLower{joint.name}"], state[f"driveUpper{joint.name}"]
-        if joint.multi_turn and not state[f"single{joint.name}"]:
-            del state[f"mid{joint.name}"]
+        if joint.multi_turn and not state[f"isSingle{joint.name}"]:
+            del state[f"middle{joint.name}"]
     return state
 
 
 def counted(state: dict[str, object]) -> dict[str, object]:
     """What limits come to: the ends that are tested, and what decides a turn."""
-    return {name: value for name, value in state.items() if name.startswith(("lowest", "highest", "single", "mid"))}
+    return {
+        name: value for name, value in state.items() if name.startswith(("lowest", "highest", "isSingle", "middle"))
+    }
 
 
 def of_axis(mechanism: Mechanism, joint: Joint, limits: Range) -> list[Range]:
@@ -222,7 +224,7 @@ def test_without_limits_in_the_block_those_of_the_drives_are_all(mechanism: Mech
                 ends, rel=1e-8, abs=2.0
             )
             if joint.multi_turn:
-                assert state[f"single{joint.name}"] == (ends[1] - ends[0] <= 350.0)
+                assert state[f"isSingle{joint.name}"] == (ends[1] - ends[0] <= 350.0)
     assert [block.axis_properties(axis) for axis in range(6)] == own
 
 
@@ -311,16 +313,19 @@ def test_a_call_while_the_settings_change(name: str) -> None:
 
 @contextmanager
 def _between(block: Controller, look: Callable[[], Answer], seen: list[Answer]) -> Iterator[None]:
-    """Look behind every assignment to a variable of the block, as a task that interrupts there does."""
-    plain = type(block.block)
+    """Look behind every assignment to what a block keeps of an axis, as a task that interrupts there does."""
+    kept = block.block.axes
+    plain = type(kept[0])
 
     def assign(self: object, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
         seen.append(look())
 
-    block.block.__class__ = type(plain.__name__, (plain,), {"__slots__": (), "__setattr__": assign})
+    for one in kept:
+        one.__class__ = type(plain.__name__, (plain,), {"__slots__": (), "__setattr__": assign})
     yield
-    block.block.__class__ = plain
+    for one in kept:
+        one.__class__ = plain
 
 
 def every_statement_of_the_settings(mechanism: Mechanism) -> None:

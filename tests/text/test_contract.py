@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from collections.abc import Iterator
 from functools import lru_cache
@@ -19,7 +20,7 @@ FILES = {
 }
 UNITS = [name for name in FILES if not name.startswith(("softkin/", "selftest/"))]
 CONTRACT = load()
-PRIVATE = {"SolveBranch", "SolveOffsetBranch", "TestLimits", "FindPlatform", "EndPointOnFlange", "LimitsOfAxis"}
+PRIVATE = {"SolveBranch", "SolveOffsetBranch", "FindPlatform", "EndPointOnFlange"}
 PRIVATE |= {"FindRoot", "TryAt", "TryJoint", "FinishRoot"}
 ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2")
 
@@ -70,8 +71,12 @@ def test_methods_are_those_of_the_contract(file: str) -> None:
     block = blocks()[file]
     interfaces = list(CONTRACT.closure([name.removeprefix("TRAFO.") for name in block.implements]))
     wanted = {m: s for i in interfaces for m, s in i.methods.items()} | dict(CONTRACT.own)
-    found = {m.name: m for m in block.methods if m.access == "PUBLIC"}
-    assert set(found) == set(wanted)
+    base = library().objects["Softkin_Kinematics"]
+    inherited = {m.name: m for m in base.methods if m.access == "PUBLIC"}
+    own = {m.name: m for m in block.methods if m.access == "PUBLIC"}
+    assert not set(own) & set(inherited)
+    found = {name: method for name, method in (inherited | own).items() if name in wanted}
+    assert set(found) == set(wanted) and set(own) <= set(wanted)
     for name, method in found.items():
         signature = wanted[name]
         assert ("" if method.returns is None else method.returns.text) == signature.returns
@@ -79,6 +84,37 @@ def test_methods_are_those_of_the_contract(file: str) -> None:
         assert given == [(p.scope, p.name, p.type) for p in signature.parameters]
     assert {m.name for m in block.methods if m.access == "PRIVATE"} <= PRIVATE
     assert {(p.name, p.type.text) for p in block.properties} == {("NumAxes", "UDINT")}
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_every_block_supplies_what_the_base_calls(file: str) -> None:
+    """A block overrides each protected method of the base with the identical header; what it declares besides is
+    public or private.
+    """
+    block, base = blocks()[file], library().objects["Softkin_Kinematics"]
+    assert block.extends == base.name
+    supplied = {m.name: _header(m) for m in base.methods if m.access == "PROTECTED"}
+    assert supplied == {m.name: _header(m) for m in block.methods if m.access == "PROTECTED"}
+    assert set(supplied) == set(CONTRACT.supplied)
+
+
+def _header(method: ast.Routine) -> tuple[object, ...]:
+    returns = None if method.returns is None else method.returns.text
+    return method.name, method.access, returns, [(p.scope, p.name, p.type) for p in method.params]
+
+
+def test_the_base_is_an_ordinary_block() -> None:
+    """It implements nothing, so that the configurator does not list it, has no inputs, which would come before those of
+    every block, and what no geometry supplies answers that nothing is initialised.
+    """
+    base = library().objects["Softkin_Kinematics"]
+    assert base.implements == () and base.extends is None and {s.scope for s in base.sections} == {"VAR"}
+    assert not re.search(r"\b(ABSTRACT|FINAL)\b", FILES["softkin/Softkin_Kinematics.st"])
+    made = library().new("Softkin_Kinematics")
+    assert made.call("Initialize") == "SMC_TRAFO_NOT_INITIALIZED" and made.call("IsInitialized") is False
+    for method in (m for m in base.methods if m.access == "PROTECTED"):
+        (answer,) = (s for s in method.body if isinstance(s, ast.Assign))
+        assert isinstance(answer.value, ast.Member) and answer.value.name == "NotInitialized"
 
 
 @pytest.mark.parametrize("file", UNITS)
@@ -156,24 +192,55 @@ def test_names_inside_a_block_are_unique_ignoring_case(file: str) -> None:
 
 
 @pytest.mark.parametrize("file", UNITS)
-def test_only_initialize_and_the_settings_write_the_instance(file: str) -> None:
-    """AxisSettings in its last statements, and nothing but the limits that count; Initialize not what drives have
-    handed over.
-    """
-    block = blocks()[file]
-    members = {v.name.lower() for s in block.sections for v in s.variables}
+def test_only_initialize_writes_the_instance(file: str) -> None:
+    """What Initialize calls writes the variables of a block and what the base keeps for it, and nothing else does."""
+    block, base = blocks()[file], library().objects["Softkin_Kinematics"]
+    members = {v.name.lower() for owner in (block, base) for s in owner.sections for v in s.variables}
     for method in block.methods:
         written = members & set(_written(method.body))
-        if method.name == "AxisSettings":
-            assert all(
-                re.fullmatch(r"(lowest|highest|single|mid|drive(limited|lower|upper)).*", name) for name in written
-            )
-            assert not members & set(_written(method.body[:-2])), file
-            assert isinstance(method.body[-2], ast.Case) and isinstance(method.body[-1], ast.Assign)
-        elif method.name == "Initialize":
-            assert not [name for name in written if name.startswith("drive")], file
-        else:
+        if method.name != "ReadInputs":
             assert not written, f"{file}: {method.name}"
+        else:
+            assert not [a for a in _members_of_axes(method.body) if a.startswith(("drive", "lowest", "highest"))], file
+        assert "readinputs" not in {call.lower() for call in _called(method.body)}, file
+
+
+def test_the_base_alone_reads_inputs_and_writes_limits() -> None:
+    """Initialize alone calls ReadInputs; AxisSettings writes by Softkin_SetAxis, whose last statements write."""
+    base, setter = library().objects["Softkin_Kinematics"], library().objects["Softkin_SetAxis"]
+    members = {v.name.lower() for s in base.sections for v in s.variables}
+    for method in base.methods:
+        calls = set(_called(method.body))
+        assert ("ReadInputs" in calls) == (method.name == "Initialize")
+        assert ("Softkin_SetAxis" in calls) == (method.name in ("Initialize", "AxisSettings"))
+        assert not members & set(_written(method.body)) or method.name == "Initialize", method.name
+    firsts = [at for at, statement in enumerate(setter.body) if "axis" in _written((statement,))]
+    assert firsts and firsts == list(range(firsts[0], len(setter.body) - 1))
+
+
+def _called(body: tuple[ast.Statement, ...]) -> Iterator[str]:
+    """The functions and methods that statements call by their plain names, however deep."""
+    for found in _nodes(body):
+        if isinstance(found, ast.Call) and isinstance(found.function, ast.Name):
+            yield found.function.text
+
+
+def _members_of_axes(body: tuple[ast.Statement, ...]) -> Iterator[str]:
+    """The members of the structures of axes that statements assign."""
+    for found in _nodes(body):
+        if isinstance(found, ast.Assign) and isinstance(found.target, ast.Member):
+            yield found.target.name
+
+
+def _nodes(found: object) -> Iterator[object]:
+    """A node of the syntax tree and all inside it; of a tuple, those of its entries."""
+    if isinstance(found, tuple):
+        for one in found:
+            yield from _nodes(one)
+    elif dataclasses.is_dataclass(found):
+        yield found
+        for field in dataclasses.fields(found):
+            yield from _nodes(getattr(found, field.name))
 
 
 @pytest.mark.parametrize("file", UNITS)
@@ -230,9 +297,12 @@ def test_inputs_are_documented(file: str) -> None:
             assert "-inf" not in pragma or "']-inf" in pragma
             assert "+inf" not in pragma or "+inf['" in pragma
         unit = [p.split("'")[3] for p in given.pragmas if "'sm_kin_param_unit'" in p]
-        assert unit or kind != "LREAL" or given.name == "dMinType2Margin" or given.name.startswith("dCoupling"), (
-            "a number"
-        )
+        assert (
+            unit
+            or kind != "LREAL"
+            or given.name in ("dMinType2Margin", "dWarningDistance")
+            or given.name.startswith("dCoupling")
+        ), "a number"
         if given.name.startswith(("dLinkLength", "dArmLength")):
             assert unit == ["u"]
 

@@ -28,11 +28,13 @@ from tests.text import (
 from tests.text.comparisons import COMPARISONS, POSELESS
 from tests.text.reasons import provoke
 from tests.text.samples import Sample, coinciding
-from tests.text.serial_pairs import SerialPair, serial_pair, serial_pairs_of
+from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pair, serial_pairs_of
 from tests.text.statements import Statements
 from tests.text.units import compiled, compiled_shared, file_of, shared_texts, text_of
 
 MACHINES = ("plain", "equal", "limited", "limited to a turn")
+OF_THE_BASE = ("Kin_Scara4_ZCcoupled_Type1", "Softkin_Pos_RRR")
+"""The blocks whose calls reach every statement of the base block."""
 FEW, A_FEW = 3, 25
 """The numbers of samples: a watched call takes its time."""
 POSED = COMPARISONS.keys() - POSELESS
@@ -78,8 +80,22 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
     kinds = product(test_matrix_functions.ORDERS, (72, 36))
     libraries = [compiled_shared(), *(test_matrix_functions.library(*kind) for kind in kinds)]
     libraries += [test_matrix_functions.misbehaving(name) for name in test_matrix_functions.BROKEN]
+    scara, arm = (next(m for m in MECHANISMS if m.block_name == name) for name in OF_THE_BASE)
+    for mechanism in (scara, arm):
+        libraries += [compiled(mechanism), compiled(mechanism, matrix_size=36)]
     statements = Statements(shared_texts(), libraries)
     with statements.watched():
+        for mechanism in (scara, arm):
+            pairs = serial_pairs_of(mechanism)
+            test_axis_settings.test_initialize_refuses_what_the_drives_exclude(mechanism)
+            test_axis_settings.test_what_is_refused_changes_nothing(mechanism)
+            test_initialise.test_limits_are_in_order(mechanism, 10.0, 10.0)
+            test_initialise.test_a_matrix_of_another_size_is_refused(mechanism, 36)
+            test_garbage.test_garbage_in_one_number(pairs)
+            test_not_initialised.test_no_method_works(pairs, test_not_initialised.fresh)
+            for one in pairs[:4]:
+                for sample in (*few(one.regular, FEW), *few(one.grid, A_FEW)):
+                    compare_all(one, sample)
         for size in range(1, 7):
             test_shared_functions.test_solve(size)
         test_shared_functions.test_solve_where_nothing_solves(np.ones((3, 3)))
@@ -93,7 +109,13 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
             test_matrix_functions.test_no_order_where_the_library_behaves_otherwise(name)
         test_matrix_functions.test_no_order_where_the_size_differs(36)
         test_matrix_functions.test_nothing_is_touched_where_the_matrix_is_not_known(36, "Rows")
-    assert [str(place) for place in statements.left_out()] == []
+    assert [str(place) for place in statements.left_out() if not is_head(str(place))] == []
+
+
+def is_head(place: str) -> bool:
+    """Whether a place is the first line of a function block, which is no statement."""
+    file, line = place.rsplit(":", 1)
+    return shared_texts()[file].split("\n")[int(line) - 1].startswith("FUNCTION_BLOCK")
 
 
 def left_out(mechanism: Mechanism, statements: Statements) -> list[str]:
@@ -164,7 +186,7 @@ def unreachable(mechanism: Mechanism, lines: list[str]) -> set[int]:
         f"{word}{key} := {value};" for key in keys for word, value in (("lowest", "-1.0E12"), ("highest", "1.0E12"))
     }
     found = {number for number, line in enumerate(lines, 1) if line.strip() in dead}
-    empty = [number for number, line in enumerate(lines, 1) if line == "IF SIZEOF(configuration) < 1 THEN"]
+    empty = [number for number, line in enumerate(lines, 1) if line == "IF SIZEOF(bytes) < 1 THEN"]
     return found.union(replaced_after_a_refusal(lines), *({number + 1, number + 2} for number in empty))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root
 from derive.ir.program import Status
 from derive.ir.symbols import real
 from tests import orthonormal
-from tests.harness.library import StFault
+from tests.harness.library import Library, StFault
 from tests.text.units import compiled_shared
 
 LIBRARY = compiled_shared()
@@ -324,3 +325,62 @@ def test_the_status_of_a_number() -> None:
     status_of = LIBRARY.function("Softkin_StatusOf")
     answers = [status.value for status in Status]
     assert [status_of(number) for number, _ in enumerate(answers)] == answers
+
+
+def axis_of(library: Library, **members: object) -> Any:
+    """The structure of an axis with these members."""
+    made = library.new("Softkin_Axis")
+    for name, value in members.items():
+        setattr(made, name, value)
+    return made
+
+
+def test_the_range_of_an_axis() -> None:
+    """The narrower of both limits; one turn is inside where the joint, behind its gear, turns at most 350 degrees."""
+    library = compiled_shared()
+    for turns, high, is_single in ((1.0, 349.0, True), (2.0, 349.0, False), (2.0, 170.0, True)):
+        axis = axis_of(library, hasTurns=True, turns=turns, lower=0.0, upper=high)
+        drive = {"xKnown": True, "xLimited": True, "dLower": -10.0, "dUpper": 1000.0}
+        assert library.function("Softkin_SetAxis")(axis=axis, **drive) == "SMC_NO_ERROR"
+        assert (axis.lowest, axis.highest) == pytest.approx((0.0, high), abs=1e-6)
+        assert axis.isSingle is is_single and (axis.middle > 0.0) is is_single
+
+
+def test_an_axis_beyond_its_range() -> None:
+    """Below, above, and on another turn that is inside, each with its number and the missing amount."""
+    library = compiled_shared()
+    beyond = library.function("Softkin_Beyond")
+    turning = axis_of(library, hasTurns=True, lowest=-100.0, highest=100.0)
+    linear = axis_of(library, lowest=-100.0, highest=100.0)
+    cases = [
+        (turning, 0.0, False, 0, 0.0, 0),
+        (turning, -110.0, True, 4, 10.0, 0),
+        (turning, 120.0, True, 6, 20.0, 0),
+        (turning, 360.0, True, 5, 260.0, 1),
+        (linear, 130.0, True, 5, 30.0, 0),
+        (linear, -130.0, True, 4, 30.0, 0),
+    ]
+    for axis, value, is_beyond, reason, missing, turn in cases:
+        found, outputs = beyond.with_outputs(axis=axis, dValue=value, iFirst=4)
+        assert (found, outputs["iReason"], outputs["dMissing"], outputs["iTurn"]) == (is_beyond, reason, missing, turn)
+
+
+def test_the_reasons_of_limits() -> None:
+    """One for each axis, and none for what is no axis."""
+    reason = compiled_shared().function("Softkin_LimitsReason")
+    assert len({reason(udiAxis=k) for k in range(6)}) == 6 and reason(udiAxis=6) == ""
+
+
+def test_the_base_alone_supplies_nothing() -> None:
+    """Every protected method of the base answers that nothing is initialised, and writes nothing."""
+    made = compiled_shared().new("Softkin_Kinematics")
+    for name, entry in made.routines.items():
+        if entry.routine.declaration.access == "PROTECTED":
+            given = {
+                p.name: make()
+                for p, make in zip(entry.routine.parameters, entry.defaults, strict=True)
+                if p.scope != "VAR_OUTPUT"
+            }
+            assert made.call(name, **given) == "SMC_TRAFO_NOT_INITIALIZED", name
+    assert made.call("Initialize") == "SMC_TRAFO_NOT_INITIALIZED"
+    assert made.call("InitializeReason") == "not initialized"

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from derive.description.mechanism import Mechanism
+from derive.emit.st.contract import load
 from tests.harness.library import Library, compile_st
 
 FOLDER = Path(__file__).resolve().parents[2] / "generated" / "st"
@@ -40,10 +41,21 @@ def text_of(mechanism: Mechanism) -> str:
 
 @cache
 def public_methods(mechanism: Mechanism) -> tuple[str, ...]:
-    """The methods of a mechanism's unit that are not private, read from their first lines: nothing is parsed for a
-    list.
+    """The methods of a mechanism's unit that are public, own ones and those that it inherits and its interfaces have.
+
+    They are read from their first lines: nothing is parsed for a list.
     """
-    return tuple(re.findall(r"^METHOD PUBLIC (\w+)", text_of(mechanism), re.MULTILINE))
+    text, base = text_of(mechanism), shared_texts()["Softkin_Kinematics.st"]
+    own, inherited = (re.findall(r"^METHOD PUBLIC (\w+)", part, re.MULTILINE) for part in (text, base))
+    wanted = wanted_methods(tuple(re.findall(r"^  TRAFO\.(\w+),?$", text, re.MULTILINE)))
+    return (*own, *(name for name in inherited if name in wanted))
+
+
+@cache
+def wanted_methods(interfaces: tuple[str, ...]) -> frozenset[str]:
+    """The methods of these interfaces of SoftMotion and of our own."""
+    contract = load()
+    return frozenset((*contract.own, *(m for i in contract.closure(interfaces) for m in i.methods)))
 
 
 def compiled(mechanism: Mechanism, order: str = "rows", matrix_size: int = 72, max_config_data: int = 31) -> Library:

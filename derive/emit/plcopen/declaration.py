@@ -12,9 +12,9 @@ Attributes = tuple[tuple[str, str], ...]
 _PRAGMA = re.compile(r" *\{attribute '([^']*)'(?: := '([^']*)')?\}")
 _SECTION = re.compile(r"(VAR\w*|STRUCT)( CONSTANT)?")
 _ENDS = ("END_VAR", "END_STRUCT")
-_VARIABLE = re.compile(r"  (\w+) : ([^:;]+?)(?: := ([^;]+))?;(?:  // (.*))?")
+_VARIABLE = re.compile(r"  (\w+(?:, \w+)*) : ([^:;]+?)(?: := ([^;]+))?;(?:  // (.*))?")
 _HEAD = re.compile(
-    r"(?:FUNCTION_BLOCK|FUNCTION|PROGRAM|METHOD(?: PUBLIC| PRIVATE)?|PROPERTY(?: PUBLIC)?) \w+"
+    r"(?:FUNCTION_BLOCK|FUNCTION|PROGRAM|METHOD(?: PUBLIC| PRIVATE| PROTECTED)?|PROPERTY(?: PUBLIC)?) \w+"
     r"(?: EXTENDS ([\w.]+))?(?: : (.+)| IMPLEMENTS)?"
 )
 _ENUMERATOR = re.compile(r"  (\w+)(?: := (\d+))?,?")
@@ -120,12 +120,13 @@ def _variables(lines: Sequence[str]) -> Iterator[Variable]:
             continue  # an initial value of several lines
         found = _VARIABLE.fullmatch(begun)
         if found is None:
-            raise ValueError(f"not a declaration of one variable: {begun!r}")
-        name, kind, initial, comment = found.groups()
-        yield Variable(name, kind, initial or "", comment or "", tuple(_attributes(pragmas)))
+            raise ValueError(f"not a declaration of variables: {begun!r}")
+        names, kind, initial, comment = found.groups()
+        for name in names.split(", "):
+            yield Variable(name, kind, initial or "", comment or "", tuple(_attributes(pragmas)))
         pragmas, begun = [], ""
     if begun:
-        raise ValueError(f"not a declaration of one variable: {begun!r}")
+        raise ValueError(f"not a declaration of variables: {begun!r}")
 
 
 def _enumerators(lines: Sequence[str]) -> Iterator[tuple[str, int]]:

@@ -109,8 +109,9 @@ def _pou(parent: ET.Element, one: Object) -> None:
 def _method(parent: ET.Element, one: Object, owner: Object) -> None:
     element = ET.SubElement(parent, "Method", name=one.name, ObjectId=_identifier(owner.name, one.name))
     interface = add_interface(element, declaration_of(one.declaration))
-    if f"METHOD PRIVATE {one.name}" in one.declaration:
-        ET.SubElement(add_data(interface, "accessmodifiers"), "AccessModifiers", Private="true")
+    for access in ("Private", "Protected"):
+        if f"METHOD {access.upper()} {one.name}" in one.declaration:
+            ET.SubElement(add_data(interface, "accessmodifiers"), "AccessModifiers", {access: "true"})
     _body(element, one)
     add_text(ET.SubElement(element, "InterfaceAsPlainText"), one.declaration)
     ET.SubElement(element, "addData")

@@ -7,14 +7,10 @@ from dataclasses import dataclass, replace
 
 from derive.description.mechanism import Joint, Kind
 from derive.emit.softmotion.inputs import Input, parameter_input
-from derive.emit.softmotion.settings import SETTINGS, Settings, settings_of, turns_of
 from derive.emit.st.contract import Contract
 from derive.emit.st.expression import literal
 from derive.emit.st.names import capitalized, stored_name, type_name
 from derive.emit.st.program import Printed
-from derive.ir.constants import (
-    SINGULAR,
-)
 from derive.ir.passes import needed_for
 from derive.ir.program import (
     Program,
@@ -24,21 +20,35 @@ from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import CHECK_LIMITS, TIE_OF_LENGTHS, chooses_by_lengths
 
+SETTINGS = "ISMKinematicAxisSettings"
+"""The interface by which SoftMotion passes the limits of a drive."""
+_OF_AXIS = {
+    "offset": "offset",
+    "unlimited": "unlimited",
+    "lower": "lower",
+    "upper": "upper",
+    "lowest": "lowest",
+    "highest": "highest",
+    "single": "isSingle",
+    "mid": "middle",
+}
+"""The constants of an axis: how their neutral names begin, and what the structure of the axis calls them."""
+
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis: its index in AXISPOS_REF, its type, and the spellings of its limits."""
+    """One axis: its field in AXISPOS_REF, and what the base block knows of it."""
 
     name: str
     field: str
-    type: str
     meaning: str
-    unlimited: str
-    lower: str
-    upper: str
     output: str
     """The neutral name of the axis value in programs."""
-    settings: Settings
+    is_rotary: bool
+    in_degrees: bool
+    has_turns: bool
+    turns: str
+    """The turns of the joint per turn of the axis; empty without a gear."""
 
 
 @dataclass(frozen=True)
@@ -100,8 +110,10 @@ class Block:
     """Whether this is an orientation kinematics that some flange cannot carry."""
     rows: tuple[str, ...]
     margins: tuple[str, ...]
+    turn_rows: tuple[int, ...]
+    """The rows of the Jacobian that are turns."""
     computed: tuple[tuple[str, str], ...]
-    """The instance variables that Initialize assigns at its end, each with the output of `setup` that it holds."""
+    """The instance variables that ReadInputs assigns at its end, each with the output of `setup` that it holds."""
     has_settings: bool
     """Whether drives pass their limits to the block."""
 
@@ -113,11 +125,6 @@ class Block:
     def slots(self) -> int:
         """The number of solutions that the branches distinguish."""
         return int(2 ** len(self.branches))
-
-    def singular(self, program: Printed) -> str:
-        """The condition of a singular pose, given the text of the margins."""
-        small = [f"ABS({program.outputs[m]}) < {literal(float(SINGULAR))}" for m in self.margins]
-        return " OR ".join(f"({s})" for s in small) if len(small) > 1 else (small or ["FALSE"])[0]
 
 
 def block_of(kinematics: Kinematics, contract: Contract) -> Block:
@@ -133,7 +140,7 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         interfaces=interfaces,
         inputs=tuple(parameter_input(p) for p in kinematics.parameters),
         fields=_fields(kinematics),
-        axes=tuple(_axis(j, f, contract) for j, f in zip(mechanism.joints, axis_fields, strict=False)),
+        axes=tuple(_axis(j, f) for j, f in zip(mechanism.joints, axis_fields, strict=False)),
         axis_fields=axis_fields,
         branches=tuple(_branch_byte(i, b.name, b.names) for i, b in enumerate(kinematics.branches)),
         periods=tuple(
@@ -152,21 +159,38 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         turning=mechanism.task.turning.value,
         refuses_flanges=kinematics.compatible is not None and bool(kinematics.compatible.body),
         rows=kinematics.rows,
+        turn_rows=tuple(k for k, row in enumerate(kinematics.rows) if row.startswith("turn")),
         margins=tuple(m.name for m in kinematics.margins),
-        computed=_computed(kinematics, interfaces),
+        computed=_computed(kinematics),
         has_settings=SETTINGS in interfaces,
     )
 
 
 def _fields(kinematics: Kinematics) -> tuple[tuple[str, str], ...]:
     types = {o.name: type_name(type_of(o.value)) for o in kinematics.setup.outputs}
-    return tuple((stored_name(name), types[name]) for name in constants(kinematics))
+    own = stored_in_axes(kinematics)
+    return tuple((stored_name(name), types[name]) for name in constants(kinematics) if name not in own)
 
 
-def _computed(kinematics: Kinematics, interfaces: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    setup = setup_of(kinematics, has_settings=SETTINGS in interfaces)
+@kept_by_identity(10)
+def stored_in_axes(kinematics: Kinematics) -> dict[str, str]:
+    """The constants that a structure of an axis holds, with the spelling of each."""
+    return {
+        f"{word}_{joint.key}": f"axes[{index}].{member}"
+        for index, joint in enumerate(kinematics.mechanism.joints)
+        for word, member in _OF_AXIS.items()
+    }
+
+
+def stored_as(kinematics: Kinematics, name: str) -> str:
+    """The spelling of a constant: an instance variable, or a member of the structure of an axis."""
+    return stored_in_axes(kinematics).get(name) or stored_name(name)
+
+
+def _computed(kinematics: Kinematics) -> tuple[tuple[str, str], ...]:
+    setup = setup_of(kinematics)
     given, bound = {o.name for o in setup.outputs}, set(direct(kinematics, setup).values())
-    return tuple((stored_name(o), o) for o in constants(kinematics) if o in given and o not in bound)
+    return tuple((stored_as(kinematics, o), o) for o in constants(kinematics) if o in given and o not in bound)
 
 
 def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
@@ -200,12 +224,11 @@ def constants(kinematics: Kinematics) -> tuple[str, ...]:
     return tuple(o.name for o in kinematics.setup.outputs if o.name in read)
 
 
-def setup_of(kinematics: Kinematics, *, has_settings: bool) -> Program:
-    """The program of Initialize, with nothing that no method reads. Where drives pass their limits, AxisSettings
-    computes what depends on these.
+def setup_of(kinematics: Kinematics) -> Program:
+    """The program of ReadInputs, with nothing that no method reads: one function computes for every
+    axis what depends on the limits of its drive.
     """
-    setup = kinematics.setup_less_windows if has_settings else kinematics.setup
-    assert setup is not None
+    setup = kinematics.setup_less_windows
     stored = set(constants(kinematics)) | {CHECK_LIMITS}
     outputs = tuple(o for o in setup.outputs if o.name in stored)
     return replace(setup, body=needed_for(setup.body, [o.value for o in outputs]), outputs=outputs)
@@ -222,11 +245,22 @@ def direct(kinematics: Kinematics, setup: Program) -> dict[str, str]:
     return found
 
 
-def _axis(joint: Joint, field: str, contract: Contract) -> Axis:
-    word = "rotary" if joint.kind is Kind.ROTARY else "linear"
-    unlimited, lower, upper = (stored_name(f"{w}_{joint.key}") for w in ("unlimited", "lower", "upper"))
-    kind = contract.spelling["enumerators"][word]
-    return Axis(joint.name, field, kind, joint.meaning, unlimited, lower, upper, joint.axis.name, settings_of(joint))
+def _axis(joint: Joint, field: str) -> Axis:
+    return Axis(
+        name=joint.name,
+        field=field,
+        meaning=joint.meaning,
+        output=joint.axis.name,
+        is_rotary=joint.kind is Kind.ROTARY,
+        in_degrees=joint.in_degrees,
+        has_turns=joint.multi_turn,
+        turns=turns_of(joint) if joint.is_geared and joint.multi_turn else "",
+    )
+
+
+def turns_of(joint: Joint) -> str:
+    """The turns of a joint with a gear per turn of its axis: a number, or the instance variable that holds it."""
+    return literal(float(joint.turns)) if joint.turns.is_number else stored_name(str(joint.turns))
 
 
 def _branch_byte(byte: int, name: str, names: tuple[str, str]) -> BranchByte:

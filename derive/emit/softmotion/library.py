@@ -14,6 +14,7 @@ from derive.emit.language import GENERATED, TEMPLATES, Part, environment
 from derive.emit.plcopen import document as plcopen
 from derive.emit.plcopen.objects import Object, objects_of, ruled
 from derive.emit.plcopen.uses import needed
+from derive.emit.softmotion.base import base_text
 from derive.emit.softmotion.block import Block, block_of
 from derive.emit.softmotion.description import description
 from derive.emit.softmotion.methods import methods_of
@@ -23,7 +24,8 @@ from derive.emit.softmotion.self_test import PROGRAM as SELF_TEST_PROGRAM
 from derive.emit.softmotion.self_test import test_of
 from derive.emit.st.contract import Contract, load
 from derive.emit.st.expression import literal
-from derive.emit.st.layout import assigned, beside, case
+from derive.emit.st.layout import assigned, beside, case, gathered
+from derive.emit.st.limits import limits_function
 from derive.emit.st.reserved import refuse_clashes
 from derive.emit.st.rotation import rotation_function
 from derive.emit.st.scan import SEARCH
@@ -100,13 +102,14 @@ def _objects(
     parts: Sequence[Part], contract: Contract, templates: Environment
 ) -> Iterator[tuple[str, tuple[Object, ...]]]:
     """The objects of every file, by the path without its ending."""
-    rotation = rotation_function(contract)
+    rotation, limits = rotation_function(contract), limits_function(contract)
     for path in sorted((TEMPLATES / _FOLDER / _SHARED).glob("*.st.j2")):
         text = templates.get_template(f"{_SHARED}/{path.name}").render(
-            contract.spelling, rotation=rotation, names=contract.names
+            contract.spelling, rotation=rotation, limits=limits, names=contract.names
         )
         name = path.name.removesuffix(".st.j2")
         yield f"{_SHARED}/{name}", objects_of(text, name)
+    yield f"{_SHARED}/{contract.spelling['base']['name']}", objects_of(base_text(contract, templates))
     for part in parts:
         yield part["row"]["path"], objects_of(part["text"])
     yield from _self_tests([part["test"] for part in parts if part["test"] is not None], contract, templates)
@@ -146,6 +149,7 @@ def _templates() -> Environment:
         assigned=assigned,
         beside=beside,
         case=case,
+        gathered=gathered,
         generated=GENERATED,
         degree=literal(math.pi / 180.0),
         radian=literal(180.0 / math.pi),
@@ -171,7 +175,6 @@ def _unit(kinematics: Kinematics, block: Block, contract: Contract, templates: E
     return templates.get_template("block.st.j2").render(
         contract.spelling,
         block=block,
-        reads_degree=any("DEGREE" in method.text for method in methods),
         description=description(kinematics, block, contract.spelling["pictures"]["reference"], templates),
         methods=methods,
     )

@@ -2,43 +2,42 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from jinja2 import Environment
 
-from derive.emit.softmotion.block import Block, constants, direct, setup_of
+from derive.emit.softmotion.base import BASE_VARIABLES, INHERITED, Method
+from derive.emit.softmotion.block import Block, constants, direct, setup_of, stored_as
 from derive.emit.softmotion.calls import BranchCall, branch_call, checks, without_checks
+from derive.emit.softmotion.layout import tidy
+from derive.emit.softmotion.refused import refused_texts
 from derive.emit.st.contract import Contract, Parameter, Signature
 from derive.emit.st.expression import StructuredText
-from derive.emit.st.layout import commented
-from derive.emit.st.names import input_name, parameter_name, stored_name
+from derive.emit.st.layout import commented, with_gathered
+from derive.emit.st.names import input_name, parameter_name
 from derive.emit.st.program import Printed, printed
-from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal, Told
+from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal, Tested, Told
+from derive.emit.st.refused_inputs import OfInputs, chained, conditions_first
 from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st.shared import method_name, own_names, signature_of
 from derive.emit.st.stretches import shares_of
-from derive.equations.windows import limits_of_axis
 from derive.ir.program import FindRoot, Program, shared
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import reasons_of, texts
 
-LIMITS_OF_AXIS = limits_of_axis()
 _BRANCHES = ("SolveBranch", "SolveOffsetBranch")
 
 _FIRST = (
-    "Initialize",
-    "IsInitialized",
-    "GetKinematicsName",
-    "GetAxisProperties",
-    "AxisSettings",
+    "Describe",
+    "ReadInputs",
     "AxesToCartesian",
     "CartesianToAxes",
+    "TestLimits",
     "AxesToOrientation",
-    "IsSingularity",
-    "Jacobian",
+    "FindMargins",
+    "FindJacobian",
     "Diagnose",
     "GetOrientationImage",
     "GetFlangeOrientationImageTotal",
@@ -52,14 +51,6 @@ _FIRST = (
     "GetOrientationImageTotal",
     "GetOrientationImageWithOri",
 )
-
-
-@dataclass(frozen=True)
-class Method:
-    """A method as text: its declaration with parameters, and its local variables with the statements."""
-
-    head: str
-    text: str
 
 
 @dataclass(frozen=True)
@@ -84,7 +75,7 @@ def methods_of(kinematics: Kinematics, block: Block, contract: Contract, templat
 @kept_by_identity(10)
 def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
     """The spelling in a method of every input of the programs other than `setup`."""
-    spelled = {name: stored_name(name) for name in constants(kinematics)}
+    spelled = {name: stored_as(kinematics, name) for name in constants(kinematics)}
     for index, joint in enumerate(kinematics.mechanism.joints):
         spelled[joint.axis.name] = f"a.a{index}"
         spelled[joint.reference.name] = f"aRef.a{index}"
@@ -110,8 +101,6 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
             call = _call(name, kinematics.branch, kinematics, block, contract) if name == "Diagnose" else None
             yield _Source(known[name], programs.get(name), call)
             yield from _shared(programs.get(name), kinematics, contract, ready)
-            if name == "Initialize" and block.has_settings:
-                yield _Source(signature_of(LIMITS_OF_AXIS, {}, contract), LIMITS_OF_AXIS, is_shared=True)
             if name == "GetPositionFromOrientation3":
                 yield _Source(_end_point(known[name], block, contract))
             continue
@@ -121,10 +110,6 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
         solving = without_checks(program)
         yield _Source(_explained(call.signature, block) if is_plain else call.signature, solving)
         yield from _shared(program, kinematics, contract, ready)
-        if is_plain:
-            yield _Source(
-                _explained(_check_limits(block, contract), block, turns=bool(block.periods)), kinematics.limits
-            )
 
 
 def _call(name: str, program: Program, kinematics: Kinematics, block: Block, contract: Contract) -> BranchCall:
@@ -145,14 +130,15 @@ def _programs(kinematics: Kinematics, block: Block, names: Sequence[str]) -> dic
     method.
     """
     programs = {
-        "Initialize": setup_of(kinematics, has_settings=block.has_settings),
+        "ReadInputs": setup_of(kinematics),
         "AxesToCartesian": kinematics.forward,
         "AxesToOrientation": kinematics.orientation,
-        "IsSingularity": kinematics.singularity,
+        "TestLimits": kinematics.limits,
+        "FindMargins": kinematics.singularity,
         "GetOrientationImage": kinematics.image,
         "GetFlangeOrientationImageWithOri": kinematics.projection,
         "AxesToConfiguration_Offset": kinematics.offset_configuration,
-        "Jacobian": kinematics.jacobian,
+        "FindJacobian": kinematics.jacobian,
         "IsCompatibleWithPosKin": kinematics.compatible,
         "GetPositionFromOrientation3": kinematics.end_point_shift,
         "GetOrientationImageTotal": kinematics.total_image,
@@ -167,12 +153,11 @@ def _quotable(text: str) -> str:
     return text.replace("$", "$$").replace("'", "$'")
 
 
-def _explained(signature: Signature, block: Block, *, turns: bool = False) -> Signature:
+def _explained(signature: Signature, block: Block) -> Signature:
     """The signature with the further outputs that Diagnose reads. A block without axes never refuses."""
     if not block.axes:
         return signature
-    outputs = [Parameter("VAR_OUTPUT", REASON, "INT"), Parameter("VAR_OUTPUT", MISSING, "LREAL")]
-    outputs += [Parameter("VAR_OUTPUT", TURN, "INT")] if turns else []
+    outputs = (Parameter("VAR_OUTPUT", REASON, "INT"), Parameter("VAR_OUTPUT", MISSING, "LREAL"))
     return replace(signature, parameters=(*signature.parameters, *outputs))
 
 
@@ -189,13 +174,8 @@ def _shared(program: Program | None, kinematics: Kinematics, contract: Contract,
 def _names(block: Block, contract: Contract) -> list[str]:
     """The public methods of the implemented interfaces, and those of the block itself; the most important are first."""
     names = [m for i in contract.closure(block.interfaces) for m in i.methods]
-    names = list(dict.fromkeys([*names, *contract.own]))
+    names = [n for n in dict.fromkeys([*names, *contract.own, *contract.supplied]) if n not in INHERITED]
     return sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))
-
-
-def _check_limits(block: Block, contract: Contract) -> Signature:
-    axes = contract.signatures["Jacobian"].parameters[1:2] if block.axes else ()
-    return Signature("TestLimits", contract.spelling["types"]["error"], axes, "PRIVATE")
 
 
 def _end_point(public: Signature, block: Block, contract: Contract) -> Signature:
@@ -230,28 +210,41 @@ def _method(
         ]
     template = "Shared" if source.is_shared and source.search is None else name
     text = templates.get_template(f"methods/{template}.st.j2").render(contract.spelling, **context)
-    return Method(source.signature.head(), _tidy(text))
+    return Method(source.signature.head(), with_gathered(tidy(text)))
 
 
 def _printed(source: _Source, program: Program, kinematics: Kinematics, block: Block, contract: Contract) -> Printed:
     signature = source.signature
     taken = {i.name for i in block.inputs} | {name for name, _ in block.fields} | {p.name for p in signature.parameters}
-    taken |= {"initialized", "matrixOrder", "checkLimits", "DEGREE", "RADIAN", "NumAxes", *contract.signatures}
-    taken |= {method_name(inner) for inner in (*kinematics.shared, LIMITS_OF_AXIS)}
+    taken |= {"NumAxes", *BASE_VARIABLES, *contract.signatures}
+    taken |= {method_name(inner) for inner in kinematics.shared}
     errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
     refusal = Refusal(signature, errors, error)
     if REASON in {p.name for p in signature.parameters}:
-        refusal = Explained(signature, errors, error, reasons_of(kinematics), texts(kinematics))
-    if signature.name == "Initialize":
+        refusal = Explained(
+            signature, errors, error, reasons_of(kinematics), texts(kinematics), _axes(kinematics, block)
+        )
+    if signature.name == "ReadInputs":
         given = {p.name: input_name(p) for p in kinematics.parameters}
-        stored = {let: stored_name(output) for let, output in direct(kinematics, program).items()}
-        return printed(program, given, stored, taken, refusal)
+        stored = {let: stored_as(kinematics, output) for let, output in direct(kinematics, program).items()}
+        inputs = OfInputs(signature, errors, error, refused_texts(kinematics))
+        return chained(printed(conditions_first(program), given, stored, taken, inputs))
     spelled = spelled_inputs(kinematics)
     if source.is_shared:
         own = own_names(program, spelled)
         return printed(program, spelled | own, {o.name: own[o.name] for o in program.outputs}, taken, refusal)
     shares = shares_of(program) if signature.name in _BRANCHES else None
     return printed(program, _positions(signature) | spelled, {}, taken, refusal, shares)
+
+
+def _axes(kinematics: Kinematics, block: Block) -> dict[str, Tested]:
+    """The axes whose limits the program tests, by the names of their values."""
+    return {
+        joint.axis.name: Tested(
+            f"axes[{index}]", f"a.{axis.field}", f"lowest_{joint.key}", f"highest_{joint.key}", axis.has_turns
+        )
+        for index, (joint, axis) in enumerate(zip(kinematics.mechanism.joints, block.axes, strict=True))
+    }
 
 
 def _positions(signature: Signature) -> dict[str, str]:
@@ -262,12 +255,3 @@ def _positions(signature: Signature) -> dict[str, str]:
     if "vOffset_TCP" in names:
         spelled |= {f"point_{axis}": f"vOffset_TCP.d{axis.upper()}" for axis in "xyz"}
     return spelled
-
-
-def _tidy(text: str) -> str:
-    """The text without empty sections, and with at most one empty line between paragraphs."""
-    text = re.sub(r"\n(VAR\n)\s*\n", r"\n\1", "\n" + text)
-    text = re.sub(r"\n\s*\n(END_VAR|END_IF|END_FOR)", r"\n\1", text)
-    text = re.sub(r"\nVAR\nEND_VAR(?=\n)", "", text)
-    text = re.sub(r"\n{3,}", "\n\n", text)
-    return text.strip("\n") if text.lstrip("\n").startswith("VAR") else "\n" + text.strip("\n")

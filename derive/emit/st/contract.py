@@ -78,6 +78,11 @@ class Contract:
 
     interfaces: Mapping[str, Interface]
     own: Mapping[str, Signature]
+    """The methods of the interface of our own."""
+    supplied: Mapping[str, Signature]
+    """The protected methods that every geometry supplies to the base block."""
+    is_flat: bool
+    """Whether every block has the methods of the base block itself, and extends none."""
     omits: frozenset[str]
     names: tuple[Group, ...]
     """The list of global constants."""
@@ -88,7 +93,7 @@ class Contract:
     @property
     def signatures(self) -> dict[str, Signature]:
         """Every method by name."""
-        found = dict(self.own)
+        found = {**self.own, **self.supplied}
         for interface in self.interfaces.values():
             found.update(interface.methods)
         return found
@@ -125,7 +130,15 @@ def load(profile: str | None = None, file: Path = _FILE) -> Contract:
     groups = {key: _constants(table) for key, table in tables.items()}
     data |= {key: {k: f"{listed}.{c.name}" for k, c in inside.items()} for key, inside in groups.items()}
     names = tuple(Group(tables[key]["title"], tuple(inside.values())) for key, inside in groups.items())
-    return Contract(interfaces, _signatures(data.pop("own")), omits, names, data)
+    return Contract(
+        interfaces,
+        _signatures(data.pop("own")),
+        _signatures(data.pop("supplied"), "PROTECTED"),
+        profiles[name].get("flat", False),
+        omits,
+        names,
+        data,
+    )
 
 
 def _constants(table: Mapping[str, Any]) -> dict[str, Constant]:
@@ -152,8 +165,8 @@ def _version(text: str) -> tuple[int, ...]:
     return tuple(map(int, text.split(".")))
 
 
-def _signatures(methods: Mapping[str, Any]) -> dict[str, Signature]:
+def _signatures(methods: Mapping[str, Any], access: str = "PUBLIC") -> dict[str, Signature]:
     return {
-        name: Signature(name, m["returns"], tuple(Parameter(*p) for p in m["parameters"]))
+        name: Signature(name, m["returns"], tuple(Parameter(*p) for p in m["parameters"]), access)
         for name, m in methods.items()
     }

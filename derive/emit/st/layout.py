@@ -13,6 +13,8 @@ INSIDE = len(_INDENT)
 _CALL = re.compile(r"\w+\([^()]*\)")
 _PLAIN_WORD = re.compile(r"[a-z]+\b")
 """A word that is no name, so that it may begin a sentence with a capital letter."""
+_LOCALS = re.compile(r"^VAR\n(.*?)^END_VAR", re.DOTALL | re.MULTILINE)
+_LOCAL = re.compile(r"  (\w+) : ([^:;]+);")
 _LONG_CONDITION = 45
 _LEAST_COMMENT = 30
 """The fewest columns of a comment beside a declaration."""
@@ -83,6 +85,36 @@ def beside(declaration: str, comment: str) -> list[str]:
     margin = " " * (len(declaration) + 2 + len(declaration) % 2)
     first, *others = wrap(comment, max(WIDTH - len(margin) - 3 - INSIDE, _LEAST_COMMENT))
     return [f"{declaration}  // {first}", *(f"{margin}// {line}" for line in others)]
+
+
+def gathered(declarations: Sequence[tuple[str, str]]) -> list[str]:
+    """Variables with their types, those of one type together: `a1, a2 : LREAL;`, in as many lines as they need."""
+    lines: list[str] = []
+    for kind in dict.fromkeys(kind for _, kind in declarations):
+        own = [name for name, other in declarations if other == kind]
+        room = WIDTH - INSIDE - len(f" : {kind};")
+        names = ""
+        for name in own:
+            if names and len(f"{names}, {name}") > room:
+                lines.append(f"{names} : {kind};")
+                names = ""
+            names = f"{names}, {name}" if names else name
+        lines.append(f"{names} : {kind};")
+    return lines
+
+
+def with_gathered(text: str) -> str:
+    """A method with its local variables gathered by their types."""
+
+    def section(found: re.Match[str]) -> str:
+        lines = [line for line in found[1].split("\n") if line.strip()]
+        plain = [_LOCAL.fullmatch(line) for line in lines]
+        if not all(plain):
+            return found[0]
+        declarations = [(one[1], one[2]) for one in plain if one]
+        return "\n".join(["VAR", *indented(gathered(declarations)), "END_VAR"])
+
+    return _LOCALS.sub(section, text)
 
 
 def case(label: int, target: str, text: str) -> list[str]:

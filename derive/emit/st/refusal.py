@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import sympy as sp
 
@@ -12,7 +12,7 @@ from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import INSIDE, WIDTH, conjunction, indented, wrapped
 from derive.ir.program import Iterate, Require, Status
 from derive.ir.reason import OtherTurn
-from derive.report.reasons import Reasons
+from derive.report.reasons import Check, Reasons
 
 REASON, MISSING, TURN = "iReason", "dMissing", "iTurn"
 """The outputs of a method that explains its refusals: the number of a text of Diagnose, the missing amount, and the
@@ -38,13 +38,12 @@ class Refusal:
         return self.of(loop.otherwise)
 
     def answering(self, error: str) -> tuple[str, ...]:
-        """The lines that refuse with an error, given as an expression. IsSingularity then answers TRUE, and every other
-        method that returns BOOL answers FALSE.
+        """The lines that refuse with an error, given as an expression. A method that returns BOOL then answers
+        FALSE.
         """
         if not self.signature.returns:
             return ("RETURN;",)
-        answer = "TRUE" if self.signature.name == "IsSingularity" else "FALSE"
-        value = answer if self.signature.returns == "BOOL" else error
+        value = "FALSE" if self.signature.returns == "BOOL" else error
         return (f"{self.signature.name} := {value};", "RETURN;")
 
     def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
@@ -55,12 +54,27 @@ class Refusal:
 
 
 @dataclass(frozen=True)
+class Tested:
+    """An axis whose limits are tested."""
+
+    structure: str
+    """The structure that holds its range."""
+    value: str
+    lowest: str
+    highest: str
+    """The neutral names of the ends of its range."""
+    has_turns: bool
+
+
+@dataclass(frozen=True)
 class Explained(Refusal):
     """Writes refusals for a method that also gives the reason and the missing amount."""
 
     reasons: Reasons
     texts: Sequence[str]
     """All reasons of the block; the number of a reason is its position, counted from 1."""
+    axes: Mapping[str, Tested] = field(default_factory=dict)
+    """The axes whose limits one function tests, by the names of their values."""
 
     def of_loop(self, loop: Iterate) -> tuple[str, ...]:
         """The lines that refuse where a loop is never left."""
@@ -71,13 +85,42 @@ class Explained(Refusal):
         return list(self._lines(requires, printer))
 
     def _lines(self, requires: Sequence[Require], printer: StructuredText) -> Iterator[str]:
-        for check in self.reasons.checks(requires):
+        checks = self.reasons.checks(requires)
+        if (axis := self._of_axis(checks)) is not None:
+            yield from self._beyond(axis, self._number(checks[0].reason))
+            return
+        for check in checks:
             parts = [text for c in check.conditions for text in printer.parts(c)]
             yield from conjunction("IF NOT (", parts, ") THEN")
             if check.missing is not None:
                 yield from indented(wrapped(f"{MISSING} := {printer.print(check.missing)};", WIDTH - 3 * INSIDE))
             yield from indented([*self._numbered(check.reason, check.turns, printer), *self.of(check.status)])
             yield "END_IF"
+
+    def _of_axis(self, checks: Sequence[Check]) -> Tested | None:
+        """The axis whose two limits these checks test, and nothing else; their reasons have numbers in a row."""
+        if len(checks) != 2:
+            return None
+        names = [{s.name for s in check.conditions[0].free_symbols} for check in checks]
+        tested = [self.axes[name] for name in sorted(names[0] & names[1]) if name in self.axes]
+        if len(tested) != 1:
+            return None
+        axis = tested[0]
+        if [own - (names[0] & names[1]) for own in names] != [{axis.lowest}, {axis.highest}]:
+            return None
+        of_turns = [reason for _, reason in checks[0].turns]
+        if len(of_turns) != axis.has_turns or any(turn.axis.args for check in checks for turn, _ in check.turns):
+            return None
+        first, *following = (self._number(text) for text in (checks[0].reason, *of_turns, checks[1].reason))
+        return axis if following == list(range(first + 1, first + 1 + len(following))) else None
+
+    def _beyond(self, axis: Tested, first: int) -> Iterator[str]:
+        given = f"axis := {axis.structure}, dValue := {axis.value}, iFirst := {first}"
+        results = ", ".join(f"{name} => {name}" for name in (REASON, MISSING, TURN))
+        yield f"IF Softkin_Beyond({given},"
+        yield f"    {results}) THEN"
+        yield from indented(self.of(Status.UNREACHABLE))
+        yield "END_IF"
 
     def _numbered(self, plain: str, turns: Sequence[tuple[OtherTurn, str]], printer: StructuredText) -> Iterator[str]:
         """The lines that set the number of the reason: that of the first axis with another turn inside its limits, else

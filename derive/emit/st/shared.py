@@ -22,6 +22,9 @@ from derive.ir.types import type_of
 OUTCOME = "outcome"
 """The variable that holds the error that a call returns."""
 
+_OWN_AXES = "axes["
+"""How the spelling of a constant begins that a structure of an axis holds."""
+
 
 def method_name(program: Program) -> str:
     """`find_platform` → `FindPlatform`."""
@@ -31,7 +34,7 @@ def method_name(program: Program) -> str:
 def signature_of(program: Program, spelled: Mapping[str, str], contract: Contract) -> Signature:
     """The signature of the private method of a shared program, given the spelling of what all methods can read."""
     parts = {spelled.get(s.name, s.name) for s in program.inputs}
-    whole = {re.split(r"\W", text)[0] for text in parts if not text.isidentifier()}
+    whole = {re.split(r"\W", text)[0] for text in parts if not (text.isidentifier() or text.startswith(_OWN_AXES))}
     axes = contract.signatures["Jacobian"].parameters[1]
     if not whole <= {axes.name}:
         raise TypeError(
@@ -65,7 +68,7 @@ def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterato
 
 def _argument(name: sp.Symbol, value: sp.Expr, printer: StructuredText) -> str:
     text = printer.value(name, value)
-    if value == name and "." in text:
+    if value == name and "." in text and not text.startswith(_OWN_AXES):
         whole = text.split(".")[0]
         return f"{whole} := {whole}"
     return f"{parameter_name(name.name)} := {text}"

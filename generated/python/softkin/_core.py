@@ -55,8 +55,8 @@ if TYPE_CHECKING:
     from softkin._array import Programs
     from softkin._mounted import Mounted
 
-SINGULAR = 0.001
-"""A pose is singular where a margin is smaller than this in size."""
+WARNING_DISTANCE = 0.001
+"""A pose of a coupling, which has no parameters, is singular where a margin is smaller than this in size."""
 
 TWIST = ("x", "y", "z", "turn x", "turn y", "turn z")
 """The rows of a twist: along and about the axes of the machine."""
@@ -331,7 +331,8 @@ class Mechanism(ABC):
         margins = self._singularity(reals(axes, len(self.AXES), "axes"))
         if isinstance(margins, Status):
             return Singularity(True, dict.fromkeys(self.MARGINS, nan))
-        is_singular = any(abs(margin) < SINGULAR for margin in margins)
+        near = self.parameters.get("warning_distance", WARNING_DISTANCE)
+        is_singular = any(abs(margin) < near for margin in margins)
         return Singularity(is_singular, dict(zip(self.MARGINS, margins, strict=True)))
 
     def jacobian_batch(self, axes: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:

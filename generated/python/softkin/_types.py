@@ -122,7 +122,7 @@ class Singularity(NamedTuple):
     """The distances of a pose from all singularities."""
 
     is_singular: bool
-    """Whether some margin is smaller than 0.001 in size, or the axes allow no pose."""
+    """Whether some margin is smaller than the parameter `warning_distance` in size, or the axes allow no pose."""
     margins: Mapping[str, float]
     """Dimensionless and signed, by name; NaN where the axes allow no pose.
 

@@ -152,6 +152,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         Parameter.of("angle", "lower_a6", "A6: lower limit of the axis, both 0: no limit"),
         Parameter.of("angle", "upper_a6", "A6: upper limit of the axis, both 0: no limit"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (
         ConfigurationByte(name="shoulder", kind="branch", branches=("front", "back"), default=1),
@@ -204,6 +210,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         lower_a6: float = 0.0,
         upper_a6: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -233,6 +240,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         lower_a6: A6: lower limit of the axis, both 0: no limit [deg]
         upper_a6: A6: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

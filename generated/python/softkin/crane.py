@@ -87,6 +87,12 @@ class Crane(OffsetKinematics):
         Parameter.of("angle", "lower_phi", "Phi: lower limit of the axis, both 0: joint value 0 .. 180"),
         Parameter.of("angle", "upper_phi", "Phi: upper limit of the axis, both 0: joint value 0 .. 180"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (ConfigurationByte(name="Theta", kind="period", branches=(), default=0),)
     DEFAULT_CONFIGURATION = (0,)
@@ -112,6 +118,7 @@ class Crane(OffsetKinematics):
         lower_phi: float = 0.0,
         upper_phi: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -125,6 +132,7 @@ class Crane(OffsetKinematics):
         lower_phi: Phi: lower limit of the axis, both 0: joint value 0 .. 180 [deg]
         upper_phi: Phi: upper limit of the axis, both 0: joint value 0 .. 180 [deg]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

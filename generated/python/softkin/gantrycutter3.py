@@ -89,6 +89,12 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         Parameter.of("angle", "lower_r", "R: lower limit of the axis, both 0: no limit"),
         Parameter.of("angle", "upper_r", "R: upper limit of the axis, both 0: no limit"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (ConfigurationByte(name="R", kind="period", branches=(), default=0),)
     DEFAULT_CONFIGURATION = (0,)
@@ -118,6 +124,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         lower_r: float = 0.0,
         upper_r: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -135,6 +142,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         lower_r: R: lower limit of the axis, both 0: no limit [deg]
         upper_r: R: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

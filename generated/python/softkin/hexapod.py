@@ -475,6 +475,12 @@ class Hexapod(IterativeForward):
             default=0.001,
         ),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = ()
     DEFAULT_CONFIGURATION = ()
@@ -554,6 +560,7 @@ class Hexapod(IterativeForward):
         upper_l6: float = 0.0,
         min_type2_margin: float = 0.001,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -621,6 +628,7 @@ class Hexapod(IterativeForward):
         upper_l6: L6: upper limit of the axis, both 0: joint value 0 or more [u]
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

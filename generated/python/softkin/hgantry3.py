@@ -84,6 +84,12 @@ class HGantry3(OffsetKinematics):
         Parameter.of("distance", "lower_y", "lower limit of Y of the carriage, both 0: no limit"),
         Parameter.of("distance", "upper_y", "upper limit of Y of the carriage, both 0: no limit"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = ()
     DEFAULT_CONFIGURATION = ()
@@ -113,6 +119,7 @@ class HGantry3(OffsetKinematics):
         lower_y: float = 0.0,
         upper_y: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -130,6 +137,7 @@ class HGantry3(OffsetKinematics):
         lower_y: lower limit of Y of the carriage, both 0: no limit [u]
         upper_y: upper limit of Y of the carriage, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

@@ -142,6 +142,12 @@ class P2CType2(OffsetKinematics):
             default=0.001,
         ),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (
         ConfigurationByte(name="knee_1", kind="branch", branches=("outward", "inward"), default=1),
@@ -175,6 +181,7 @@ class P2CType2(OffsetKinematics):
         tcp_above: bool = False,
         min_type2_margin: float = 0.001,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -191,6 +198,7 @@ class P2CType2(OffsetKinematics):
         tcp_above: assembly mode: above instead of below
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

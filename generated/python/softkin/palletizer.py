@@ -150,6 +150,12 @@ class Palletizer(OffsetKinematics, TwistChoice):
         Parameter.of("angle", "lower_elbow", "lower limit of the forearm relative to the rear arm, both 0: no limit"),
         Parameter.of("angle", "upper_elbow", "upper limit of the forearm relative to the rear arm, both 0: no limit"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (
         ConfigurationByte(name="shoulder", kind="branch", branches=("front", "back"), default=1),
@@ -193,6 +199,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         lower_elbow: float = 0.0,
         upper_elbow: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -217,6 +224,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         lower_elbow: lower limit of the forearm relative to the rear arm, both 0: no limit [deg]
         upper_elbow: upper limit of the forearm relative to the rear arm, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

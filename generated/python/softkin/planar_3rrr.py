@@ -369,6 +369,12 @@ class Planar3RRR(IterativeForward, TwistChoice):
             default=0.001,
         ),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (
         ConfigurationByte(name="elbow_1", kind="branch", branches=("right", "left"), default=1),
@@ -426,6 +432,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         home_elbow_3_left: bool = False,
         min_type2_margin: float = 0.001,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -464,6 +471,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         home_elbow_3_left: branch elbow_3 at the home pose: left instead of right
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

@@ -82,6 +82,12 @@ class Polar(Mechanism):
         Parameter.of("distance", "lower_r", "R: lower limit of the axis, both 0: joint value 0 or more"),
         Parameter.of("distance", "upper_r", "R: upper limit of the axis, both 0: joint value 0 or more"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (ConfigurationByte(name="C", kind="period", branches=(), default=0),)
     DEFAULT_CONFIGURATION = (0,)
@@ -104,6 +110,7 @@ class Polar(Mechanism):
         lower_r: float = 0.0,
         upper_r: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -114,6 +121,7 @@ class Polar(Mechanism):
         lower_r: R: lower limit of the axis, both 0: joint value 0 or more [u]
         upper_r: R: upper limit of the axis, both 0: joint value 0 or more [u]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

@@ -87,6 +87,12 @@ class PolarZ(Mechanism):
         Parameter.of("distance", "lower_z", "Z: lower limit of the axis, both 0: no limit"),
         Parameter.of("distance", "upper_z", "Z: upper limit of the axis, both 0: no limit"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (ConfigurationByte(name="C", kind="period", branches=(), default=0),)
     DEFAULT_CONFIGURATION = (0,)
@@ -112,6 +118,7 @@ class PolarZ(Mechanism):
         lower_z: float = 0.0,
         upper_z: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -125,6 +132,7 @@ class PolarZ(Mechanism):
         lower_z: Z: lower limit of the axis, both 0: no limit [u]
         upper_z: Z: upper limit of the axis, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

@@ -124,6 +124,12 @@ class PosRRR(OffsetKinematics):
         Parameter.of("angle", "lower_a3", "A3: lower limit of the axis, both 0: no limit"),
         Parameter.of("angle", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (
         ConfigurationByte(name="arm", kind="branch", branches=("front", "back"), default=1),
@@ -161,6 +167,7 @@ class PosRRR(OffsetKinematics):
         lower_a3: float = 0.0,
         upper_a3: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -180,6 +187,7 @@ class PosRRR(OffsetKinematics):
         lower_a3: A3: lower limit of the axis, both 0: no limit [deg]
         upper_a3: A3: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

@@ -101,6 +101,12 @@ class Scara2Z(OffsetKinematics):
         Parameter.of("distance", "lower_z", "Z: lower limit of the axis, both 0: no limit"),
         Parameter.of("distance", "upper_z", "Z: upper limit of the axis, both 0: no limit"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (
         ConfigurationByte(name="elbow", kind="branch", branches=("right", "left"), default=1),
@@ -132,6 +138,7 @@ class Scara2Z(OffsetKinematics):
         lower_z: float = 0.0,
         upper_z: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -147,6 +154,7 @@ class Scara2Z(OffsetKinematics):
         lower_z: Z: lower limit of the axis, both 0: no limit [u]
         upper_z: Z: upper limit of the axis, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

@@ -102,6 +102,12 @@ class Scara3CCZ(OffsetKinematics):
         Parameter.of("distance", "lower_a3", "A3: lower limit of the axis, both 0: no limit"),
         Parameter.of("distance", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (
         ConfigurationByte(name="elbow", kind="branch", branches=("right", "left"), default=1),
@@ -133,6 +139,7 @@ class Scara3CCZ(OffsetKinematics):
         lower_a3: float = 0.0,
         upper_a3: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -148,6 +155,7 @@ class Scara3CCZ(OffsetKinematics):
         lower_a3: A3: lower limit of the axis, both 0: no limit [u]
         upper_a3: A3: upper limit of the axis, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

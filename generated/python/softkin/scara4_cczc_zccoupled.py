@@ -142,6 +142,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             high=720.0,
         ),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (
         ConfigurationByte(name="elbow", kind="branch", branches=("right", "left"), default=1),
@@ -180,6 +186,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         lower_a4: float = 0.0,
         upper_a4: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -201,6 +208,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         lower_a4: A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]
         upper_a4: A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

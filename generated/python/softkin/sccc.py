@@ -135,6 +135,12 @@ class SCCC(OffsetKinematics, TwistChoice):
         Parameter.of("angle", "lower_joint_3", "lower limit of joint 3, both 0: no limit"),
         Parameter.of("angle", "upper_joint_3", "upper limit of joint 3, both 0: no limit"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (
         ConfigurationByte(name="elbow", kind="branch", branches=("right", "left"), default=1),
@@ -175,6 +181,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         lower_joint_3: float = 0.0,
         upper_joint_3: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -198,6 +205,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         lower_joint_3: lower limit of joint 3, both 0: no limit [deg]
         upper_joint_3: upper limit of joint 3, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

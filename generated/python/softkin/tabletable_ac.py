@@ -128,6 +128,12 @@ class TableTableAC(Mechanism):
         Parameter.of("angle", "lower_c", "C: lower limit of the axis, both 0: no limit"),
         Parameter.of("angle", "upper_c", "C: upper limit of the axis, both 0: no limit"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = (
         ConfigurationByte(name="tilt", kind="branch", branches=("positive", "negative"), default=1),
@@ -166,6 +172,7 @@ class TableTableAC(Mechanism):
         lower_c: float = 0.0,
         upper_c: float = 0.0,
         check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -188,6 +195,7 @@ class TableTableAC(Mechanism):
         lower_c: C: lower limit of the axis, both 0: no limit [deg]
         upper_c: C: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

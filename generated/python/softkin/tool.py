@@ -63,6 +63,12 @@ class Tool(OrientationKinematics):
         Parameter.of("distance", "tool_y", "Flange to the tool, along Y"),
         Parameter.of("distance", "tool_z", "Flange to the tool, along Z"),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
+        Parameter.of(
+            "ratio",
+            "warning_distance",
+            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            default=0.001,
+        ),
     )
     CONFIGURATION = ()
     DEFAULT_CONFIGURATION = ()
@@ -76,7 +82,13 @@ class Tool(OrientationKinematics):
     DISTANCE_AXES = ()
 
     def __init__(
-        self, *, tool_x: float = 0.0, tool_y: float = 0.0, tool_z: float = 0.0, check_limits: bool = True
+        self,
+        *,
+        tool_x: float = 0.0,
+        tool_y: float = 0.0,
+        tool_z: float = 0.0,
+        check_limits: bool = True,
+        warning_distance: float = 0.001,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -84,6 +96,7 @@ class Tool(OrientationKinematics):
         tool_y: Flange to the tool, along Y [u]
         tool_z: Flange to the tool, along Z [u]
         check_limits: inverse kinematics tests the limits
+        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
         """
         self._accept(locals())
         self._constants = Constants(self)

@@ -37,7 +37,7 @@ WRONG = {
     "a joint of another leg": Fault(_SEARCH, "arm4X + x - base4X", "arm4X + x - base5X"),
     "an entry of the rotation": Fault(_SEARCH, "r23 := ", "r23 := 1.0E-9 + "),
     "a rotation on the other side": Fault(_SEARCH, "startR12*turned11", "startR21*turned11"),
-    "an offset": Fault(_SEARCH, "l5 := a.a4 - offsetL5", "l5 := a.a4"),
+    "an offset": Fault(_SEARCH, "l5 := a.a4 - axes[4].offset", "l5 := a.a4"),
     "too few passes": Fault(_SEARCH, "FOR iteration := 1 TO 20 DO", "FOR iteration := 1 TO 3 DO"),
     "a tolerance": Fault(_SEARCH, "(fit) AND (fitted)", "(fit) OR (size < 0.05)"),
     "a pass that changes nothing": Fault(_SEARCH, "x := x + oneByStretch*xRate", "x := x"),

@@ -15,7 +15,7 @@ from tests.text.samples import Sample
 from tests.text.statements import Statements
 from tests.text.units import compiled, file_of, text_of
 
-SIZE_OF_NOTHING = "IF SIZEOF(configuration) < 1 THEN"
+SIZE_OF_NOTHING = "IF SIZEOF(bytes) < 1 THEN"
 """No CONFIGDATA has no bytes: what stands behind this is not reached."""
 
 

@@ -29,7 +29,7 @@ def planted(mechanism: Mechanism) -> Planted:
         ("AxesToCartesian", r"^(f\.vT\.d[XYZ]|rot\[\d, \d\])() :=[^;]*;\n"),
         ("AxesToCartesian", r"^(configuration\.abyData)(\[\d+\]) :=[^;]*;\n"),
         ("SolveBranch", rf"^(a\.a[0-{max(axes - 1, 0)}])() :=[^;]*;\n"),
-        ("IsSingularity", r"^(IsSingularity)() :=[^;]*;\n"),
+        ("FindMargins", r"^(FindMargins)() :=[^;]*;\n"),
         ("TestLimits", r"^(IF NOT checkLimits)() THEN\n"),
         ("CartesianToAxes", r"^(a := solution)();\n"),
     ):
@@ -40,7 +40,7 @@ def planted(mechanism: Mechanism) -> Planted:
 
 
 def _in_method(text: str, method: str, pattern: str, faults: list[str]) -> str:
-    head = re.search(rf"METHOD (?:PUBLIC|PRIVATE) {method}\b.*\n", text)
+    head = re.search(rf"METHOD (?:PUBLIC|PRIVATE|PROTECTED) {method}\b.*\n", text)
     assert head is not None
     start = head.start()
     end = text.index("END_METHOD", start)
@@ -51,8 +51,8 @@ def _in_method(text: str, method: str, pattern: str, faults: list[str]) -> str:
         chosen = f"{_SWITCH} = {len(faults)}"
         if "abyData" in place:
             return f"{found.group()}IF {chosen} THEN\n  {place} := 9;\nEND_IF\n"
-        if place == "IsSingularity":
-            return f"{found.group()}IF {chosen} THEN\n  {place} := NOT {place};\nEND_IF\n"
+        if place == "FindMargins":
+            return f"{found.group()}IF {chosen} THEN\n  {place} := Softkin_Names.NotInitialized;\nEND_IF\n"
         if place.startswith("IF"):
             return f"IF NOT checkLimits OR ({chosen}) THEN\n"
         if place == "a := solution":

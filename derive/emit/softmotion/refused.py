@@ -1,0 +1,51 @@
+"""Why Initialize refuses an input, in the words of the Python package."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from derive.description.mechanism import Parameter, Role
+from derive.emit.st.names import input_name, respelled
+from derive.kept import kept_by_identity
+from derive.kinematics.kinematics import Kinematics
+
+_LONGEST, _MOST_NAMED = 255, 3
+
+
+@kept_by_identity(10)
+def refused_texts(kinematics: Kinematics) -> dict[str, str]:
+    """The text of every refusal, by the sentence of its condition: the inputs, then what they must be.
+
+    A condition on a single input gives the range of that input and the condition.
+    """
+    spelled = {p.name: input_name(p) for p in kinematics.parameters}
+    found: dict[str, str] = {}
+    for require in kinematics.setup_less_windows.requires():
+        assert require.reason is not None
+        sentence = require.reason.subject.name
+        read = {symbol.name for symbol in require.condition.free_symbols}
+        named = [p for p in kinematics.parameters if p.name in read]
+        needed = sentence
+        if len(named) == 1:
+            is_its_range = sentence == f"{named[0].name}: {named[0].meaning}"
+            needed = f"it must be {_allowed(named[0])}" + ("" if is_its_range else f" ({sentence})")
+        names = _listed([spelled[p.name] for p in named])
+        wrong = "is not allowed: " if len(named) == 1 else ": "
+        text = f"{names} {wrong}{needed}".replace(" :", ":") if named else f"the parameters must give {needed}"
+        found[sentence] = respelled(text, spelled)[:_LONGEST]
+    return found
+
+
+def _listed(names: Sequence[str]) -> str:
+    """The names, at most three of them."""
+    if len(names) <= _MOST_NAMED:
+        return ", ".join(names)
+    return f"{names[0]} and {len(names) - 1} others"
+
+
+def _allowed(parameter: Parameter) -> str:
+    """The values that are allowed, in words."""
+    if parameter.role is Role.SIGN:
+        return "1 or -1"
+    low = "more than" if parameter.low_open else "at least"
+    return f"{low} {parameter.low:g} and at most {parameter.high:g}"
