@@ -16,6 +16,8 @@ from derive.emit.picture.view import View
 
 _SECOND = 45.0
 """What a leader costs where a dimension line has room."""
+_FREE = 12.0
+"""How far the ends of a dimension line must be from its text, in pixels."""
 _SHORT = 26.0
 """A dimension shorter than this on the page has a leader instead of a dimension line."""
 
@@ -86,7 +88,7 @@ def name_length(sheet: Sheet, view: View, dimension: Dimension, text: str) -> No
         style.INK,
         [
             *(_lines(start, end, text_width(text, style.LABEL)) if length > _SHORT else ()),
-            *_leaders(start, end, len(text), length > _SHORT),
+            *_leaders(start, end, text_width(text, style.LABEL), length > _SHORT),
         ],
     )
 
@@ -101,12 +103,20 @@ def _lines(start: Vector, end: Vector, wide: float) -> list[Place]:
         aside = distance * across
         for part in (0.5, 0.35, 0.65, 0.2, 0.8):
             at = start + part * (end - start) + aside
+            if part != 0.5 and min(_gap(at, tip + aside, wide) for tip in (start, end)) < _FREE:
+                continue  # the text would hide an end of its line
             cost = 0.35 * abs(distance) + 40.0 * abs(part - 0.5) + covering
             found.append(Place(at, cost, _measured(start, end, aside)))
     return found
 
 
-def _leaders(start: Vector, end: Vector, letters: int, is_second: bool) -> list[Place]:
+def _gap(at: Vector, point: Vector, wide: float) -> float:
+    """How far a point is outside of a text that stands at a place; negative inside of it."""
+    across, up = np.abs(point - at) - np.array([wide / 2, 0.7 * style.LABEL])
+    return float(max(across, up))
+
+
+def _leaders(start: Vector, end: Vector, wide: float, is_second: bool) -> list[Place]:
     """Places with a leader: the only ones of a short length, the second choice of another."""
     middle = (start + end) / 2
     found = []
@@ -116,9 +126,9 @@ def _leaders(start: Vector, end: Vector, letters: int, is_second: bool) -> list[
             line([middle, place.at], style.FAINT, 0.9),
             line([middle, middle + 0.1], style.INK, 5.0),
         )
-        found.append(
-            Place(place.at + _aside(place.at, middle, 3.0 * letters), 0.3 * place.cost + _SECOND * is_second, marks)
-        )
+        at = place.at + _aside(place.at, middle, 0.45 * wide)
+        covering = _SECOND * any(_gap(at, start + part * (end - start), wide) < 2.0 for part in np.linspace(0, 1, 9))
+        found.append(Place(at, 0.3 * place.cost + _SECOND * is_second + covering, marks))
     return found
 
 

@@ -66,7 +66,7 @@ def _words(drawing: Drawing, shown: Sequence[Choice], names: Mapping[str, str]) 
         yield "Two rods side by side are a parallelogram: it keeps the plate's orientation; its width plays no part."
     if drawing.scene.belt is not None:
         motors = " and ".join(spelled(motor.label, names) for motor in drawing.scene.belt.motors)
-        yield f"One belt, held at the carriage. Arrows at the motors: how positive {motors} turn them for such a belt;"
+        yield f"One belt, held at the dark bar. Arrows at the motors: how positive {motors} turn them for such a belt;"
         yield "arrows at the TCP: where each of them alone moves it. A motor mounted upside down turns the other way."
     if is_stacked(drawing.scene):
         yield "Rails of linear axes that begin in one point are drawn one on the end of the other."
