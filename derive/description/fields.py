@@ -34,6 +34,7 @@ _ONE: Mapping[str, tuple[tuple[str, ...], str]] = {
     "source": (("str",), '"a book"'),
     "summary": (("str",), '"A sentence."'),
     "chain": (("Chain", "NoneType"), "Rz(A1) * Tx(L1)"),
+    "belt": (("str", "NoneType"), '"H"'),
     "assembly": (("Assembly", "NoneType"), 'assembly("tool", …)'),
     "search": (("Search", "NoneType"), "search(A6, where=OFFSET)"),
     "title": (("str", "NoneType"), '"My machine"'),

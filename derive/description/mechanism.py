@@ -257,6 +257,8 @@ class Mechanism:
     does not command; one with a joint lifts the platform."""
     bars: tuple[Rod, ...] = ()
     """The bars that are drawn, where the rods are not the bodies: each joins two points, and is as long as stated."""
+    belt: str | None = None
+    """How the belt that two fixed drives share is drawn: "H" (a beam on two rails), "T" (an arm through a carriage)."""
     assembly: Assembly | None = None
     heading: sp.Expr | None = None
     """The turn of the flange about z, a sum of joints, of a loop whose equations hold the position alone: a joint that

@@ -8,11 +8,14 @@ import numpy as np
 import sympy as sp
 
 from derive.description.mechanism import DescriptionError, Joint, Mechanism
+from derive.drawing.belts import belt_of
 from derive.drawing.labels import Values, axis_name, interface, plain
-from derive.drawing.scene import Body, Dimension, Frame, Point, Scene, Segment, Slide, Turn, point
+from derive.drawing.scene import Belt, Body, Dimension, Frame, Point, Scene, Segment, Slide, Turn, point
 from derive.geometry.frames import Factor, Motion
 from derive.ir.interpret import Array, evaluate
 
+BELT_SIZE = 100.0
+"""The size at which a frame without lengths is drawn."""
 _PARALLEL, _EXACT = 0.999, 1e-6
 
 
@@ -38,7 +41,19 @@ def chain_scene(mechanism: Mechanism, values: Values, tool: Frame) -> Scene:
         grounds=((0.0, 0.0, 0.0),),
         tool=tool,
         hidden=tuple(walker.hidden),
+        belt=_belt(mechanism, walker),
     )
+
+
+def _belt(mechanism: Mechanism, walker: _Walker) -> Belt | None:
+    """The belt of a machine that states its layout: along the first two slides, which its drives move together."""
+    if mechanism.belt is None:
+        return None
+    shared = [np.array(s.axis) for s in walker.slides if not s.has_arrow]
+    if len(shared) != 2:
+        raise DescriptionError(f"a belt in {mechanism.belt} layout moves two slides, and here {len(shared)}")
+    drives = {axis_name(j): np.add(*moves) for j, moves in walker.moves.items() if len(moves) == 2}
+    return belt_of(mechanism.belt, BELT_SIZE, shared, drives)
 
 
 @dataclass
@@ -128,6 +143,7 @@ class _Walker:
                 continue
             self.segments.append(Segment(point(at), point(at + shift), Body.LINK))
             if label.free_symbols:
+                label = -label if label.could_extract_minus_sign() else label
                 negative = float(evaluate(label, self.values)) < 0
                 self.dimensions.append(Dimension(plain(label), point(at), point(at + shift), negative))
             at = at + shift

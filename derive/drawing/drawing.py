@@ -7,15 +7,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from derive.description.mechanism import Joint, Mechanism
+from derive.description.mechanism import Joint
 from derive.drawing.chain import chain_scene
 from derive.drawing.labels import plain
 from derive.drawing.loop import loop_scene
 from derive.drawing.pose import Pose, drawn_pose, nominal_machine, pose_at, values_at
-from derive.drawing.scene import Scene, Segment, Spot
+from derive.drawing.scene import Scene, Segment, Spot, Turn
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.reference_cases import Reals
+from derive.kinematics.sampling import sample_axes
 from derive.plate.plate import home_position
 from derive.report.reference_calls import Machine, branches
 
@@ -25,6 +26,12 @@ _AROUND, _TRIED = 60.0, 300
 """Of a loop that turns its platform: how far from home (degrees), and at how many poses, a configuration is sought."""
 _VISIBLE = 0.04
 """Two poses look different where some point moves by this fraction of the machine's size."""
+
+
+_TURNED = 0.7
+"""The cosine of the angle from which on two directions of an axis look different."""
+_SAMPLED = 80
+"""Sampled poses at which a configuration is sought that the regular ones do not show."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +100,7 @@ def _choices(machine: Machine, drawn: Pose) -> Iterator[Choice]:
     mechanism = machine.kinematics.mechanism
     told = [k for k, branch in enumerate(mechanism.branches) if not branch.is_crossing]
     found: dict[int, tuple[Scene, Scene]] = {}
-    for axes in _candidates(mechanism, drawn):
+    for axes in _candidates(machine, drawn):
         missing = [k for k in told if k not in found]
         if missing and (pose := pose_at(machine, axes)) is not None:
             pairs = {k: _pair(machine, pose, k) for k in missing if pose.configuration[k] != 3}
@@ -102,8 +109,9 @@ def _choices(machine: Machine, drawn: Pose) -> Iterator[Choice]:
         yield Choice(branch.name, branch.names, found.get(index))
 
 
-def _candidates(mechanism: Mechanism, drawn: Pose) -> Iterator[Reals]:
+def _candidates(machine: Machine, drawn: Pose) -> Iterator[Reals]:
     """Candidates for the pose of a choice: near the drawn pose for a loop, and with every rotary axis turned."""
+    mechanism = machine.kinematics.mechanism
     if mechanism.is_platform:  # the other branch must be in the assembly mode of the machine, too
         around = np.random.default_rng(1).uniform(-_AROUND, _AROUND, (_TRIED, len(drawn.axes)))
         yield from (tuple(row) for row in (np.array(drawn.axes) + around).tolist())
@@ -112,6 +120,10 @@ def _candidates(mechanism: Mechanism, drawn: Pose) -> Iterator[Reals]:
         if part or not drawn.is_zero or mechanism.chain is None:
             scale = part if mechanism.chain is None else 2.5 * part
             yield tuple(axis + (scale * angle if joint.is_angle else 0.0) for joint, axis, angle in turned)
+    if mechanism.chain is None and not mechanism.is_platform:
+        sampled = sample_axes(mechanism, dict(machine.values), _SAMPLED, seed=5)
+        rows = np.stack([np.round(sampled[j.axis.name], 1) for j in mechanism.joints], axis=1)
+        yield from (tuple(row) for row in rows.tolist())
 
 
 def _pair(machine: Machine, pose: Pose, index: int) -> tuple[Scene, Scene] | None:
@@ -140,7 +152,18 @@ def _assembly(kinematics: Kinematics, drawn: Pose) -> Choice | None:
 
 
 def _different(one: Scene, other: Scene) -> tuple[Scene, Scene] | None:
-    return (one, other) if _apart(one.segments, other.segments) > _VISIBLE * max(one.size, other.size) else None
+    turned = [a for a, b in zip(one.turns, other.turns, strict=True) if is_turned_round(a, b)]
+    return (one, other) if turned or not looks_alike(one, other) else None
+
+
+def looks_alike(one: Scene, other: Scene) -> bool:
+    """Whether no body of two scenes stands visibly elsewhere."""
+    return _apart(one.segments, other.segments) <= _VISIBLE * max(one.size, other.size)
+
+
+def is_turned_round(one: Turn, other: Turn) -> bool:
+    """Whether the axis of a joint points elsewhere in another scene, as that of a wrist that flips."""
+    return float(np.dot(one.axis, other.axis)) < _TURNED
 
 
 def _apart(one: tuple[Segment, ...], other: tuple[Segment, ...]) -> float:

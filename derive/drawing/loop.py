@@ -15,11 +15,13 @@ import sympy as sp
 
 from derive.description.mechanism import ROTATION, DescriptionError, Joint, Mechanism, Rod, X, Y, Z
 from derive.drawing.labels import Naming, Values, axis_name, vector_at
-from derive.drawing.scene import Arc, Body, Dimension, Frame, Scene, Segment, Slide, Spot, Turn, point
+from derive.drawing.scene import Arc, Body, Dimension, Frame, Point, Scene, Segment, Slide, Spot, Turn, point
 from derive.ir.interpret import Array, evaluate
 
 _EXACT, _ROUNDED = 1e-7, 1e-6
 """Of lengths, as a part of them; and what six decimals of the drawn frame leave, of a machine in metres, too."""
+_HALF_WIDTH = 0.06
+"""Half of the drawn width of a parallelogram over the length of its rods."""
 _TCP = (X.symbol, Y.symbol, Z.symbol)
 
 Entries = tuple[sp.Expr, ...]
@@ -28,6 +30,22 @@ Entries = tuple[sp.Expr, ...]
 def bars_of(mechanism: Mechanism) -> tuple[Rod, ...]:
     """The bars that are drawn: those of the description, else its rods."""
     return mechanism.bars or mechanism.rods
+
+
+def is_held_by_parallelograms(mechanism: Mechanism) -> bool:
+    """Whether three rods, each on a drive of its own, hold a plate in space that keeps its orientation: every rod then
+    stands for a parallelogram.
+    """
+    drives = {j.symbol for j in mechanism.joints}
+    rods = [sp.Matrix([*b.base, *b.plate]).free_symbols for b in bars_of(mechanism)]
+    own = [drives & sp.Matrix(b.base).free_symbols for b in bars_of(mechanism)]
+    return (
+        mechanism.task.position == "xyz"
+        and len(rods) == 3
+        and all(set(_TCP) <= read and not read & set(ROTATION) for read in rods)
+        and all(len(one) == 1 for one in own)
+        and len(set().union(*own)) == 3
+    )
 
 
 def loop_scene(mechanism: Mechanism, values: Values, tool: Frame) -> Scene:
@@ -76,9 +94,25 @@ class _Builder:
             raise DescriptionError(
                 f"bar {bar.name!r} is {stated:g} long, but its ends are {drawn:g} apart in the drawn pose"
             )
-        self.segments.append(Segment(point(start), point(end), Body.ROD))
+        self.segments.append(Segment(point(start), point(end), Body.ROD, self._across(bar, start, end)))
         if not bar.length.free_symbols & self._joints():
             self._dimension(start, end, lambda v: float(evaluate(bar.length, v)))
+
+    def _across(self, bar: Rod, start: Array, end: Array) -> Point | None:
+        """Half of the width of the parallelogram that a rod stands for, where such rods hold a plate that does not
+        turn: along the axis of the crank, or level and square to the rod's rail.
+        """
+        if not is_held_by_parallelograms(self.mechanism):
+            return None
+        (joint,) = [j for j in self.mechanism.joints if j.symbol in sp.Matrix(bar.base).free_symbols]
+        if joint.is_angle:
+            axis = _circle(joint, bar.base, self.values)[2]
+        else:
+            here, there = (vector_at(bar.base, {**self.values, joint.symbol.name: np.asarray(v)}) for v in (0.0, 1.0))
+            axis = np.cross(there - here, end - start)
+        joint_radius = float(np.linalg.norm(end - vector_at(_TCP, self.values)))
+        half = _HALF_WIDTH * float(np.linalg.norm(end - start))
+        return point(axis / np.linalg.norm(axis) * (min(half, 0.7 * joint_radius) if joint_radius > _EXACT else half))
 
     def joint(self, joint: Joint) -> None:
         """The crank, rail or leg by which a joint moves the ends of bars."""

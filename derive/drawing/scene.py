@@ -5,6 +5,7 @@ Labels are expressions in the names of parameters and axes, in interface units: 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
@@ -14,6 +15,7 @@ import sympy as sp
 from derive.ir.interpret import Array
 
 Point = tuple[float, float, float]
+_APART = 1e-6
 
 
 class Body(Enum):
@@ -32,6 +34,8 @@ class Segment:
     start: Point
     end: Point
     body: Body
+    across: Point | None = None
+    """Of a rod that stands for a parallelogram: from its middle line to one of the two parallel rods."""
 
 
 @dataclass(frozen=True)
@@ -97,6 +101,33 @@ class Frame:
     """By rows."""
 
 
+ORIGIN = Frame((0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+"""The frame of the machine."""
+
+
+@dataclass(frozen=True)
+class Motor:
+    """A fixed motor of a belt: its axis points where a positive drive turns it counter-clockwise seen against it."""
+
+    label: sp.Expr
+    at: Point
+    axis: Point
+
+
+@dataclass(frozen=True)
+class Belt:
+    """A belt that motors share: its line, the wheels it goes around, and the frame of the machine."""
+
+    path: tuple[Point, ...]
+    wheels: tuple[Point, ...]
+    motors: tuple[Motor, ...]
+    radius: float
+    normal: Point
+    frame: tuple[Segment, ...]
+    tips: tuple[Point, Point]
+    """Where the motions that the drives share are named: at an end of the beam, and of the rail or the arm."""
+
+
 @dataclass(frozen=True)
 class Scene:
     """The drawing of a mechanism in one pose."""
@@ -112,12 +143,47 @@ class Scene:
     hidden: tuple[sp.Expr, ...] = ()
     """Lengths and angles that are zero in this machine."""
     arcs: tuple[Arc, ...] = ()
+    belt: Belt | None = None
+
+    @property
+    def meetings(self) -> tuple[tuple[Point, tuple[sp.Expr, ...]], ...]:
+        """The points in which the axes of three rotary joints or more meet, one after the other, with their names."""
+        return tuple(_meetings(self.turns))
 
     @property
     def size(self) -> float:
         """The largest extent of the drawing; 0 where everything is in one point."""
         points = np.array([(0.0, 0.0, 0.0), self.tool.position, *(p for s in self.segments for p in (s.start, s.end))])
         return float(np.max(np.ptp(points, axis=0)))
+
+
+def _meetings(turns: tuple[Turn, ...]) -> Iterator[tuple[Point, tuple[sp.Expr, ...]]]:
+    """Axes that meet: no two neighbours are parallel, and every axis goes through the point of the first two."""
+    last: tuple[sp.Expr, ...] = ()
+    for index in range(len(turns) - 2):
+        place = _crossing(turns[index], turns[index + 1])
+        if place is None or turns[index].label in last:
+            continue
+        count = 2
+        while index + count < len(turns) and _is_on(turns[index + count], place):
+            count += 1
+        last = tuple(t.label for t in turns[index : index + count])
+        if count > 2 and all(label != 0 for label in last):
+            yield point(place), last
+
+
+def _crossing(one: Turn, other: Turn) -> Array | None:
+    """The point that two axes share; None where they are parallel or pass each other."""
+    a, b, between = np.array(one.axis), np.array(other.axis), np.subtract(other.at, one.at)
+    normal = np.cross(a, b)
+    if np.linalg.norm(normal) < _APART or abs(between @ normal) > _APART * (1.0 + float(np.linalg.norm(between))):
+        return None
+    return np.asarray(np.array(one.at) + (np.cross(between, b) @ normal) / (normal @ normal) * a)
+
+
+def _is_on(turn: Turn, place: Array) -> bool:
+    between = place - np.array(turn.at)
+    return bool(np.linalg.norm(np.cross(between, turn.axis)) <= _APART * (1.0 + float(np.linalg.norm(between))))
 
 
 def point(values: Array) -> Point:

@@ -17,6 +17,7 @@ MECHANISM = Mechanism(
     summary="H-gantry: two fixed belt drives move a carriage in the plane.",
     joints=(A, B),
     chain=Tx(CARRIAGE_X) * Ty(CARRIAGE_Y),
+    belt="H",
     task=Task("xy"),
     limited=(
         limited("x", CARRIAGE_X, "X of the carriage", angle=False),

@@ -18,6 +18,7 @@ MECHANISM = Mechanism(
     summary="H-gantry: two fixed belt drives move a carriage in the plane, a third axis lifts.",
     joints=(A, B, Z),
     chain=Tx(CARRIAGE_X) * Ty(CARRIAGE_Y) * Tz(Z),
+    belt="H",
     task=Task("xyz"),
     limited=(
         limited("x", CARRIAGE_X, "X of the carriage", angle=False),

@@ -17,6 +17,7 @@ MECHANISM = Mechanism(
     summary="T-gantry: two fixed belt drives move a carriage in the plane.",
     joints=(A, B),
     chain=Tx(CARRIAGE_X) * Ty(CARRIAGE_Y),
+    belt="T",
     task=Task("xy"),
     limited=(
         limited("x", CARRIAGE_X, "X of the carriage", angle=False),

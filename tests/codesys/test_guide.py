@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from softkin import Scara2Z
+from softkin import ArticulatedRobot6DOF, Scara2Z
 
 from derive.__main__ import OUTPUT
 from derive.emit.st.contract import load
@@ -22,6 +23,12 @@ GUIDE = (ROOT / "docs" / "CODESYS.md").read_text(encoding="utf-8")
 OVERVIEW = (OUTPUT / "st" / "README.md").read_text(encoding="utf-8")
 PROGRAMS = re.findall(r"```iecst\n(.*?)```", GUIDE, re.DOTALL)
 ROBOTICS = (Path(__file__).parent / "robotics.st").read_text(encoding="utf-8")
+SMC_ERROR_OF_THE_GROUP = "SMC_TRAFO_INVALID_CONSTELLATION"
+LENGTHS = {
+    "Scara2Z": {"arm_length_1": 300.0, "arm_length_2": 250.0},
+    "ArticulatedRobot6DOF": {"a2": 300.0, "d4": 250.0, "d6": 80.0},
+}
+CNC = (Path(__file__).parent / "cnc.st").read_text(encoding="utf-8")
 BLOCKS = {part.path: part for part in all_parts(FILES).values() if "." not in part.path}
 
 
@@ -72,10 +79,13 @@ def test_the_limits_of_a_drive_are_handed_over() -> None:
     assert made.scara.axes[0].driveLimited == 1.0
 
 
-def test_the_demo_moves_a_group() -> None:
-    """Its program, executed on stand-ins that are always done: power, then the moves in order, the other elbow, then
-    jogging.
-    """
+def _renamed(texts: dict[str, str]) -> dict[str, str]:
+    """The texts with another name for the output `Error` of the library's blocks, which ours never declare."""
+    return {name: re.sub(r"\bError\b", "ErrorOut", text) for name, text in texts.items()}
+
+
+def _demo() -> tuple[Any, Any]:
+    """The program of the guide and its group, on stand-ins."""
     (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Demo"))
     needed = {name: text for name, text in FILES.items() if name.startswith("softkin/") or "/Softkin_Scara2_Z." in name}
     texts = {
@@ -83,8 +93,34 @@ def test_the_demo_moves_a_group() -> None:
         "Groups": "VAR_GLOBAL\n  Scara : AXIS_GROUP_REF_SM3;\nEND_VAR\n",
         "PRG_Demo": program,
     }
-    library = compile_st({**needed, **texts})
-    demo, group = library.new("PRG_Demo"), library.constant("Scara")
+    library = compile_st({**needed, **_renamed(texts)})
+    return library.new("PRG_Demo"), library.constant("Scara")
+
+
+def test_every_program_of_the_guide_is_executed() -> None:
+    """A new listing needs a test that runs it: these are the ones that have one."""
+    heads = [program.split("\n")[0].split()[1] for program in PROGRAMS]
+    assert heads == ["PRG_Demo", "ScaraWithTool", "PRG_Check", "PRG_Cnc"]
+
+
+def test_the_line_that_asks_why() -> None:
+    """The call of `Diagnose` in the guide, behind its program, at a point that the arms miss by 50."""
+    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Check"))
+    (line,) = re.findall(r"^    (sWhy := scara\.Diagnose.*;)$", GUIDE, re.MULTILINE)
+    declared = "  sWhy : STRING(255);\n  dMissing : LREAL;\n  iTurn : INT;\n  status :"
+    text = program.replace("  status :", declared, 1)
+    far = f"frame.vT.dX := 600.0;\nframe.vT.dY := 0.0;\n{line}\nEND_PROGRAM"
+    needed = {name: t for name, t in FILES.items() if name.startswith("softkin/") or "/Softkin_Scara2_Z." in name}
+    made = compile_st({**needed, "PRG_Check": text.replace("END_PROGRAM", far)}).new("PRG_Check")
+    made()
+    assert made.sWhy == "A2: out of reach [u]" and made.dMissing == pytest.approx(50.0) and made.iTurn == 0
+
+
+def test_the_demo_moves_a_group() -> None:
+    """Its program, executed on stand-ins that are always done: power, then the moves in order, the other elbow, then
+    jogging.
+    """
+    demo, group = _demo()
     done: list[tuple[int, float, float, int]] = []
     for _ in range(60):
         demo()
@@ -103,6 +139,101 @@ def test_the_demo_moves_a_group() -> None:
     demo.axForward[0] = True
     demo()
     assert demo.jog.Busy and group.moved == 3
+
+
+STEPS = (0, 10, 20, 30, 40, 100)
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_the_demo_ends_in_its_error_step_and_begins_again(step: int) -> None:
+    """A fault in any step stops every block; a reset begins from power again, and the moves are made."""
+    demo, group = _demo()
+    for _ in range(80):
+        demo()
+        if demo.iStep == step:
+            break
+    group.fault, demo.xJog = SMC_ERROR_OF_THE_GROUP, step == 100
+    for _ in range(6):
+        demo()
+    moved = group.moved
+    assert demo.iStep == 900 and demo.iFailed == step and demo.eError == SMC_ERROR_OF_THE_GROUP and not demo.xJog
+    for _ in range(20):
+        demo()
+    assert demo.iStep == 900 and group.moved == moved, "it waits, and moves nothing"
+    demo.xReset = True
+    for _ in range(80):
+        demo()
+    assert demo.iStep == 100 and not demo.xReset and demo.eError == "SMC_NO_ERROR" and not group.refused
+
+
+def test_a_coupled_block_initialises_its_parts() -> None:
+    """The block of the guide, executed on a stand-in of its base; the two lines that assign interfaces are left out."""
+    (program,) = (p for p in PROGRAMS if p.startswith("FUNCTION_BLOCK ScaraWithTool"))
+    assigned = re.findall(r"^itf\w+ := \w+;\n", program, re.MULTILINE)
+    assert assigned == ["itfPosKin := arms;\n", "itfOriKin := tool;\n"]
+    for line in assigned:
+        program = program.replace(line, "")
+    base = """FUNCTION_BLOCK Kin_Coupled
+VAR
+  calls : INT;
+END_VAR
+METHOD PUBLIC Initialize : SM3_Error.SMC_ERROR
+calls := calls + 1;
+Initialize := SM3_Error.SMC_ERROR.SMC_NO_ERROR;
+END_METHOD
+END_FUNCTION_BLOCK
+"""
+    user = """PROGRAM User
+VAR
+  machine : ScaraWithTool;
+  status : SM3_Error.SMC_ERROR;
+  length : LREAL;
+END_VAR
+machine(dArmLength1 := length, dArmLength2 := length);
+status := machine.Initialize();
+END_PROGRAM
+"""
+    wanted = ("/Softkin_Scara2_Z.", "/Softkin_CAxis.")
+    needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or any(name in n for name in wanted)}
+    texts = {"base": base, "coupled": program.replace("TRAFO.Kin_Coupled", "Kin_Coupled"), "user": user}
+    made = compile_st({**needed, **texts}).new("User")
+    made()
+    assert made.status == "SMC_TRAFO_NOT_INITIALIZED" and made.machine.calls == 0
+    made.length = 250.0
+    made()
+    assert made.status == "SMC_NO_ERROR" and made.machine.calls == 1
+    assert made.machine.arms.initialized and made.machine.tool.initialized
+
+
+@pytest.mark.parametrize("machine", [Scara2Z, ArticulatedRobot6DOF])
+def test_the_zero_poses_that_it_calls_singular_are(machine: type) -> None:
+    """A stretched SCARA, and a 6R arm whose axes A4 and A6 are in line."""
+    robot = machine(**LENGTHS[machine.__name__])
+    count = len(machine.AXES)
+    assert robot.singularity((0.0,) * count).is_singular
+    assert not robot.singularity((10.0, 30.0, 40.0, 20.0, 50.0, 60.0)[:count]).is_singular
+
+
+def test_g_code_on_a_position_and_an_orientation_block() -> None:
+    """Its program, executed on stand-ins of the wrappers: the point of the axes, and from it these axes again."""
+    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Cnc"))
+    wanted = ("/Softkin_Scara2_Z.", "/Softkin_CAxis.")
+    needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or any(name in n for name in wanted)}
+    made = compile_st({**needed, **_renamed({"cnc": CNC, "PRG_Cnc": program})}).new("PRG_Cnc")
+    made.actual.a0, made.actual.a1, made.actual.a2, made.actual.a3 = 30.0, 60.0, -10.0, 25.0
+    made.setPoint.dX = 400.0
+    made()
+    point = made.toPoint.pi
+    assert made.xReady and made.status == "SMC_NO_ERROR"
+    assert (point.dX, point.dY, point.dZ, point.dC) == pytest.approx((259.8076211353, 400.0, -10.0, 115.0))
+    for name in ("dX", "dY", "dZ", "dC"):
+        setattr(made.setPoint, name, getattr(point, name))
+    made()
+    target = made.target
+    assert (target.a0, target.a1, target.a2, target.a3) == pytest.approx((30.0, 60.0, -10.0, 25.0))
+    made.setPoint.dX = 900.0  # out of reach: an error, and the last target stays
+    made()
+    assert made.status == "SMC_AXIS_INVERSE_TRAFO_EXCEEDING_POSLIMITS" and made.target.a0 == pytest.approx(30.0)
 
 
 def test_every_choice_it_names_exists() -> None:

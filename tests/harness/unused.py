@@ -1,6 +1,7 @@
 """What an object declares and does not use: variables that nothing reads, and outputs that nothing assigns.
 
-Parameters of a public method are given by an interface: only its outputs are looked at.
+Parameters of a public method are given by an interface: only its outputs are looked at. Those of a protected one are
+given by the base block; and what a base declares is there for the blocks that extend it.
 """
 
 from __future__ import annotations
@@ -72,13 +73,17 @@ def unused(declared: ast.Declaration) -> Iterator[str]:
     elif isinstance(declared, ast.Block):
         routines = [*declared.methods, *(p.getter for p in declared.properties)]
         inside = _Uses.of(declared.body, *(r.body for r in routines))
-        yield from _left(declared.sections, inside, declared.name, ("VAR", "VAR_INPUT", "VAR_IN_OUT"))
+        is_base = declared.extends is None and any(r.access == "PROTECTED" for r in routines)
+        if not is_base:
+            yield from _left(declared.sections, inside, declared.name, ("VAR", "VAR_INPUT", "VAR_IN_OUT"))
         for routine in routines:
+            if is_base and routine.access == "PROTECTED":
+                continue
             yield from _of_routine(routine, f"{declared.name}.{routine.name}")
 
 
 def _of_routine(routine: ast.Routine, place: str) -> Iterator[str]:
-    scopes = ("VAR",) if routine.access == "PUBLIC" else ("VAR", "VAR_INPUT", "VAR_IN_OUT")
+    scopes = ("VAR",) if routine.access in ("PUBLIC", "PROTECTED") else ("VAR", "VAR_INPUT", "VAR_IN_OUT")
     yield from _left(routine.sections, _Uses.of(routine.body), place, scopes)
 
 

@@ -149,7 +149,9 @@ def commands(machine: Machine, sample: Sample) -> Iterator[Command]:
     default = robot.DEFAULT_CONFIGURATION
     yield Command(position, sample.rotation, default, far)
     yield Command(position, HALF_TURN, default, far)
+    yield Command(position, HALF_TURN, (0,) * len(own), far)
     yield Command(tuple(0.5 * v for v in position), NO_TURN, default, far)
     yield Command(tuple(3.0 * v for v in position), NO_TURN, (0,) * len(own), far)
+    yield Command((0.0, 0.0, position[2]), rotation, (0,) * len(own), far)  # no branch may pass its own shoulder there
     for shift in (1e-8 * machine.reach, 1e-3 * machine.reach):
         yield Command((*position[:2], position[2] + shift), rotation, default, far)

@@ -92,6 +92,7 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
             test_initialise.test_limits_are_in_order(mechanism, 10.0, 10.0)
             test_initialise.test_a_matrix_of_another_size_is_refused(mechanism, 36)
             test_garbage.test_garbage_in_one_number(pairs)
+            test_garbage.test_what_is_no_rotation(pairs)
             test_not_initialised.test_no_method_works(pairs, test_not_initialised.fresh)
             for one in pairs[:4]:
                 for sample in (*few(one.regular, FEW), *few(one.grid, A_FEW)):

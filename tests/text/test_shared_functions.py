@@ -73,6 +73,12 @@ def test_root(value: float) -> None:
     assert LIBRARY.function("Softkin_Root")(value) == reference(Root, value)
 
 
+def test_nearest_period_of_what_has_no_turn() -> None:
+    """Beyond the turns that an integer counts a value has no digits left for its turn: about half a turn is left."""
+    for size in (1e12, -1e12, 1e15):
+        assert abs(LIBRARY.function("Softkin_NearestPeriod")(size, 0.0)) <= 181.0
+
+
 @given(value=DEGREES, centre=DEGREES)
 @example(180.0, 0.0)
 @example(-180.0, 0.0)
@@ -272,6 +278,9 @@ def test_make_rotation() -> None:
     for turned in rotations(20):
         exact = turned.ravel().tolist()
         assert make(exact) and exact == turned.ravel().tolist()
+        for off in (turned * (1.0 + 2e-13), turned @ np.array([[1.0, 3e-13, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])):
+            nearly = off.ravel().tolist()  # beyond the first test, but within the rounding that is no error
+            assert make(nearly) and nearly == off.ravel().tolist()
         for off in orthonormal.slightly_off(turned):
             found = off.ravel().tolist()
             assert make(found)

@@ -100,11 +100,12 @@ def test_a_point_far_off_the_flange_is_out_of_reach(serial_pairs: tuple[SerialPa
             continue
         sample, refused = one.regular[0], 0
         place, default = point_at(one, sample, (0.0, 0.0, 0.0)), one.robot.DEFAULT_CONFIGURATION
-        for index, size in product(range(3), (-2.0, 2.0)):
+        every = (0,) * len(default)
+        for index, size, asking in product(range(3), (-2.0, 2.0), (default, every)):
             offset = tuple(size * one.machine.reach if k == index else 0.0 for k in range(3))
-            status, answer = asked(one.robot.inverse_offset, place, offset, default, sample.axes)
+            status, answer = asked(one.robot.inverse_offset, place, offset, asking, sample.axes)
             expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
-            found = one.controller.inverse_offset(place, offset, default, sample.axes)
+            found = one.controller.inverse_offset(place, offset, asking, sample.axes)
             assert_same(found, (status, expected), one, offset)
             refused += status == UNREACHABLE
         assert refused > 0 or not one.machine.has_a_reach

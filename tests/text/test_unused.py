@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from tests.harness.parse import parse
@@ -13,6 +15,16 @@ from tests.text.test_contract import FILES
 def test_everything_declared_is_used(file: str) -> None:
     """Every object of every file uses what it declares."""
     assert [one for declared in parse(FILES[file], file) for one in unused(declared)] == []
+
+
+def test_what_the_base_declares_is_read_by_a_block() -> None:
+    """No variable of the base block is there for nobody."""
+    texts = [text for text in FILES.values() if "EXTENDS Softkin_Kinematics" in text]
+    (base,) = (d for file, text in FILES.items() for d in parse(text, file) if d.name == "Softkin_Kinematics")
+    names = [v.name for section in base.sections for v in section.variables]
+    own = next(text for text in FILES.values() if "FUNCTION_BLOCK Softkin_Kinematics" in text).split("END_VAR", 2)[2]
+    assert names
+    assert [name for name in names if not any(re.search(rf"\b{name}\b", text) for text in (own, *texts))] == []
 
 
 _BLOCK = """\

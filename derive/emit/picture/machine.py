@@ -8,14 +8,23 @@ import numpy as np
 import sympy as sp
 
 from derive.drawing.drawing import Drawing
-from derive.drawing.scene import Body, Dimension, Frame, Point, Segment, Turn
+from derive.drawing.scene import ORIGIN, Body, Dimension, Point, Segment, Slide, Turn
 from derive.emit.picture import style
-from derive.emit.picture.ink import Area, Vector
-from derive.emit.picture.naming import name_angle, name_axes, name_length, name_point, name_slide, name_turn
+from derive.emit.picture.belt import belt, motor_radius
+from derive.emit.picture.ink import Area, Mark, Vector
+from derive.emit.picture.naming import (
+    name_angle,
+    name_axes,
+    name_length,
+    name_motor,
+    name_point,
+    name_slide,
+    name_turn,
+)
 from derive.emit.picture.placing import Sheet, around
 from derive.emit.picture.rails import FREE, rails, slide_arrow
-from derive.emit.picture.spelling import spelled
-from derive.emit.picture.symbols import angle_lines, bar, ground, opening, rail, triad, turning
+from derive.emit.picture.spelling import in_short, spelled
+from derive.emit.picture.symbols import angle_lines, bar, ground, meeting, opening, rail, triad, turning
 from derive.emit.picture.view import Box, fitted
 
 _MARGINS = (78.0, 62.0, 84.0, 58.0)
@@ -23,7 +32,6 @@ _MARGINS = (78.0, 62.0, 84.0, 58.0)
 _ANGLE_RADIUS = 46.0
 _CLOSE = 30.0
 """Joints at a smaller distance than this would cover each other."""
-_ORIGIN = Frame((0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
 
 
 class Machine:
@@ -45,26 +53,31 @@ class Machine:
 
     def _points(self) -> list[Point]:
         """The points that must be on the page."""
-        points = [_ORIGIN.position, self._scene.tool.position]
+        points = [ORIGIN.position, self._scene.tool.position]
         points += [p for s in self._scene.segments for p in (s.start, s.end)]
-        points += [p for slide, ends in self._rails.items() if slide.has_rail for p in ends]
+        points += [
+            p for slide, ends in self._rails.items() if slide.has_rail and not self._is_on_belt(slide) for p in ends
+        ]
+        points += self._scene.belt.path if self._scene.belt is not None else ()
         everywhere = [(FREE * x, 0.0, FREE * x) for x in (-0.5, 0.5)]
         return points if len(set(points)) > 1 else [*points, *everywhere]
 
-    def drawn(self) -> Sheet:
-        """The sheet with the machine on it."""
+    def drawn(self) -> list[Mark]:
+        """The marks of the machine."""
         view, scene, sheet = self._view, self._scene, self._sheet
         for segment in sorted(scene.segments, key=self._order):
             sheet.draw(bar(segment, view))
-        for place in scene.grounds:
+        if scene.belt is not None:
+            sheet.draw(belt(scene.belt, view))
+        for place in () if scene.belt is not None else scene.grounds:
             sheet.draw(ground(view.page(place), view))
         for slide in scene.slides:
-            if slide.has_rail:
+            if slide.has_rail and not self._is_on_belt(slide):
                 first, last = (view.page(end) for end in self._rails[slide])
                 sheet.draw(rail((first, last), view.page(slide.at)))
         joints = [(turn, *self._anchored(turn)) for turn in scene.turns]
         for turn, at, radius in joints:
-            sheet.draw(turning(turn, at, radius, view))
+            sheet.draw(turning(turn, at, radius, view, self._through(turn)))
         self._frames_and_names(joints)
         for index, arc in enumerate(scene.arcs):
             radius = _ANGLE_RADIUS + 15.0 * index
@@ -74,12 +87,33 @@ class Machine:
             text = self._spelled(dimension.label) + (" < 0" if dimension.is_negative else "")
             name_length(sheet, view, dimension, text)
         for spot in scene.spots:
-            name_point(sheet, f"({', '.join(map(self._spelled, spot.labels))})", view.page(spot.at))
-        return sheet
+            name_point(sheet, f"({in_short([self._spelled(label) for label in spot.labels])})", view.page(spot.at))
+        for place, _ in scene.meetings:
+            sheet.draw(meeting(view.page(place)))
+        if scene.belt is not None:
+            radius = motor_radius(scene.belt, view)
+            for motor in scene.belt.motors:
+                name_motor(sheet, f"Motor {self._spelled(motor.label)}", view.page(motor.at), radius)
+        return sheet.settled()
+
+    def _ends_of(self, slide: Slide) -> Point:
+        """Where the name of a slide without an arrow stands: at the end of its rail, or of its beam with a belt."""
+        belted = [s for s in self._scene.slides if self._is_on_belt(s)]
+        if slide in belted and self._scene.belt is not None:
+            return self._scene.belt.tips[belted.index(slide)]
+        return self._rails[slide][1]
+
+    def _through(self, turn: Turn) -> list[Vector]:
+        """The points through which the axis of a joint is drawn: its own place, and where it meets others."""
+        meetings = [place for place, names in self._scene.meetings if turn.label in names]
+        return [self._view.page(place) for place in (turn.at, *meetings)]
+
+    def _is_on_belt(self, slide: Slide) -> bool:
+        return self._scene.belt is not None and not slide.has_arrow
 
     def _frames_and_names(self, joints: list[tuple[Turn, Vector, float]]) -> None:
         view, scene, sheet = self._view, self._scene, self._sheet
-        base, tool = triad(_ORIGIN, style.FRAME, 1.8, view), triad(scene.tool, 0.72 * style.FRAME, 2.8, view)
+        base, tool = triad(ORIGIN, style.FRAME, 1.8, view), triad(scene.tool, 0.72 * style.FRAME, 2.8, view)
         arrows = [list(slide_arrow(s, self._rails[s], view, is_beside=bool(scene.segments))) for s in scene.slides]
         sheet.draw(mark for marks in (*arrows, *(m for _, m in (*base, *tool))) for mark in marks)
         for turn, at, radius in joints:
@@ -87,9 +121,8 @@ class Machine:
                 name_turn(sheet, view, turn, self._spelled(turn.label), at, radius)
         for slide, marks in zip(scene.slides, arrows, strict=True):
             tips = [np.array(mark.points[0]) for mark in marks if isinstance(mark, Area)]
-            name_slide(
-                sheet, view, slide, self._spelled(slide.label), tips[0] if tips else view.page(self._rails[slide][1])
-            )
+            end = view.page(self._ends_of(slide))
+            name_slide(sheet, view, slide, self._spelled(slide.label), tips[0] if tips else end)
         name_axes(sheet, "XYZ", base)
         name_axes(sheet, "xyz", tool)
         places = around(view.page(scene.tool.position), (24.0, 34.0, 46.0, 60.0))

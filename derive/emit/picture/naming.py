@@ -8,11 +8,16 @@ import numpy as np
 
 from derive.drawing.scene import Dimension, Slide, Turn
 from derive.emit.picture import style
+from derive.emit.picture.canvas import text_width
 from derive.emit.picture.ink import Mark, Vector, head, line
 from derive.emit.picture.placing import Place, Sheet, around
 from derive.emit.picture.symbols import STEPS, arc
 from derive.emit.picture.view import View
 
+_SECOND = 45.0
+"""What a leader costs where a dimension line has room."""
+_FREE = 12.0
+"""How far the ends of a dimension line must be from its text, in pixels."""
 _SHORT = 26.0
 """A dimension shorter than this on the page has a leader instead of a dimension line."""
 
@@ -31,30 +36,33 @@ def name_slide(sheet: Sheet, view: View, slide: Slide, text: str, tip: Vector) -
     """The name of a linear axis at the tip of its arrow; on a rail that drives share, their motion at its end."""
     along = view.direction(slide.axis)
     toward = along / max(float(np.linalg.norm(along)), 1e-9)
-    reach = 14.0 + abs(float(toward[0])) * max(0.0, 3.4 * len(text) - 8.0)
+    reach = 14.0 + abs(float(toward[0])) * max(0.0, 3.8 * len(text) - 8.0)
     size, colour = (style.NAME, style.SLIDE) if slide.has_arrow else (style.LABEL, style.FAINT)
     if not slide.has_arrow and max(slide.axis) > 0.999:
         text = f"{'XYZ'[int(np.argmax(slide.axis))]} = {text}"
-    sheet.label(
-        text, size, colour, around(tip, (reach, reach + 10.0, reach + 24.0), toward=toward), is_bold=slide.has_arrow
-    )
+    places = around(tip, (reach, reach + 10.0, reach + 24.0), toward=toward)
+    half = 0.5 * text_width(text, size, slide.has_arrow)
+    sides = [Place(p.at + [side * half, 0.0], p.cost + 15.0) for side in (-1.0, 1.0) for p in places]
+    sheet.label(text, size, colour, [*places, *sides], is_bold=slide.has_arrow)
 
 
-def name_axes(sheet: Sheet, letters: str, tips: Sequence[tuple[Vector, list[Mark]]]) -> None:
+def name_axes(
+    sheet: Sheet, letters: str, tips: Sequence[tuple[Vector, list[Mark]]], distances: Sequence[float] = (10.0, 15.0)
+) -> None:
     """The letters of a frame at the tips of its axes; an axis that points to the viewer has no letter."""
     for letter, colour, (tip, marks) in zip(letters, style.AXES, tips, strict=True):
         if marks:
-            sheet.label(letter, style.LABEL, colour, around(tip, (10.0, 15.0)), is_bold=True)
+            sheet.label(letter, style.LABEL, colour, around(tip, distances), is_bold=True)
 
 
 def name_point(sheet: Sheet, text: str, at: Vector) -> None:
     """The coordinates of a point, with a leader where they do not stand beside it."""
     places = []
-    for place in around(at, (16.0, 26.0, 40.0, 56.0, 76.0)):
+    for place in around(at, (16.0, 26.0, 40.0, 56.0, 76.0, 100.0)):
         is_far = bool(np.linalg.norm(place.at - at) > 30.0)
         leader = (line([at, place.at], style.FAINT, 0.8),) if is_far else ()
-        places.append(Place(place.at + _aside(place.at, at, 3.0 * len(text)), place.cost, leader))
-    sheet.label(text, style.LABEL - 1.5, style.INK, places)
+        places.append(Place(place.at + _aside(place.at, at, 3.2 * len(text)), place.cost, leader))
+    sheet.label(text, style.LABEL, style.INK, places)
 
 
 def name_angle(sheet: Sheet, text: str, at: Vector, points: Sequence[Vector]) -> None:
@@ -62,7 +70,11 @@ def name_angle(sheet: Sheet, text: str, at: Vector, points: Sequence[Vector]) ->
     middle = points[len(points) // 2]
     toward = (middle - at) / max(float(np.linalg.norm(middle - at)), 1e-9)
     places = around(middle, (12.0, 20.0, 32.0), toward=toward)
-    aside = [Place(place.at + _aside(place.at, middle, 2.6 * len(text)), place.cost) for place in places]
+    aside = []
+    for place in [*places, *around(middle, (46.0, 62.0), toward=toward)]:
+        is_far = float(np.linalg.norm(place.at - middle)) > 24.0
+        leader = (line([middle, place.at], style.FAINT, 0.9),) if is_far else ()
+        aside.append(Place(place.at + _aside(place.at, middle, 3.2 * len(text)), place.cost, leader))
     sheet.label(text, style.LABEL, style.INK, aside)
 
 
@@ -71,26 +83,52 @@ def name_length(sheet: Sheet, view: View, dimension: Dimension, text: str) -> No
     start, end = view.page(dimension.start), view.page(dimension.end)
     length = float(np.linalg.norm(end - start))
     sheet.label(
-        text, style.LABEL, style.INK, _lines(start, end) if length > _SHORT else _leaders(start, end, len(text))
+        text,
+        style.LABEL,
+        style.INK,
+        [
+            *(_lines(start, end, text_width(text, style.LABEL)) if length > _SHORT else ()),
+            *_leaders(start, end, text_width(text, style.LABEL), length > _SHORT),
+        ],
     )
 
 
-def _lines(start: Vector, end: Vector) -> list[Place]:
+def _lines(start: Vector, end: Vector, wide: float) -> list[Place]:
+    """Places on a dimension line; a text that covers most of its line stands better elsewhere."""
     along = (end - start) / float(np.linalg.norm(end - start))
     across = np.array([-along[1], along[0]])
+    covering = _SECOND if abs(along[0]) * np.linalg.norm(end - start) < wide and abs(along[0]) > 0.5 else 0.0
     found = []
     for distance in (24.0, -24.0, 38.0, -38.0, 54.0, -54.0, 72.0, -72.0):
         aside = distance * across
-        found.append(Place((start + end) / 2 + aside, 0.35 * abs(distance), _measured(start, end, aside)))
+        for part in (0.5, 0.35, 0.65, 0.2, 0.8):
+            at = start + part * (end - start) + aside
+            if part != 0.5 and min(_gap(at, tip + aside, wide) for tip in (start, end)) < _FREE:
+                continue  # the text would hide an end of its line
+            cost = 0.35 * abs(distance) + 40.0 * abs(part - 0.5) + covering
+            found.append(Place(at, cost, _measured(start, end, aside)))
     return found
 
 
-def _leaders(start: Vector, end: Vector, letters: int) -> list[Place]:
+def _gap(at: Vector, point: Vector, wide: float) -> float:
+    """How far a point is outside of a text that stands at a place; negative inside of it."""
+    across, up = np.abs(point - at) - np.array([wide / 2, 0.7 * style.LABEL])
+    return float(max(across, up))
+
+
+def _leaders(start: Vector, end: Vector, wide: float, is_second: bool) -> list[Place]:
+    """Places with a leader: the only ones of a short length, the second choice of another."""
     middle = (start + end) / 2
     found = []
-    for place in around(middle, (26.0, 40.0, 58.0, 80.0)):
-        marks = (line([start, end], style.INK, 2.0), line([middle, place.at], style.FAINT, 0.9))
-        found.append(Place(place.at + _aside(place.at, middle, 2.6 * letters), 0.3 * place.cost, marks))
+    for place in around(middle, (26.0, 40.0, 58.0, 80.0, 104.0)):
+        marks = (
+            line([start, end], style.INK, 2.0),
+            line([middle, place.at], style.FAINT, 0.9),
+            line([middle, middle + 0.1], style.INK, 5.0),
+        )
+        at = place.at + _aside(place.at, middle, 0.45 * wide)
+        covering = _SECOND * any(_gap(at, start + part * (end - start), wide) < 2.0 for part in np.linspace(0, 1, 9))
+        found.append(Place(at, 0.3 * place.cost + _SECOND * is_second + covering, marks))
     return found
 
 
@@ -108,4 +146,18 @@ def _measured(start: Vector, end: Vector, aside: Vector) -> tuple[Mark, ...]:
         line([first, last], style.FAINT, 1.1),
         head(first, start - end, style.FAINT, 0.8),
         head(last, end - start, style.FAINT, 0.8),
+    )
+
+
+def name_motor(sheet: Sheet, text: str, at: Vector, radius: float) -> None:
+    """The name of a motor, beside its arrow."""
+    sheet.label(
+        text,
+        style.NAME,
+        style.TURN,
+        [
+            Place(place.at + _aside(place.at, at, 3.0 * len(text)), place.cost)
+            for place in around(at, (radius + 10.0, radius + 18.0, radius + 30.0))
+        ],
+        is_bold=True,
     )

@@ -19,7 +19,7 @@ from derive.emit.picture.view import Box
 _PANEL = 214.0
 _LOWEST, _HIGHEST = 250.0, 560.0
 """The least and the greatest height of the part of the page with the machine."""
-_ROW, _LETTERS = 16.0, 125
+_ROW, _LETTERS = 18.0, 112
 """The text below: the height of a line, and its number of letters."""
 
 
@@ -45,7 +45,7 @@ def page(drawing: Drawing, title: str, names: Mapping[str, str]) -> Page:
     heading = Text(title, (16.0, height - 22.0), style.TITLE, style.INK, is_left=True, is_bold=True)
     lines = [(16.0, bottom - 14.0 - _ROW * row) for row in range(len(words))]
     below = [Text(text, at, style.SMALL, style.FAINT, is_left=True) for text, at in zip(words, lines, strict=True)]
-    return Page((*machine.marks, heading, *shown, *below), height)
+    return Page((*machine, heading, *shown, *below), height)
 
 
 def _words(drawing: Drawing, shown: Sequence[Choice], names: Mapping[str, str]) -> Iterator[str]:
@@ -60,6 +60,14 @@ def _words(drawing: Drawing, shown: Sequence[Choice], names: Mapping[str, str]) 
         yield from wrap(f"{where} {values}. Arrows show the positive direction of every axis.", _LETTERS)
     if any(turn.zero is not None for turn in drawing.scene.turns):
         yield "Dashed: where a rotary axis is 0."
+    for _, meeting in drawing.scene.meetings:
+        yield f"Ring: the axes {', '.join(spelled(label, names) for label in meeting)} meet in one point."
+    if any(segment.across is not None for segment in drawing.scene.segments):
+        yield "Two rods side by side are a parallelogram: it keeps the plate's orientation; its width plays no part."
+    if drawing.scene.belt is not None:
+        motors = " and ".join(spelled(motor.label, names) for motor in drawing.scene.belt.motors)
+        yield f"One belt, held at the dark bar. Arrows at the motors: how positive {motors} turn them for such a belt;"
+        yield "arrows at the TCP: where each of them alone moves it. A motor mounted upside down turns the other way."
     if is_stacked(drawing.scene):
         yield "Rails of linear axes that begin in one point are drawn one on the end of the other."
     hidden = ", ".join(spelled(label, names) for label in drawing.scene.hidden)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import sympy as sp
 
@@ -34,3 +34,11 @@ def _over(text: str, coefficient: sp.Rational) -> str:
     if coefficient.q != 1:
         text += f"/{coefficient.q}" + ("°" if coefficient.q == 360 else "")
     return text if coefficient.p == 1 else f"{coefficient.p}·{text}"
+
+
+def in_short(names: Sequence[str]) -> str:
+    """Names that differ in their last letter, as one of them and the letters of the others."""
+    begins = {name[:-1] for name in names}
+    if len(names) > 1 and len(begins) == 1 and all(name[-1:].isalpha() for name in names):
+        return ", ".join([names[0], *(name[-1] for name in names[1:])])
+    return ", ".join(names)

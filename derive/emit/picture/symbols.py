@@ -22,15 +22,35 @@ _SWEEP = np.radians(75.0)
 """The angle of an arrow about an axis in the plane; in space an arrow goes most of the way around."""
 _AROUND = np.radians(250.0)
 STEPS = 28
+PAIR_WIDTH = 3.4
+"""The width of each of two parallel rods."""
 
 
 def bar(segment: Segment, view: View) -> list[Mark]:
     """A body, drawn as a stroke with an edge."""
+    if segment.across is not None:
+        return _parallelogram(segment, segment.across, view)
     ends = [view.page(segment.start), view.page(segment.end)]
     width = _WIDTHS[segment.body]
     if segment.body is Body.BASE:
         return [line(ends, _COLOURS[segment.body], width)]
     return [line(ends, style.LINK_EDGE, width + 1.6), line(ends, _COLOURS[segment.body], width)]
+
+
+def _parallelogram(segment: Segment, across: Sequence[float], view: View) -> list[Mark]:
+    """Two parallel rods, and the short bars that join them at both ends."""
+    start, end, side = np.array(segment.start), np.array(segment.end), np.array(across)
+    corners = [view.page(p) for p in (start - side, end - side, end + side, start + side)]
+    marks: list[Mark] = []
+    for one, other in ((0, 3), (1, 2), (0, 1), (3, 2)):
+        ends = [corners[one], corners[other]]
+        marks += [line(ends, style.LINK_EDGE, PAIR_WIDTH + 1.6), line(ends, style.ROD, PAIR_WIDTH)]
+    return [*marks, *(area(_circle(corner, 3.0), style.JOINT, style.LINK_EDGE) for corner in corners)]
+
+
+def meeting(at: Vector) -> list[Mark]:
+    """The point in which axes meet: a ring with a point."""
+    return [line(_circle(at, 7.0), style.TURN, 1.6), area(_circle(at, 2.4), style.TURN, style.TURN)]
 
 
 def ground(at: Vector, view: View) -> list[Mark]:
@@ -75,8 +95,10 @@ def _angle(x: Vector, y: Vector, toward: Sequence[float]) -> float:
     return float(np.arctan2(vector @ y, vector @ x))
 
 
-def turning(turn: Turn, at: Vector, radius: float, view: View) -> list[Mark]:
-    """A rotary joint: its body, its axis, and an arrow in its positive direction where something drives it."""
+def turning(turn: Turn, at: Vector, radius: float, view: View, through: Sequence[Vector] = ()) -> list[Mark]:
+    """A rotary joint: its body, its axis as far as it goes `through` points of the page, and an arrow in its positive
+    direction where something drives it.
+    """
     if view.is_planar:
         r = style.JOINT_RADIUS - 2.0
         marks: list[Mark] = [
@@ -86,7 +108,10 @@ def turning(turn: Turn, at: Vector, radius: float, view: View) -> list[Mark]:
         marks += _reference(turn, turn.zero or turn.toward, at, radius + 14.0, view)
         return [*marks, *(arrow(arc(turn, at, radius, view), style.TURN, 2.2) if turn.label != 0 else ())]
     z = view.axes @ np.array(turn.axis)
-    marks = [line([at - 34.0 * z, at + 44.0 * z], style.TURN, 1.0, (9.0, 3.0, 2.0, 3.0))]
+    length = float(z @ z)
+    along = [float((place - at) @ z) / length for place in through if length > 1e-9]
+    ends = (min([-34.0, *(a - 20.0 for a in along)]), max([44.0, *(a + 20.0 for a in along)]))
+    marks = [line([at + end * z for end in ends], style.TURN, 1.0, (9.0, 3.0, 2.0, 3.0))]
     marks += _cylinder(turn, at, view)
     marks += _reference(turn, turn.zero, at, 3.0 * radius, view)
     around = arc(turn, at + 22.0 * z, radius * 0.85, view)

@@ -46,6 +46,8 @@ class Axis:
     """The neutral name of the axis value in programs."""
     is_rotary: bool
     in_degrees: bool
+    is_held: bool
+    """Whether the inverse leaves it where the reference has it."""
     has_turns: bool
     turns: str
     """The turns of the joint per turn of the axis; empty without a gear."""
@@ -140,7 +142,9 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         interfaces=interfaces,
         inputs=tuple(parameter_input(p) for p in kinematics.parameters),
         fields=_fields(kinematics),
-        axes=tuple(_axis(j, f) for j, f in zip(mechanism.joints, axis_fields, strict=False)),
+        axes=tuple(
+            _axis(j, f, is_held=j in mechanism.held_joints) for j, f in zip(mechanism.joints, axis_fields, strict=False)
+        ),
         axis_fields=axis_fields,
         branches=tuple(_branch_byte(i, b.name, b.names) for i, b in enumerate(kinematics.branches)),
         periods=tuple(
@@ -245,7 +249,7 @@ def direct(kinematics: Kinematics, setup: Program) -> dict[str, str]:
     return found
 
 
-def _axis(joint: Joint, field: str) -> Axis:
+def _axis(joint: Joint, field: str, *, is_held: bool) -> Axis:
     return Axis(
         name=joint.name,
         field=field,
@@ -253,6 +257,7 @@ def _axis(joint: Joint, field: str) -> Axis:
         output=joint.axis.name,
         is_rotary=joint.kind is Kind.ROTARY,
         in_degrees=joint.in_degrees,
+        is_held=is_held,
         has_turns=joint.multi_turn,
         turns=turns_of(joint) if joint.is_geared and joint.multi_turn else "",
     )

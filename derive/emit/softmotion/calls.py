@@ -19,8 +19,11 @@ from derive.ir.constants import (
 )
 from derive.ir.passes import with_inputs
 from derive.ir.program import (
+    Call,
+    Let,
     Program,
     Require,
+    shared,
 )
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
@@ -50,6 +53,8 @@ class BranchCall:
     """The arrays through which branches share what they have in common, with their types."""
     checks: tuple[str, ...]
     """The lines of the condition under which an input is refused, once a call; none where no input is read."""
+    refuses: bool
+    """Whether a branch may have no solution."""
     admitted: tuple[str, ...]
     """The lines of the condition under which the branches of a slot are solved."""
     distance: tuple[str, ...]
@@ -93,6 +98,7 @@ def branch_call(
         is_named=_is_named(block),
         shares=arrays,
         checks=tests,
+        refuses=_refuses(without_checks(program)),
         admitted=_admitted(block),
         distance=_distance(kinematics, block, checked),
         tie=_tie(kinematics),
@@ -104,6 +110,11 @@ def checks(program: Program) -> tuple[Require, ...]:
     sizes = (isinstance(s, Require) and all(map(is_size_test, sp.And.make_args(s.condition))) for s in program.body)
     count = next((place for place, is_size in enumerate(sizes) if not is_size), len(program.body))
     return tuple(s for s in program.body[:count] if isinstance(s, Require))
+
+
+def _refuses(program: Program) -> bool:
+    """Whether a program, or one that it calls, may refuse."""
+    return any(not isinstance(s, Let) for p in (program, *shared([program])) for s in p.body if not isinstance(s, Call))
 
 
 def without_checks(program: Program) -> Program:

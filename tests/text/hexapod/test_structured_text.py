@@ -216,7 +216,9 @@ def check_bounds() -> None:
         assert controller("nominal").inverse(on_base, np.eye(3), (), reference) == (UNREACHABLE, None)
         without = controller("nominal").diagnose(on_base, np.eye(3), (), reference)
         assert without == (f"leg {k}: without length it has no direction", 0.0)
-    assert controller("nominal").inverse((0.0, 0.0, np.nan), np.eye(3), (), reference) == (BAD_INPUT, None)
+    beyond = (0.0, 0.0, np.nan), np.eye(3), (), reference
+    assert controller("nominal").inverse(*beyond) == (BAD_INPUT, None)
+    assert controller("nominal").diagnose(*beyond) == ("not given: numbers of reasonable size", 0.0)
 
 
 def check_cones(machine: Machine) -> None:

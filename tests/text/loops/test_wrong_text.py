@@ -14,7 +14,7 @@ from tests.text.loops.answers import COMPARISONS
 from tests.text.loops.machines import LOOPS, Loop, loops_of
 from tests.text.units import compiled_text, file_of, text_of
 
-PUBLIC = {"AxesToCartesian": "AxesToCartesian", "SolveBranch": "CartesianToAxes", "Jacobian": "Jacobian"}
+PUBLIC = {"AxesToCartesian": "AxesToCartesian", "SolveBranch": "CartesianToAxes", "FindJacobian": "Jacobian"}
 """The methods that are spoiled, and those that must answer differently."""
 SAMPLES = 6
 
@@ -22,13 +22,14 @@ SAMPLES = 6
 OUTPUTS = {
     "AxesToCartesian": r"^(  |)(f\.vT\.dX := )(.+?);",
     "SolveBranch": r"^(  |)(\w+\.a0 := )(.+?);",
-    "Jacobian": r"^(  |)(J\[0, 0\] := )(.+?);",
+    "FindJacobian": r"^(  |)(J\[0, 0\] := )(.+?);",
 }
 
 
 def spoiled(text: str, method: str) -> str:
     """The text with the first output of a method made a little larger."""
-    start = text.index(f"METHOD {'PRIVATE' if method == 'SolveBranch' else 'PUBLIC'} {method} ")
+    access = {"SolveBranch": "PRIVATE", "FindJacobian": "PROTECTED"}.get(method, "PUBLIC")
+    start = text.index(f"METHOD {access} {method} ")
     end = text.index("END_METHOD", start)
     pattern = re.compile(OUTPUTS[method], re.MULTILINE | re.DOTALL)
     wrong, count = pattern.subn(r"\g<1>\g<2>1.0000001*(\g<3>);", text[start:end], count=1)
@@ -54,10 +55,10 @@ def compare(mechanism: Mechanism, library: Library, method: str, samples: int) -
         COMPARISONS[method](other, sample)
 
 
-_BRANCH, _FORWARD, _INITIALIZE = (
+_BRANCH, _FORWARD, _INPUTS = (
     "METHOD PRIVATE SolveBranch",
     "METHOD PUBLIC AxesToCartesian",
-    "METHOD PUBLIC Initialize",
+    "METHOD PROTECTED ReadInputs",
 )
 FIVE_BAR, TRIPOD, DELTA = "Kin_P2C_Type1", "Kin_Tripod_Rotary", "Kin_Delta_P3C_Type3"
 TOWARDS_THE_MODE = "assemblySignByOuterArmSquared*(rod1X*rod2Y - rod1Y*rod2X)"
@@ -70,7 +71,7 @@ WRONG = {
         DELTA, Break(_BRANCH, "a.a0 := axisA1;\na.a1 := axisA2;", "a.a0 := axisA2;\na.a1 := axisA1;"),
     ),
     "AxesToCartesian: the other assembly mode": (
-        FIVE_BAR, Break(_INITIALIZE, "SEL(xTcpAbove, -1.0, 1.0)", "SEL(xTcpAbove, 1.0, -1.0)"),
+        FIVE_BAR, Break(_INPUTS, "SEL(xTcpAbove, -1.0, 1.0)", "SEL(xTcpAbove, 1.0, -1.0)"),
     ),
     "CartesianToAxes: the other assembly mode not refused": (
         FIVE_BAR, Break(_BRANCH, TOWARDS_THE_MODE, f"ABS({TOWARDS_THE_MODE})"),
@@ -83,12 +84,12 @@ WRONG = {
     ),
     "IsSingularity: another margin": (
         TRIPOD,
-        Break("METHOD PUBLIC IsSingularity", "ABS(marginRodsCoplanar) < 0.001", "ABS(marginRodsCoplanar) < 0.9"),
+        Break("METHOD PROTECTED FindMargins", "aMargins[3] := marginRodsCoplanar;", "aMargins[3] := 0.0;"),
     ),
     "AxesToCartesian: another byte for a knee": (
         DELTA, Break(_FORWARD, "Softkin_BranchByte(branchKnee2)", "Softkin_BranchByte(branchKnee1)"),
     ),
-    "Jacobian: a slope of the other leg": (FIVE_BAR, Break("METHOD PUBLIC Jacobian", "*sinA2", "*sinA1")),
+    "Jacobian: a slope of the other leg": (FIVE_BAR, Break("METHOD PROTECTED FindJacobian", "*sinA2", "*sinA1")),
 }  # fmt: skip
 """The method that then answers otherwise, what is wrong, and in which unit."""
 

@@ -1,0 +1,122 @@
+"""Belts, parallelograms, wrists and both ways of a byte: what is drawn moves as the mechanism does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from derive.description.mechanism import DescriptionError
+from derive.drawing.drawing import Drawing, drawing_of, is_turned_round, looks_alike
+from derive.drawing.scene import Belt, Body
+from derive.kinematics.build import build
+from tests.unit.drawing.machines import CATALOGUE, drawn
+
+BELTS = ("Kin_HGantry2", "Kin_HGantry3", "Kin_TGantry2", "Kin_TGantry3")
+DELTAS = ("Kin_Delta_P3C_Type3", "Softkin_Delta_C", "Kin_Tripod_Linear", "Kin_Tripod_P3Z")
+NONE = ("Kin_Tripod_Rotary", "Kin_Hexapod", "Softkin_DualScara", "Kin_Crane", "Kin_P2C_Type1")
+
+
+def _belt(name: str) -> Belt:
+    belt = drawn(name).drawing.scene.belt
+    assert belt is not None
+    return belt
+
+
+@pytest.mark.parametrize("name", BELTS)
+@pytest.mark.parametrize("drive", ["A", "B"])
+def test_a_motor_pulls_the_carriage_where_its_drive_moves_it(name: str, drive: str) -> None:
+    """By hand: the strand from the carriage to the left motor gets longer by x - y, that to the right one by -x - y.
+
+    So the belt runs past a motor, away from the carriage's end of it, by the negative of that. In an H this end arrives
+    at the outer side of the motor, downward; in a T at the lower side, outward.
+    """
+    one, belt = drawn(name), _belt(name)
+    (motor,) = [m for m in belt.motors if str(m.label) == drive]
+    side = np.sign(motor.at[0])
+    axes = np.eye(len(one.mechanism.joints))[[j.name for j in one.mechanism.joints].index(drive)]
+    x, y = one.closure.frame(one.joints_at(axes[None, :]), one.parameters)[0, :2, 0]
+    past, other = y + side * x, y - side * x
+    assert abs(past) == pytest.approx(1.0) and other == pytest.approx(0.0), "it runs past its own motor alone"
+    is_h = one.mechanism.belt == "H"
+    arm, velocity = ((side, 0, 0), (0, -past, 0)) if is_h else ((0, -1, 0), (side * past, 0, 0))
+    assert np.cross(motor.axis, arm) == pytest.approx(np.array(velocity, dtype=float))
+
+
+@pytest.mark.parametrize("name", BELTS)
+def test_a_belt_goes_around_its_wheels(name: str) -> None:
+    """It is one line without jumps, at a wheel's radius from each wheel, and never nearer."""
+    belt = _belt(name)
+    path = np.array(belt.path)
+    for centre in (*belt.wheels, *(m.at for m in belt.motors)):
+        distance = np.linalg.norm(path - np.array(centre), axis=1)
+        assert np.min(distance) == pytest.approx(belt.radius)
+    steps = np.diff(path, axis=0)
+    turns = [np.dot(a, b) / np.linalg.norm(a) / np.linalg.norm(b) for a, b in zip(steps, steps[1:], strict=False)]
+    assert min(turns) > np.cos(np.radians(25.0)), "it bends on wheels alone"
+
+
+def test_a_belt_of_another_kind_is_refused() -> None:
+    """A layout that is none, and one whose drives do not share two slides."""
+    for mechanism, message in (
+        (replace(CATALOGUE["Kin_HGantry2"], belt="X"), "belt must be one of 'H', 'T', not 'X'"),
+        (replace(CATALOGUE["Kin_Gantry2"], belt="H"), "a belt in H layout moves two slides, and here 0"),
+    ):
+        with pytest.raises(DescriptionError, match=message):
+            drawing_of(build(mechanism))
+
+
+@pytest.mark.parametrize("name", DELTAS)
+def test_rods_that_keep_a_plate_level_are_parallelograms(name: str) -> None:
+    """Each of the three rods is a pair; the pair is square to it, and along the axis of its crank where it has one."""
+    scene = drawn(name).drawing.scene
+    rods = [s for s in scene.segments if s.body is Body.ROD]
+    assert len(rods) == 3
+    cranks = [t for t in scene.turns if t.zero is not None or t.toward is not None]
+    for k, rod in enumerate(rods):
+        assert rod.across is not None
+        side = np.array(rod.across)
+        if cranks:
+            assert np.linalg.norm(np.cross(side, cranks[k].axis)) < 1e-6
+        else:
+            assert abs(side @ np.subtract(rod.end, rod.start)) < 1e-6
+
+
+@pytest.mark.parametrize("name", NONE)
+def test_other_rods_are_single(name: str) -> None:
+    """A plate that turns, a plane, and pairs that the description states itself."""
+    assert all(s.across is None for s in drawn(name).drawing.scene.segments)
+
+
+@pytest.mark.parametrize(
+    ("name", "names"),
+    [("Kin_ArticulatedRobot_6DOF", "A4 A5 A6"), ("Kin_Wrist3", "A B C"), ("Kin_Ac6_TXTYTZRYRXRZ", "A4 A5 A6")],
+)
+def test_axes_of_a_wrist_meet(name: str, names: str) -> None:
+    """The point is on each of the three axes."""
+    scene = drawn(name).drawing.scene
+    ((place, meeting),) = scene.meetings
+    assert " ".join(sorted(map(str, meeting))) == names
+    for turn in (t for t in scene.turns if t.label in meeting):
+        assert np.linalg.norm(np.cross(np.subtract(place, turn.at), turn.axis)) < 1e-6
+
+
+@pytest.mark.parametrize("name", ["Kin_Ac6_RZRYRYRXRYRZ_J6Offset", "Kin_Ac6_ThreeParallel", "Softkin_HeadTable_BC"])
+def test_axes_that_pass_each_other_do_not_meet(name: str) -> None:
+    """An offset wrist, three parallel axes, two axes."""
+    assert not drawn(name).drawing.scene.meetings
+
+
+def _first(name: str) -> Drawing:
+    return drawn(name).drawing
+
+
+@pytest.mark.parametrize("name", [n for n, m in CATALOGUE.items() if m.branches and n != "MC_KIN_TYPE_12_XY"])
+def test_byte_0_has_a_picture(name: str) -> None:
+    """Both of its ways differ, in where bodies are or in where the axis of a joint points."""
+    scenes = _first(name).choices[0].scenes
+    assert scenes is not None
+    one, other = scenes
+    turned = [a for a, b in zip(one.turns, other.turns, strict=True) if is_turned_round(a, b)]
+    assert turned or not looks_alike(one, other)
