@@ -140,7 +140,9 @@ ANGLES_AS_NUMBERS = _chain(
 """Six axes by a table with angles as numbers, which is searched: a machine with branches that the compiler names by the
 joints and by angles of its own, which count in degrees."""
 
-CHAINS = {**WITHOUT_ARM, **FROM_FLANGE, **OF_DEGREE_FOUR}
+BY_TABLE = {"six axes by a table with angles as numbers": ANGLES_AS_NUMBERS}
+
+CHAINS = {**WITHOUT_ARM, **FROM_FLANGE, **OF_DEGREE_FOUR, **BY_TABLE}
 CHAIN_SOLUTIONS = {
     "finger on a rocker on a slide": 4,
     "arm whose wrist may lie on its second axis": 8,
@@ -149,6 +151,7 @@ CHAIN_SOLUTIONS = {
     "slide that a head points, beside its axis": 4,
     "three axes with offsets everywhere": 4,
     "three axes that lean by 60 degrees": 4,
+    "six axes by a table with angles as numbers": 10,
     "seven axes by a table, the last held": 8,
     "seven axes with an elbow and a wrist beside them, the last held": 8,
 }
