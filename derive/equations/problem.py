@@ -145,6 +145,8 @@ class Problem:
     """Normal forms of the quantities that the description states to be positive."""
     pending: tuple[sp.Symbol, ...] = ()
     """Angles that follow from a sum once its other terms are known: unknown, but not solved for."""
+    sums: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """The sums of angles that stand in place of one of their terms, by their names."""
     is_overdetermined: bool = False
     """Whether there is one equation too many: it is left as a residual, and no two-root step may use it."""
     turns: tuple[Factor, ...] = ()
