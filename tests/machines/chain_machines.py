@@ -66,6 +66,13 @@ WITHOUT_ARM = {
     "finger that two rockers in a row turn": _chain(
         "TwoRockers", (A1, A2, A3), Rx(-A1) * Tz(L1) * Rx(A2) * Ry(-A3) * Tx(L2) * Tz(L4), (L1, L2, L4), Task("xyz")
     ),
+    "finger that folds onto the second of two parallel axes": _chain(
+        "Folding",
+        (A1, A2, A3),
+        Rz(-A1) * Tx(L1) * Rz(A2) * Tx(L2) * Ry(A3) * Tx(L3) * Tz(L2),
+        (L1, L2, L3),
+        Task("xyz"),
+    ),
     "slide that a head points, beside its axis": _chain(
         "Pointed",
         (Y, A1, A2, A3, Z),
@@ -148,6 +155,7 @@ CHAIN_SOLUTIONS = {
     "arm whose wrist may lie on its second axis": 8,
     "finger beside a rocker on a slide": 4,
     "finger that two rockers in a row turn": 4,
+    "finger that folds onto the second of two parallel axes": 2,
     "slide that a head points, beside its axis": 4,
     "three axes with offsets everywhere": 4,
     "three axes that lean by 60 degrees": 4,

@@ -113,6 +113,8 @@ class _Amplitude:
     """(h - e)(h + e) made of lengths, where the factors are not: what is missing is read off it."""
     aimable: sp.Basic | None = None
     """Whether h is long enough to determine the angle, where joints can make it vanish; else None."""
+    left: sp.Expr = sp.Integer(0)
+    """e where h is too short to be divided by: then it has to vanish."""
 
 
 def _amplitude(
@@ -145,8 +147,9 @@ def _amplitude(
         divisor, aimable, guard = _vanishing(effective, (common, unit), angle, is_moved=is_moved)
     right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
     units = (along / divisor, across / divisor)
+    size, left = common * divisor, right.xreplace({divisor: effective})
     return _Amplitude(
-        naming, common * divisor, guard, *units, right, determinant, scale, factors, told=told, aimable=aimable
+        naming, size, guard, *units, right, determinant, scale, factors, told=told, aimable=aimable, left=left
     )
 
 
@@ -319,7 +322,7 @@ def _cosine(
         return Let(name, value), check
     ratio, size = real(f"ratio_of_{angle.name}"), amplitude.determinant_scale
     near = sp.Le(sp.Abs(ratio), 1 + BOUNDARY / 2 * (1 + size / amplitude.length))
-    vanishes = sp.Le(sp.Abs(amplitude.right), FREE_ANGLE * size)
+    vanishes = sp.Le(sp.Abs(amplitude.left), FREE_ANGLE * size)
     is_met = sp.Or(sp.And(amplitude.aimable, near), sp.And(sp.Not(amplitude.aimable), vanishes))
     within = Select(sp.Gt(ratio, 1), sp.Integer(1), Select(sp.Lt(ratio, -1), sp.Integer(-1), ratio))
     return Let(ratio, value), Require(is_met, Status.UNREACHABLE, reason=reason), Let(name, within)
