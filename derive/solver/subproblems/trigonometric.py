@@ -48,6 +48,7 @@ from derive.solver.subproblems.lateral import Row, aimed_at_point
 from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.origin import from_origin
 from derive.solver.subproblems.shortfall import out_of_reach
+from derive.solver.subproblems.small_entries import with_small_entries
 
 _ADDITION = "addition theorem: plus the angle of the direction from which the cosine is measured"
 
@@ -292,8 +293,10 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     length, right = amplitude.length, amplitude.right
     size = sp.Abs if amplitude.is_signed else sp.Add
     less, more = amplitude.factors or (_product(length - right), _product(length + right))
+    (less, more), column = with_small_entries(problem, equation, (less, more))
     statements: list[Statement] = [
-        *amplitude.naming.lets,
+        *(let for let in amplitude.naming.lets if let not in column),
+        *column,
         *amplitude.guard,
         Let(less_cos, less, f"law of cosines for {angle.name} ({equation.label}): 1 - cosine, times a scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
