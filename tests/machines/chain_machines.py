@@ -83,6 +83,17 @@ WITHOUT_ARM = {
 }
 """Joints fold the arm of a later joint onto its axis: that joint is free there. In the last its size changes alone."""
 
+LONG_LINKS = {
+    "telescope between long links, with a wrist": _chain(
+        "LongLinks",
+        (A1, A2, Y, A4, A5, A6),
+        Rz(A1) * Tx(L3) * Ry(A2) * Tx(Y) * Tx(L2) * Rz(A4) * Ry(A5) * Rz(A6) * Tx(L4),
+        (L2, L3, L4),
+        Task("xyz", Turning.FULL),
+    ),
+}
+"""Determinants of several steps keep one sign where the slide is short: the steps of branches are told by more."""
+
 BENT_WRISTS = {
     "arm with a wrist that is bent by 60 degrees": _chain(
         "BentWrist",
@@ -167,7 +178,7 @@ joints and by angles of its own, which count in degrees."""
 
 BY_TABLE = {"six axes by a table with angles as numbers": ANGLES_AS_NUMBERS}
 
-CHAINS = {**WITHOUT_ARM, **FROM_FLANGE, **OF_DEGREE_FOUR, **BY_TABLE, **BENT_WRISTS}
+CHAINS = {**WITHOUT_ARM, **FROM_FLANGE, **OF_DEGREE_FOUR, **BY_TABLE, **BENT_WRISTS, **LONG_LINKS}
 CHAIN_SOLUTIONS = {
     "finger on a rocker on a slide": 4,
     "arm whose wrist may lie on its second axis": 8,
@@ -179,6 +190,7 @@ CHAIN_SOLUTIONS = {
     "three axes that lean by 60 degrees": 4,
     "six axes by a table with angles as numbers": 10,
     "arm with a wrist that is bent by 60 degrees": 8,
+    "telescope between long links, with a wrist": 8,
     "head whose second axis leans by 45 degrees": 2,
     "seven axes by a table, the last held": 8,
     "seven axes with an elbow and a wrist beside them, the last held": 8,
