@@ -1,7 +1,8 @@
 """One profile for all property tests: the same examples on every machine, and no time limit on a shared one.
 
 Every test is given its mechanism, where it has one. Tests of one mechanism run in one process, so that what they share
-is made once; and `make quick` runs all units, and of the catalogue one mechanism for each path through the compiler.
+is made once, and so do those of one machine that is in no catalogue. `make quick` runs all units, and of the catalogue
+one mechanism for each path through the compiler.
 """
 
 from __future__ import annotations
@@ -90,8 +91,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if is_quick and item.get_closest_marker("slow") is None and not place.startswith(SWEEPS):
             item.add_marker("quick")
         if is_shared_out:
-            by_file = not names or not folders or _is_shared_by_its_file(place)
-            item.add_marker(pytest.mark.xdist_group(str(item.path.relative_to(ROOT)) if by_file else names[0]))
+            shared = [] if not folders or _is_shared_by_its_file(place) else names or machines_of(item, folders)
+            item.add_marker(pytest.mark.xdist_group(shared[0] if shared else str(item.path.relative_to(ROOT))))
 
 
 def _is_shared_by_its_file(place: str) -> bool:
@@ -104,6 +105,27 @@ def mechanisms_of(item: pytest.Item, folders: tuple[str, ...]) -> list[str]:
     words = re.findall(r"\w+", callspec.id) if callspec is not None else []
     found = [_names()[word] for word in words if word in _names()]
     return found or [OF_ONE_MECHANISM[folder] for folder in folders if folder in OF_ONE_MECHANISM]
+
+
+def machines_of(item: pytest.Item, folders: tuple[str, ...]) -> list[str]:
+    """The names of the machines in no catalogue that a test's parameters name, or that its text does."""
+    if folders[:1] != ("machines",):
+        return []
+    callspec = getattr(item, "callspec", None)
+    words = list(callspec.params.values()) if callspec is not None else []
+    said = [*words, *item.function.__code__.co_consts]  # type: ignore[attr-defined]
+    told = [word for part in said for word in (part if isinstance(part, tuple) else (part,))]
+    return [word for word in told if isinstance(word, str) and word in _machines()]
+
+
+@cache
+def _machines() -> frozenset[str]:
+    """The names of the machines that are derived once a process, which several files ask."""
+    from tests.machines.carried import CARRIED
+    from tests.machines.collection import MACHINES
+    from tests.machines.guided import GUIDED
+
+    return frozenset({**MACHINES, **CARRIED, **GUIDED})
 
 
 @cache

@@ -53,8 +53,9 @@ def is_unknown(problem: Problem, factor: Factor) -> bool:
 
 
 def joints_of(problem: Problem, turn: Factor) -> tuple[str, ...]:
-    """The names of the joints of a rotation."""
-    return tuple(a.name for a in problem.units if a in turn.amount.free_symbols)
+    """The names of the joints of a rotation: of `a23 - a2`, A3."""
+    turned = sp.expand(turn.amount.xreplace(dict(problem.sums)))
+    return tuple(a.name for a in problem.units if a in turned.free_symbols)
 
 
 def matrix_of(problem: Problem, turn: Factor, lets: list[Let]) -> sp.Matrix:

@@ -23,6 +23,18 @@ _NUMBER = 1e-9
 
 
 @dataclass(frozen=True)
+class Column:
+    """One column of a known rotation: the squares of its entries add up to one."""
+
+    entry: sp.Symbol
+    """One of them."""
+    others: sp.Expr
+    """The sum of the squares of the other two."""
+    lets: tuple[Let, ...]
+    """The statements that bind all three."""
+
+
+@dataclass(frozen=True)
 class Equation:
     """expression = 0. `lets` bind the names in it; they are recorded when the equation is used."""
 
@@ -33,6 +45,8 @@ class Equation:
     """By an unknown: the largest derivative, where it is made of parameters alone. Margins are divided by it."""
     is_length: bool = True
     """Whether its terms are lengths; those of a rotation have no unit."""
+    column: Column | None = None
+    """The column of the entry of a rotation that it holds."""
 
 
 @dataclass(frozen=True)
@@ -145,6 +159,8 @@ class Problem:
     """Normal forms of the quantities that the description states to be positive."""
     pending: tuple[sp.Symbol, ...] = ()
     """Angles that follow from a sum once its other terms are known: unknown, but not solved for."""
+    sums: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """The sums of angles that stand in place of one of their terms, by their names."""
     is_overdetermined: bool = False
     """Whether there is one equation too many: it is left as a residual, and no two-root step may use it."""
     turns: tuple[Factor, ...] = ()

@@ -14,7 +14,7 @@ import sympy as sp
 from derive.algebra.normal_form import polynomial, reduce_units
 from derive.equations.known_turns import Side, is_unknown, joints_of, matrix_of, named_entries, needed
 from derive.equations.pitch.equations import followed_entries
-from derive.equations.problem import Equation, Problem
+from derive.equations.problem import Column, Equation, Problem
 from derive.geometry.frames import Chain, Factor
 from derive.geometry.pose import pose_of
 from derive.ir.program import (
@@ -69,5 +69,13 @@ def _entry_equations(
                 continue
             form = polynomial(middle[i, j], problem.units, problem.signs)
             expression = reduce_units(form - entries[i, j], problem.units, problem.signs)
-            found.append(Equation(f"r{i + 1}{j + 1}", expression, needed(lets, expression), is_length=False))
+            label, column = f"r{i + 1}{j + 1}", _column(entries[:, j], i, lets)
+            found.append(Equation(label, expression, needed(lets, expression), is_length=False, column=column))
     return tuple(found)
+
+
+def _column(entries: sp.Matrix, row: int, lets: tuple[Let, ...]) -> Column | None:
+    """What an entry has to do with the others of its column; None where it has no name."""
+    entry = entries[row] if entries[row].is_Symbol else -entries[row]
+    others = sp.Add(*[entries[k] ** 2 for k in range(3) if k != row])
+    return Column(entry, others, needed(lets, entry + others)) if entry.is_Symbol else None

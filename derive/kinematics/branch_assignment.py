@@ -41,6 +41,8 @@ from derive.kinematics.sampling import possible_axes, sample_machine
 from derive.plate.turning import given_pose
 
 _SAMPLES = 64
+_SAME = 1e-9
+"""Ratios that differ by less than this share are one."""
 
 
 @dataclass(frozen=True)
@@ -99,10 +101,10 @@ def _assigned(
     determinants = inverse.derivation.determinants
     if not determinants and not mechanism.branches:
         return (), ()
-    signs, indicators = _signs(mechanism, inverse, forward, optional_zero)
+    sampled, indicators = _sampled(mechanism, inverse, forward, optional_zero)
     found: list[Assignment] = []
     for branch, indicator in zip(mechanism.branches, indicators, strict=True):
-        steps = _told(branch, indicator, determinants, signs)
+        steps = _told(branch, indicator, determinants, sampled)
         if len(steps) != 1:
             raise DescriptionError(
                 f"branch {branch.name!r}: its indicator agrees with {len(steps)} steps, not one: its sign must change "
@@ -117,16 +119,27 @@ def _assigned(
 
 
 def _told(
-    branch: Branch, indicator: np.ndarray, determinants: Sequence[StepDeterminant], signs: Sequence[np.ndarray]
+    branch: Branch, indicator: np.ndarray, determinants: Sequence[StepDeterminant], sampled: Sequence[np.ndarray]
 ) -> list[tuple[StepDeterminant, int]]:
     """The steps whose determinants have the sign of an indicator, or the opposite one. Where the assembly of a loop
-    makes the signs of several steps one, those count whose unknown the indicator reads.
+    makes the signs of several steps one, those count whose unknown the indicator reads; where long links do, the step
+    of whose determinant the indicator is a multiple.
     """
-    found = [
-        (s, o) for s, row in zip(determinants, signs, strict=True) for o in (1, -1) if np.all(o * row == indicator)
+    agreeing = [
+        (s, o, row)
+        for s, row in zip(determinants, sampled, strict=True)
+        for o in (1, -1)
+        if np.all(o * np.sign(row) == np.sign(indicator))
     ]
+    found = [(s, o) for s, o, _ in agreeing]
     own = [(s, o) for s, o in found if s.step in branch.indicator.free_symbols]
-    return own if len(found) > 1 and own else found
+    same = [(s, o) for s, o, row in agreeing if _are_multiples(row, indicator)]
+    return next((few for few in (same, own) if few), found) if len(found) > 1 else found
+
+
+def _are_multiples(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two quantities have one ratio at all samples."""
+    return bool(np.abs(one * other[0] - one[0] * other).max() <= _SAME * np.abs(one * other[0]).max())
 
 
 def _met(determinants: Sequence[StepDeterminant]) -> str:
@@ -144,11 +157,11 @@ def steps_and_rest(
     """
     branches = tuple(b for b in mechanism.branches if not b.is_crossing)
     named = replace(mechanism, branches=branches)
-    signs, indicators = _signs(named, inverse, forward, False)
+    sampled, indicators = _sampled(named, inverse, forward, False)
     decided = tuple(
         b
         for b, row in zip(branches, indicators, strict=True)
-        if any(np.all(o * s == row) for s in signs for o in (1, -1))
+        if any(np.all(o * np.sign(s) == np.sign(row)) for s in sampled for o in (1, -1))
     )
     found, unnamed = _assigned(replace(mechanism, branches=decided), inverse, forward, False)
     return found, tuple(b for b in branches if b not in decided), unnamed
@@ -159,16 +172,16 @@ def steps_without_branch(mechanism: Mechanism, inverse: Inverse, forward: Forwar
     determinants = inverse.derivation.determinants
     if not determinants or not mechanism.branches:
         return determinants
-    signs, indicators = _signs(mechanism, inverse, forward, False)
+    sampled, indicators = _sampled(mechanism, inverse, forward, False)
     named = [
         step
         for branch, indicator in zip(mechanism.branches, indicators, strict=True)
-        for step, _ in _told(branch, indicator, determinants, signs)
+        for step, _ in _told(branch, indicator, determinants, sampled)
     ]
     return tuple(step for step in determinants if step not in named)
 
 
-def _signs(
+def _sampled(
     mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     lets, indicators = named_trigonometry(
@@ -191,7 +204,7 @@ def _signs(
     good = np.broadcast_to(status == Status.OK, (count,))
     if not good.any():
         raise DescriptionError(why_no_pose(mechanism))
-    rows = [np.sign(np.broadcast_to(values[n.name.name], (count,))[good]) for n in named]
+    rows = [np.broadcast_to(values[n.name.name], (count,))[good] for n in named]
     return rows[: len(determinants)], rows[len(determinants) :]
 
 

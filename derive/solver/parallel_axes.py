@@ -93,6 +93,7 @@ def substitute(problem: Problem, total: Sum) -> Problem:
         expression = reduce_units(equation.expression.xreplace(table), units, problem.signs)
         return replace(equation, expression=expression)
 
+    meant = sp.expand(sp.Add(*[a * s for a, s in total.terms]).xreplace(dict(problem.sums)))
     references = {**problem.references, total.symbol: sp.Add(*[problem.references[a] * s for a, s in total.terms])}
     equations = tuple(through_sum(e) for e in problem.equations)
     pending = (*problem.pending, total.replaced)
@@ -103,6 +104,7 @@ def substitute(problem: Problem, total: Sum) -> Problem:
         equations=equations,
         references=references,
         pending=pending,
+        sums={**problem.sums, total.symbol: meant},
         turns=_through(problem.turns, total.replaced, form),
         links=_through(problem.links, total.replaced, form),
     )

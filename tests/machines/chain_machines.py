@@ -8,7 +8,7 @@ from sympy import pi
 from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
 from derive.mechanism import Joint, Mechanism, Parameter, Task, Turning, Vendor, length, linear, rotary
 
-Y, Z = linear("Y", "slide Y"), linear("Z", "slide Z")
+X, Y, Z = (linear(name, f"slide {name}") for name in "XYZ")
 A1, A2, A3, A4, A5, A6, A7 = (rotary(f"A{k}", f"turn A{k}") for k in range(1, 8))
 L5 = length("link_5", "link 5", nominal=30.0)
 L1, L2, L3, L4 = (length(f"link_{k}", f"link {k}", nominal=v) for k, v in enumerate((50.0, 200.0, 300.0, 120.0), 1))
@@ -66,6 +66,13 @@ WITHOUT_ARM = {
     "finger that two rockers in a row turn": _chain(
         "TwoRockers", (A1, A2, A3), Rx(-A1) * Tz(L1) * Rx(A2) * Ry(-A3) * Tx(L2) * Tz(L4), (L1, L2, L4), Task("xyz")
     ),
+    "finger that folds onto the second of two parallel axes": _chain(
+        "Folding",
+        (A1, A2, A3),
+        Rz(-A1) * Tx(L1) * Rz(A2) * Tx(L2) * Ry(A3) * Tx(L3) * Tz(L2),
+        (L1, L2, L3),
+        Task("xyz"),
+    ),
     "slide that a head points, beside its axis": _chain(
         "Pointed",
         (Y, A1, A2, A3, Z),
@@ -75,6 +82,35 @@ WITHOUT_ARM = {
     ),
 }
 """Joints fold the arm of a later joint onto its axis: that joint is free there. In the last its size changes alone."""
+
+LONG_LINKS = {
+    "telescope between long links, with a wrist": _chain(
+        "LongLinks",
+        (A1, A2, Y, A4, A5, A6),
+        Rz(A1) * Tx(L3) * Ry(A2) * Tx(Y) * Tx(L2) * Rz(A4) * Ry(A5) * Rz(A6) * Tx(L4),
+        (L2, L3, L4),
+        Task("xyz", Turning.FULL),
+    ),
+}
+"""Determinants of several steps keep one sign where the slide is short: the steps of branches are told by more."""
+
+BENT_WRISTS = {
+    "arm with a wrist that is bent by 60 degrees": _chain(
+        "BentWrist",
+        (A1, A2, A3, A4, A5, A6),
+        Rz(A1) * Ry(A2) * Tz(L2) * Ry(A3) * Tx(L3) * Rx(A4) * Rz(pi / 3) * Rx(A5) * Rz(-pi / 3) * Rx(A6) * Tx(L4),
+        (L2, L3, L4),
+        Task("xyz", Turning.FULL),
+    ),
+    "head whose second axis leans by 45 degrees": _chain(
+        "LeaningHead",
+        (Y, Z, X, A4, A5),
+        Ty(Y) * Tz(Z) * Tx(X) * Rz(A4) * Rx(pi / 4) * Rz(A5) * Rx(-pi / 4) * Tz(-L4),
+        (L4,),
+        Task("xyz", Turning.DIRECTION),
+    ),
+}
+"""At A5 = 0 the entry of the rotation that tells A5 is one, and the angle is in the digits that it has lost."""
 
 FROM_FLANGE = {
     "seven axes by a table, the last held": _chain(
@@ -140,15 +176,22 @@ ANGLES_AS_NUMBERS = _chain(
 """Six axes by a table with angles as numbers, which is searched: a machine with branches that the compiler names by the
 joints and by angles of its own, which count in degrees."""
 
-CHAINS = {**WITHOUT_ARM, **FROM_FLANGE, **OF_DEGREE_FOUR}
+BY_TABLE = {"six axes by a table with angles as numbers": ANGLES_AS_NUMBERS}
+
+CHAINS = {**WITHOUT_ARM, **FROM_FLANGE, **OF_DEGREE_FOUR, **BY_TABLE, **BENT_WRISTS, **LONG_LINKS}
 CHAIN_SOLUTIONS = {
     "finger on a rocker on a slide": 4,
     "arm whose wrist may lie on its second axis": 8,
     "finger beside a rocker on a slide": 4,
     "finger that two rockers in a row turn": 4,
+    "finger that folds onto the second of two parallel axes": 2,
     "slide that a head points, beside its axis": 4,
     "three axes with offsets everywhere": 4,
     "three axes that lean by 60 degrees": 4,
+    "six axes by a table with angles as numbers": 10,
+    "arm with a wrist that is bent by 60 degrees": 8,
+    "telescope between long links, with a wrist": 8,
+    "head whose second axis leans by 45 degrees": 2,
     "seven axes by a table, the last held": 8,
     "seven axes with an elbow and a wrist beside them, the last held": 8,
 }

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from softkin import KinematicsError, Status
 
 from tests.machines import angle_machines
-from tests.machines.chain_machines import CHAIN_SOLUTIONS
+from tests.machines.chain_machines import BENT_WRISTS, CHAIN_SOLUTIONS
 from tests.machines.collection import HELD, MACHINES, PARAMETERS_DECIDE
 from tests.machines.made import Array, Made, made
 from tests.machines.task_machines import TASK_SOLUTIONS
@@ -214,6 +214,23 @@ def test_garbage_ends_in_a_status(name: str, garbage: float) -> None:
         controller = machine.controller()
         assert controller.forward([garbage] * count)[0] != OK
         assert controller.inverse((garbage, 0.0, 0.0), frame.rotation, (), [0.0] * count)[0] != OK
+
+
+@pytest.mark.parametrize("name", BENT_WRISTS)
+@pytest.mark.parametrize("degrees", [1e-3, 1e-5, 1e-7, 1e-9, 0.0])
+def test_a_leaning_axis_keeps_its_digits_near_zero(name: str, degrees: float) -> None:
+    """The entry of the rotation that tells A5 has lost them: it is one less a multiple of the squared angle."""
+    machine = made(name)
+    bent = next(k for k, joint in enumerate(machine.mechanism.joints) if joint.name == "A5")
+    axes = grid(machine)[-50:]
+    axes[:, bent] = machine.closure.offsets[bent] + degrees
+    positions, rotations = machine.closure.poses(axes)
+    slots, statuses = machine.robot.inverse_all_batch(positions, rotations, axes)
+    away = np.where(statuses == Status.OK, np.abs(slots[:, :, bent] - axes[:, None, bent]), np.inf)
+    assert away.min(axis=1).max() <= 1e-11
+    for slot in range(slots.shape[1]):
+        rows = statuses[:, slot] == Status.OK
+        assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= 1e-12
 
 
 def test_a_flange_that_bars_keep_level_turns_about_one_axis() -> None:

@@ -73,7 +73,7 @@ PACKAGE = "softkin"
 _VERSION = "0.1.0"
 """The version of the package, and of each package that is made for a user's machines."""
 _OF_THE_SEARCH = (
-    *("ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
+    *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
     *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
 )
 

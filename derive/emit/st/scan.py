@@ -37,6 +37,7 @@ SEARCH = {
     "aside": literal(cells.ASIDE),
     "bent": literal(cells.BENT),
     "near_zero": literal(cells.NEAR_ZERO),
+    "ahead": literal(roots.AHEAD),
     "vanishing": literal(roots.VANISHING),
     "next": literal(roots.NEXT),
     "touched": literal(cells.TOUCHED),

@@ -49,6 +49,7 @@ from derive.solver.subproblems.lateral import Row, aimed_at_point
 from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.origin import from_origin
 from derive.solver.subproblems.shortfall import out_of_reach
+from derive.solver.subproblems.small_entries import with_small_entries
 
 _ADDITION = "addition theorem: plus the angle of the direction from which the cosine is measured"
 
@@ -116,6 +117,8 @@ class _Amplitude:
     """(h - e)(h + e) made of lengths, where the factors are not: what is missing is read off it."""
     aimable: sp.Basic | None = None
     """Whether h is long enough to determine the angle, where joints can make it vanish; else None."""
+    left: sp.Expr = sp.Integer(0)
+    """e where h is too short to be divided by: then it has to vanish."""
 
 
 def _amplitude(
@@ -152,9 +155,10 @@ def _amplitude(
         divisor, aimable, guard = _vanishing(effective, (common, unit), angle, is_moved=is_moved)
     right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
     units = (along / divisor, across / divisor)
+    size, left = common * divisor, right.xreplace({divisor: effective})
     return _Amplitude(
-        naming, common * divisor, guard, *units, right, determinant, scale, factors, is_fixed=is_fixed, told=told,
-        aimable=aimable,
+        naming, size, guard, *units, right, determinant, scale, factors, is_fixed=is_fixed, told=told, aimable=aimable,
+        left=left,
     )  # fmt: skip
 
 
@@ -297,6 +301,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     length, right = amplitude.length, amplitude.right
     size = sp.Abs if amplitude.is_signed else sp.Add
     less, more = amplitude.factors or (_product(length - right), _product(length + right))
+    (less, more), column = with_small_entries(problem, equation, (less, more))
     scale: tuple[Let, ...] = (
         Let(twice, less_cos + plus_cos, "twice the scale, as the sum of both: then cosine and sine agree"),
         Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
@@ -305,7 +310,8 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     if amplitude.is_fixed:
         scale, below = (), 2 * length
     statements: list[Statement] = [
-        *amplitude.naming.lets,
+        *(let for let in amplitude.naming.lets if let not in column),
+        *column,
         *amplitude.guard,
         Let(less_cos, less, f"law of cosines for {angle.name} ({equation.label}): 1 - cosine, times a scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
@@ -333,7 +339,7 @@ def _cosine(
         return Let(name, value), check
     ratio, size = real(f"ratio_of_{angle.name}"), amplitude.determinant_scale
     near = sp.Le(sp.Abs(ratio), 1 + BOUNDARY / 2 * (1 + size / amplitude.length))
-    vanishes = sp.Le(sp.Abs(amplitude.right), FREE_ANGLE * size)
+    vanishes = sp.Le(sp.Abs(amplitude.left), FREE_ANGLE * size)
     is_met = sp.Or(sp.And(amplitude.aimable, near), sp.And(sp.Not(amplitude.aimable), vanishes))
     within = Select(sp.Gt(ratio, 1), sp.Integer(1), Select(sp.Lt(ratio, -1), sp.Integer(-1), ratio))
     return Let(ratio, value), Require(is_met, Status.UNREACHABLE, reason=reason), Let(name, within)

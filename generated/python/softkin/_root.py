@@ -13,6 +13,7 @@ from math import acos, atan2, hypot, pi, sqrt
 from typing import Any
 
 # The constants of `_cells` and `_roots`, where they are explained.
+AHEAD = 1e-7
 ASIDE = 0.47
 BENT = 0.125
 CELLS = 72
@@ -94,7 +95,7 @@ def _finished(
         if shift != SHIFTS[0] and search.trials + CELLS > _TRIALS - RESERVE:
             return
         places = search.roots(start, shift, _scanned(scan, start, shift, trial_given))
-        places.sort(key=lambda place: abs((place[0] - start + pi) % (2.0 * pi) - pi))
+        places.sort(key=lambda place: abs((place[0] - start - AHEAD + pi) % (2.0 * pi) - pi))
         is_there = False
         for place in places[: most - looked_at]:
             values = at(place)

@@ -47,6 +47,9 @@ CROWDED = 4 * CELLS
 _THIRD = 2.0 * np.pi / 3.0
 RIM = 0.999
 """The part of the strip, on which the two sides are one curve, that is searched."""
+AHEAD = 1e-7
+"""The nearest root is the one nearest to a joint that is ahead of the start by this (radians). Where a machine is
+symmetric about its start, roots are as far to both sides, and rounding would choose, in every language another one."""
 VANISHING = 1e-10
 """A trial with a value up to this is a candidate for a root, whatever its neighbours are: for example the reference."""
 Finish = Callable[[At], tuple[Flags, Reals]]
@@ -97,7 +100,7 @@ def _of_rows(asked: Callable[[At], T], rows: Rows) -> Callable[[At], T]:
 def _nearest(trial: Trial, finish: Finish, start: Reals, shift: float) -> tuple[Flags, Reals]:
     place = find_roots(trial, start, shift)
     is_wanted, values = finish(place)
-    away = place.joint - start[place.rows]
+    away = place.joint - start[place.rows] - AHEAD
     away = np.abs(away - 2.0 * np.pi * np.round(away / (2.0 * np.pi)))
     fits = np.flatnonzero(is_wanted)
     order = fits[np.lexsort((away[fits], place.rows[fits]))]

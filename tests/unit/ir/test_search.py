@@ -11,7 +11,7 @@ from softkin._root import every_root
 from softkin._roots import CELLS
 
 from derive.ir.cells import At
-from derive.ir.roots import find_roots
+from derive.ir.roots import find_roots, nearest
 
 Array = NDArray[np.float64]
 Trial = Callable[[Array, Array, Array, Array], tuple[Array, ...]]
@@ -216,3 +216,24 @@ def test_a_direction_that_turns_around_an_end(
     wanted = [t for t, side, _ in search(trial, start) if side > 0]
     for expected in (centre - away, centre + away):
         assert any(abs(np.exp(1j * t) - np.exp(1j * expected)) < 1e-9 for t in wanted)
+
+
+@pytest.mark.parametrize("apart", (1e-4, 0.3, 1.5, 3.1))
+@pytest.mark.parametrize("start", (-2.0, 0.1, 3.0))
+@pytest.mark.parametrize("rounding", (-1e-15, 0.0, 1e-15))
+def test_of_two_roots_as_near_the_one_ahead_is_taken(apart: float, start: float, rounding: float) -> None:
+    """Whatever is rounded: a machine that is symmetric about its start has such roots."""
+
+    def value(t: Array) -> Array:
+        return np.asarray(np.cos(t - start - rounding) - np.cos(apart))
+
+    trial = free_of_guard(value, lambda t: -np.sin(t - start - rounding))
+
+    def at(place: At) -> Array:
+        said = trial(place.joint, place.side, place.freed.astype(float), place.angle)
+        return np.stack([np.broadcast_to(v, place.joint.shape) for v in said], axis=1)
+
+    found, answer = nearest(at, lambda place: (place.side > 0, place.joint[:, None]), np.array([start]))
+    assert found.all() and abs(np.exp(1j * answer[0, 0]) - np.exp(1j * (start + apart))) < 1e-9
+    joint = on_numbers(trial, start)[0][0]
+    assert abs(np.exp(1j * joint) - np.exp(1j * (start + apart))) < 1e-9

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -10,7 +12,9 @@ from hypothesis import strategies as st
 
 from derive.algebra.angle_sums import symbol_of_sum
 from derive.algebra.normal_form import polynomial
+from derive.equations.known_turns import Side, joints_of
 from derive.equations.problem import Problem
+from derive.geometry.frames import Factor, Motion
 from derive.ir.symbols import (
     cosine,
     real,
@@ -161,3 +165,16 @@ def test_the_rest_of_a_sum_is_subtracted_as_a_whole(turns: tuple[float, float, f
     values, _ = execute(binding.statements, named)
     assert distance(angle_of(values, A3), turns[2]) <= 1e-12
     assert distance(angle_of(values, real("a12")), turns[0] + turns[1]) <= 1e-12
+
+
+def test_a_frame_behind_a_turn_that_a_sum_stands_in_is_named_by_its_joints() -> None:
+    """Behind `a23 - a2`, and behind `a123 - a23` with a sum of sums, there are the joints A3 and A1."""
+    turned = tuple(Factor(Motion.TURN, 1, angle) for angle in (A2, A3, A1))
+    first = substitute(replace(CLOSURE, turns=turned), Sum(real("a23"), ((A2, 1), (A3, 1)), A3))
+    second = substitute(first, Sum(real("a123"), ((real("a23"), 1), (A1, 1)), A1))
+    assert [t.amount for t in second.turns] == [A2, real("a23") - A2, real("a123") - real("a23")]
+    side, names = Side("from", "base"), []
+    for turn in second.turns:
+        side = side.behind(joints_of(second, turn), turn)
+        names.append(side.suffix)
+    assert names == ["_from_a2", "_from_a23", "_from_a231"]
