@@ -14,7 +14,7 @@ from jinja2 import Environment
 from derive.description.dimensions import Role
 from derive.emit.language import GENERATED, Part, environment
 from derive.emit.python import entries, setup
-from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
+from derive.emit.python.arrays import CALLED, OF_A_SEARCH, TYPES, array_body, named_in, values_of_a_row
 from derive.emit.python.calls import every_root
 from derive.emit.python.finish import Function
 from derive.emit.python.layout import formatted
@@ -159,6 +159,7 @@ def _templates() -> Environment:
         "generated": GENERATED,
         "statuses": [{"name": s.name, "softmotion": s.value, "meaning": _MEANINGS[s]} for s in Status],
         "chunk": _CHUNK,
+        "values_of_a_search": OF_A_SEARCH,
         "edge": literal(float(EDGE)),
         "held": literal(float(HELD)),
         "free_angle": literal(float(FREE_ANGLE)),
@@ -284,6 +285,7 @@ def _array_context(kin: Kinematics, arrays: Sequence[Method]) -> dict[str, Any]:
         "array_programs": array_programs,
         "imports": _sorted({array_programs} | named_in(lines, CALLED)),
         "types": _sorted(named_in(lines, TYPES)),
+        "values": values_of_a_row(kin),
         "methods": [
             {"head": head, "summary": m.summary, "body": body} for m, (head, body) in zip(arrays, texts, strict=True)
         ],

@@ -208,18 +208,15 @@ class Mechanism(Value, ABC):
 
     def _one_sided_window(self, key: str, low: float, high: float, otherwise: tuple[float, float] | None) -> Window:
         """The range of an axis of which one end is not limited; where it always has limits, these are that end."""
+        tolerance = 1e-9 + sum([1e-9 * abs(end) for end in (low, high) if isfinite(end)])
         if otherwise is not None:
-            low, high = (
-                max(low, otherwise[0]) if isfinite(low) else otherwise[0],
-                high if isfinite(high) else otherwise[1],
-            )
+            low, high = max(low, otherwise[0]), min(high, otherwise[1])
             if not low < high:
                 raise self._refusal(f"lower_{key} below upper_{key}", f"lower_{key}", f"upper_{key}")
-        tolerance = sum(1e-9 * abs(end) for end in (low, high) if isfinite(end)) + 1e-9
         if not self.checks_limits:
             low, high = -inf, inf
-        ends = low - tolerance if isfinite(low) else -1e12, high + tolerance if isfinite(high) else 1e12
-        return Window(*ends, False, 0.0)
+        lowest = low - tolerance if isfinite(low) else -1e12
+        return Window(lowest, high + tolerance if isfinite(high) else 1e12, False, 0.0)
 
     def _refusal(self, condition: str, *names: str) -> KinematicsError:
         """The error for the named parameters, which violate a condition; the condition on a single one is its range."""
@@ -541,9 +538,13 @@ class Mechanism(Value, ABC):
         self, position: Vector, rotation: Rotation, reference: Reals
     ) -> Iterable[tuple[Signs, Reals | Diagnosis]]:
         """The axes of every branch on open turns, or why it has none; limits are not tested."""
-        turns = (0,) * len(self.PERIOD_AXES)
-        for _, signs in slots((AUTOMATIC,) * self.BRANCHES):
-            yield signs, self._branch(position, rotation, signs, turns, reference)
+        every, turns = slots((AUTOMATIC,) * self.BRANCHES), (0,) * len(self.PERIOD_AXES)
+        solve: Branches | None = getattr(self, "_all_trusted", None)
+        if solve is not None and getattr(self, "_finish", None) is not None and reasonable(*position, *reference):
+            found = solve((position, rotation), reference)
+            if any(found):  # else why there is none
+                return [(signs, axes) for (_, signs), axes in zip(every, found, strict=True) if axes is not None]
+        return [(signs, self._branch(position, rotation, signs, turns, reference)) for _, signs in every]
 
     def _has_one_solution_a_branch(self) -> bool:
         """Whether a branch has one solution at most, but for turns."""

@@ -28,6 +28,8 @@ def limit_keys(parameters: Iterable[Parameter]) -> tuple[str, ...]:
 def limit_names(parameters: Iterable[Parameter], axes: tuple[Axis, ...]) -> dict[str, str]:
     """The name in a mapping of limits → the last part of the names of its parameters."""
     keys = limit_keys(parameters)
+    if not keys:  # a coupling: its parts have the limits
+        return {}
     return dict(zip((*(axis.name for axis in axes), *keys[len(axes) :]), keys, strict=True))
 
 

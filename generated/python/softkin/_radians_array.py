@@ -16,6 +16,7 @@ class RadianPrograms(OrientationPrograms):
         """part: the programs in degrees. angles: which axes are angles."""
         self.part: Any = part
         self.angles = angles
+        self.VALUES = part.VALUES + 2 * len(angles)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Forward kinematics."""

@@ -33,7 +33,7 @@ def free(one: softkin.Mechanism) -> softkin.Mechanism:
 def every_slot(one: softkin.Mechanism, frame: softkin.Frame, near: Axes) -> Iterator[tuple[softkin.Solution, Axes]]:
     """Every solution of every slot."""
     for slot in one.inverse_all(frame, near):
-        for axes in (() if slot.axes is None else (slot.axes, *slot.others)):
+        for axes in () if slot.axes is None else (slot.axes, *slot.others):
             yield slot, axes
 
 
@@ -68,15 +68,15 @@ def by_adding(one: softkin.Mechanism, frame: softkin.Frame, near: Axes) -> list[
 
 def distance(one: softkin.Mechanism, axes: Axes, near: Axes, weights: Array | None, measure: str) -> float:
     """The distance in words of the documentation."""
-    counted = [i for i, a in enumerate(one.AXES) if a.unit == "deg"] or list(range(len(one.AXES)))
-    if isinstance(one, softkin.Coupled) or counted:
-        factors = np.zeros(len(axes))
-        factors[list(one._criteria[0].axes)] = 1.0
+    factors = np.zeros(len(axes))
+    factors[list(one._criteria[0].axes)] = 1.0
     apart = (factors if weights is None else weights) * (np.array(axes) - near)
     return float(np.abs(apart).max(initial=0.0) if measure == "largest" else (apart * apart).sum())
 
 
-def answered(one: softkin.Mechanism, frame: softkin.Frame, near: Axes, weights: Array | None, measure: str) -> Axes | None:
+def answered(
+    one: softkin.Mechanism, frame: softkin.Frame, near: Axes, weights: Array | None, measure: str
+) -> Axes | None:
     """What `nearest` answers; None where it refuses, with a reason."""
     try:
         found = one.nearest(frame, near, weights=weights, measure=measure)  # type: ignore[arg-type]
@@ -192,4 +192,6 @@ def test_an_axis_that_is_free_keeps_to_its_limits() -> None:
     )
     frame = robot.forward((0.0, 20.0, 180.0, 0.0))[0]  # the wrist is on axis A2
     found = robot.nearest(frame, (0.0, 130.0, 180.0, 0.0))
-    assert found[1] == pytest.approx(60.0) and robot.forward(found)[0].position == pytest.approx(frame.position, abs=1e-9)
+    assert found[1] == pytest.approx(60.0) and robot.forward(found)[0].position == pytest.approx(
+        frame.position, abs=1e-9
+    )

@@ -31,13 +31,13 @@ def test_a_line_is_straight_and_continuous(name: str) -> None:
         assert line.configuration == configuration or 0 in configuration or 3 in configuration
         assert bool(line) == (line.stop is None) and line.corners[0].position == start.position
         assert list(line.places) == sorted(line.places) and line.places[-1] <= 1.0
-        wanted = configuration[: robot.BRANCHES]
+        wanted = tuple(configuration[i] for i in robot._branch_bytes)
         for place, frame, axes in zip(line.places, line.frames, line.axes, strict=True):
             on_line = np.array(start.position) + place * np.subtract(goal.position, start.position)
             assert np.abs(on_line - frame.position).max() < 1e-9 * one.reach
             assert robot._beyond_limits(axes) is None
-            solved = robot.inverse(frame, configuration[: robot.BRANCHES] + (0,) * len(robot.PERIOD_AXES), axes) if not isinstance(robot, softkin.Coupled) else axes
-            assert solved == pytest.approx(axes, abs=1e-6 * (1.0 + one.reach)), (place, wanted)
+            again = robot._joined(wanted, (0,) * len(robot.PERIOD_AXES))
+            assert robot.inverse(frame, again, axes) == pytest.approx(axes, abs=1e-6 * (1.0 + one.reach)), place
         if line.stop is not None:
             assert line.stop.place == line.places[-1] < 1.0
             assert line.stop.refusal.status is not Status.OK and line.stop.refusal.reason

@@ -56,7 +56,11 @@ def test_every_call_is_that_of_the_machine_in_degrees(name: str) -> None:
                 first = outcome(getattr(made, call), frame, reference=near)
                 second = outcome(getattr(own, call), frame, reference=close)
                 assert type(first) is type(second)
-                assert str(second).endswith(said(made, first)) if isinstance(first, Exception) else same(made, second, first)
+                assert (
+                    str(second).endswith(said(made, first))
+                    if isinstance(first, Exception)
+                    else same(made, second, first)
+                )
             for mine, slot in zip(own.inverse_all(frame, close), made.inverse_all(frame, near), strict=True):
                 assert mine.configuration == slot.configuration and mine.status == slot.status
                 assert same(made, mine.axes, slot.axes) and len(mine.others) == len(slot.others)
@@ -108,7 +112,11 @@ def test_batches(name: str) -> None:
 def test_what_it_is() -> None:
     """Limits, offsets, parameters, axes and reasons are in radians; it is a value, too."""
     robot = softkin.Scara4ZCcoupledType1(
-        link_length_1=325.0, link_length_2=225.0, pitch_zc=20.0, offset_a1=90.0, limits={"A1": (-90.0, 180.0), "A2": (None, 90.0)}
+        link_length_1=325.0,
+        link_length_2=225.0,
+        pitch_zc=20.0,
+        offset_a1=90.0,
+        limits={"A1": (-90.0, 180.0), "A2": (None, 90.0)},
     )
     own = robot.in_radians()
     assert own.limits["A1"] == pytest.approx((-math.pi / 2, math.pi)) and own.limits["A2"] == (None, math.pi / 2)
