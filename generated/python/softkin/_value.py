@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Mapping
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Self, TypeVar, cast
@@ -137,7 +136,7 @@ class Value:
 
     @property
     def limits(self) -> dict[str, Ends | None]:
-        """The limits that are given: by axis (lower, upper), where None is an end without a limit; or None for no limit.
+        """The limits that are given: by axis (lower, upper), with None for an end without a limit; None for no limit.
 
         The names are those of the axes, then those of other quantities with limits. In the unit of the axis.
         """
@@ -194,11 +193,15 @@ class Value:
 
     def to_json(self) -> str:
         """`to_dict` as JSON."""
+        import json
+
         return json.dumps(self.to_dict())
 
     @classmethod
     def from_json(cls, text: str) -> Self:
         """The machine of `to_json`: see `from_dict`."""
+        import json
+
         try:
             given = json.loads(text)
         except ValueError as error:
