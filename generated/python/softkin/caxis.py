@@ -36,6 +36,7 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -77,8 +78,19 @@ class CAxis(OrientationKinematics, TwistChoice):
     PERIOD_AXES = (0,)
     DISTANCE_AXES = (0,)
 
+    offset_c: float
+    lower_c: float
+    upper_c: float
+    check_limits: bool
+
     def __init__(
-        self, *, offset_c: float = 0.0, lower_c: float = 0.0, upper_c: float = 0.0, check_limits: bool = True
+        self,
+        *,
+        offset_c: float = 0.0,
+        lower_c: float = 0.0,
+        upper_c: float = 0.0,
+        check_limits: bool = True,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -86,9 +98,11 @@ class CAxis(OrientationKinematics, TwistChoice):
         lower_c: C: lower limit of the axis, both 0: no limit [deg]
         upper_c: C: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

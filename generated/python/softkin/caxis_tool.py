@@ -38,6 +38,7 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -87,6 +88,14 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     PERIOD_AXES = (0,)
     DISTANCE_AXES = (0,)
 
+    tool_x: float
+    tool_y: float
+    tool_z: float
+    offset_c: float
+    lower_c: float
+    upper_c: float
+    check_limits: bool
+
     def __init__(
         self,
         *,
@@ -97,6 +106,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         lower_c: float = 0.0,
         upper_c: float = 0.0,
         check_limits: bool = True,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -107,9 +117,11 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         lower_c: C: lower limit of the axis, both 0: no limit [deg]
         upper_c: C: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

@@ -41,6 +41,7 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -97,6 +98,17 @@ class Crane(OffsetKinematics):
     PERIOD_AXES = (1,)
     DISTANCE_AXES = (1, 2)
 
+    offset_r: float
+    offset_theta: float
+    offset_phi: float
+    lower_r: float
+    upper_r: float
+    lower_theta: float
+    upper_theta: float
+    lower_phi: float
+    upper_phi: float
+    check_limits: bool
+
     def __init__(
         self,
         *,
@@ -110,6 +122,7 @@ class Crane(OffsetKinematics):
         lower_phi: float = 0.0,
         upper_phi: float = 0.0,
         check_limits: bool = True,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -123,9 +136,11 @@ class Crane(OffsetKinematics):
         lower_phi: Phi: lower limit of the axis, both 0: joint value 0 .. 180 [deg]
         upper_phi: Phi: upper limit of the axis, both 0: joint value 0 .. 180 [deg]
         check_limits: inverse kinematics tests the limits
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

@@ -36,6 +36,7 @@ from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -89,6 +90,17 @@ class Gantry3(OffsetKinematics):
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1, 2)
 
+    offset_x: float
+    offset_y: float
+    offset_z: float
+    lower_x: float
+    upper_x: float
+    lower_y: float
+    upper_y: float
+    lower_z: float
+    upper_z: float
+    check_limits: bool
+
     def __init__(
         self,
         *,
@@ -102,6 +114,7 @@ class Gantry3(OffsetKinematics):
         lower_z: float = 0.0,
         upper_z: float = 0.0,
         check_limits: bool = True,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -115,9 +128,11 @@ class Gantry3(OffsetKinematics):
         lower_z: Z: lower limit of the axis, both 0: no limit [u]
         upper_z: Z: upper limit of the axis, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

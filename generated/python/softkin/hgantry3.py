@@ -37,6 +37,7 @@ from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -96,6 +97,21 @@ class HGantry3(OffsetKinematics):
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1, 2)
 
+    offset_a: float
+    offset_b: float
+    offset_z: float
+    lower_a: float
+    upper_a: float
+    lower_b: float
+    upper_b: float
+    lower_z: float
+    upper_z: float
+    lower_x: float
+    upper_x: float
+    lower_y: float
+    upper_y: float
+    check_limits: bool
+
     def __init__(
         self,
         *,
@@ -113,6 +129,7 @@ class HGantry3(OffsetKinematics):
         lower_y: float = 0.0,
         upper_y: float = 0.0,
         check_limits: bool = True,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -130,9 +147,11 @@ class HGantry3(OffsetKinematics):
         lower_y: lower limit of Y of the carriage, both 0: no limit [u]
         upper_y: upper limit of Y of the carriage, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
@@ -193,6 +212,17 @@ class HGantry3(OffsetKinematics):
         if not lowest_y <= value_y <= highest_y:
             return beyond("Y of the carriage", value_y, lowest_y, highest_y, "u")
         return None
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        axis_a, axis_b, _ = axes
+        k = self._constants
+        offset_a, offset_b = k.offset_a, k.offset_b
+        a = axis_a - offset_a
+        b = axis_b - offset_b
+        value_x = 0.5 * (a - b)  # X of the carriage
+        value_y = -0.5 * (a + b)  # Y of the carriage
+        return (value_x, value_y)
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""

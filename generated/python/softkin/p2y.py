@@ -35,6 +35,7 @@ from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -91,6 +92,18 @@ class P2Y(OffsetKinematics):
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1)
 
+    offset_a1: float
+    offset_a2: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_x: float
+    upper_x: float
+    lower_y: float
+    upper_y: float
+    check_limits: bool
+
     def __init__(
         self,
         *,
@@ -105,6 +118,7 @@ class P2Y(OffsetKinematics):
         lower_y: float = 0.0,
         upper_y: float = 0.0,
         check_limits: bool = True,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -119,9 +133,11 @@ class P2Y(OffsetKinematics):
         lower_y: lower limit of Y of the carriage, both 0: no limit [u]
         upper_y: upper limit of Y of the carriage, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
@@ -184,6 +200,17 @@ class P2Y(OffsetKinematics):
         if not lowest_y <= value_y <= highest_y:
             return beyond("Y of the carriage", value_y, lowest_y, highest_y, "u")
         return None
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        axis_a1, axis_a2 = axes
+        k = self._constants
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        value_x = 0.5 * (a1 - a2)  # X of the carriage
+        value_y = 0.5 * (a1 + a2)  # Y of the carriage
+        return (value_x, value_y)
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""

@@ -43,6 +43,7 @@ from softkin._unrolled.pcc import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -114,6 +115,18 @@ class PCC(OffsetKinematics):
     PERIOD_AXES = (0, 1)
     DISTANCE_AXES = (0, 1)
 
+    link_length_1: float
+    link_length_2: float
+    offset_a1: float
+    offset_a2: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_elbow: float
+    upper_elbow: float
+    check_limits: bool
+
     def __init__(
         self,
         *,
@@ -128,6 +141,7 @@ class PCC(OffsetKinematics):
         lower_elbow: float = 0.0,
         upper_elbow: float = 0.0,
         check_limits: bool = True,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -142,10 +156,12 @@ class PCC(OffsetKinematics):
         lower_elbow: lower limit of the outer arm relative to the inner arm, both 0: no limit [deg]
         upper_elbow: upper limit of the outer arm relative to the inner arm, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
@@ -289,6 +305,16 @@ class PCC(OffsetKinematics):
                 },
             )
         return None
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        axis_a1, axis_a2 = axes
+        k = self._constants
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        value_elbow = (a2 - a1) / DEGREE  # the outer arm relative to the inner arm
+        return (value_elbow,)
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""

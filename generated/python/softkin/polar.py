@@ -40,6 +40,7 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -93,6 +94,14 @@ class Polar(Mechanism):
     PERIOD_AXES = (0,)
     DISTANCE_AXES = (0,)
 
+    offset_c: float
+    offset_r: float
+    lower_c: float
+    upper_c: float
+    lower_r: float
+    upper_r: float
+    check_limits: bool
+
     def __init__(
         self,
         *,
@@ -103,6 +112,7 @@ class Polar(Mechanism):
         lower_r: float = 0.0,
         upper_r: float = 0.0,
         check_limits: bool = True,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -113,9 +123,11 @@ class Polar(Mechanism):
         lower_r: R: lower limit of the axis, both 0: joint value 0 or more [u]
         upper_r: R: upper limit of the axis, both 0: joint value 0 or more [u]
         check_limits: inverse kinematics tests the limits
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

@@ -46,6 +46,7 @@ from softkin._unrolled.scara3_z import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -121,6 +122,23 @@ class Scara3Z(TwistChoice):
     PERIOD_AXES = (0, 1, 2)
     DISTANCE_AXES = (0, 1, 2)
 
+    arm_length_1: float
+    arm_length_2: float
+    arm_length_3: float
+    offset_a1: float
+    offset_a2: float
+    offset_a3: float
+    offset_z: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_a3: float
+    upper_a3: float
+    lower_z: float
+    upper_z: float
+    check_limits: bool
+
     def __init__(
         self,
         *,
@@ -140,6 +158,7 @@ class Scara3Z(TwistChoice):
         lower_z: float = 0.0,
         upper_z: float = 0.0,
         check_limits: bool = True,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -159,10 +178,12 @@ class Scara3Z(TwistChoice):
         lower_z: Z: lower limit of the axis, both 0: no limit [u]
         upper_z: Z: upper limit of the axis, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

@@ -52,6 +52,7 @@ from softkin._unrolled.sccc import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -147,6 +148,27 @@ class SCCC(OffsetKinematics, TwistChoice):
     PERIOD_AXES = (0, 1, 2)
     DISTANCE_AXES = (0, 1, 2)
 
+    link_length_1: float
+    link_length_2: float
+    link_length_3: float
+    coupling_12: float
+    coupling_13: float
+    coupling_23: float
+    offset_a1: float
+    offset_a2: float
+    offset_a3: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_a3: float
+    upper_a3: float
+    lower_joint_2: float
+    upper_joint_2: float
+    lower_joint_3: float
+    upper_joint_3: float
+    check_limits: bool
+
     def __init__(
         self,
         *,
@@ -170,6 +192,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         lower_joint_3: float = 0.0,
         upper_joint_3: float = 0.0,
         check_limits: bool = True,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -193,10 +216,12 @@ class SCCC(OffsetKinematics, TwistChoice):
         lower_joint_3: lower limit of joint 3, both 0: no limit [deg]
         upper_joint_3: upper limit of joint 3, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
@@ -407,6 +432,21 @@ class SCCC(OffsetKinematics, TwistChoice):
                 },
             )
         return None
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        axis_a1, axis_a2, axis_a3 = axes
+        k = self._constants
+        coupling_12, coupling_13, coupling_23, offset_a1 = k.coupling_12, k.coupling_13, k.coupling_23, k.offset_a1
+        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        motor_a2 = DEGREE * (axis_a2 - offset_a2)
+        a2 = motor_a2 + a1 * coupling_12
+        value_joint_2 = a2 / DEGREE  # joint 2
+        motor_a3 = DEGREE * (axis_a3 - offset_a3)
+        a3 = motor_a3 + a1 * coupling_13 + coupling_23 * motor_a2
+        value_joint_3 = a3 / DEGREE  # joint 3
+        return (value_joint_2, value_joint_3)
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""

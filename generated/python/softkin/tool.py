@@ -33,6 +33,7 @@ from softkin._types import Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -75,8 +76,19 @@ class Tool(OrientationKinematics):
     PERIOD_AXES = ()
     DISTANCE_AXES = ()
 
+    tool_x: float
+    tool_y: float
+    tool_z: float
+    check_limits: bool
+
     def __init__(
-        self, *, tool_x: float = 0.0, tool_y: float = 0.0, tool_z: float = 0.0, check_limits: bool = True
+        self,
+        *,
+        tool_x: float = 0.0,
+        tool_y: float = 0.0,
+        tool_z: float = 0.0,
+        check_limits: bool = True,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -84,9 +96,11 @@ class Tool(OrientationKinematics):
         tool_y: Flange to the tool, along Y [u]
         tool_z: Flange to the tool, along Z [u]
         check_limits: inverse kinematics tests the limits
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

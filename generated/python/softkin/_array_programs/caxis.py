@@ -29,6 +29,7 @@ class ArrayPrograms(OrientationPrograms):
     """The programs of one machine, for its constants."""
 
     constants: Constants
+    VALUES = 15
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
