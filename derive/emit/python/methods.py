@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from derive.emit.python.calls import GIVEN
 from derive.emit.python.program import Argument, Method, Shape
-from derive.kinematics.differential import TWIST_ROWS
 from derive.equations.limits import value_of
 from derive.ir.passes import normalise
 from derive.ir.program import Output
+from derive.kinematics.differential import TWIST_ROWS
 from derive.kinematics.kinematics import Kinematics
 
 POSITION: tuple[Shape, ...] = ("x", "y", "z")

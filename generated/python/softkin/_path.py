@@ -9,8 +9,9 @@ from math import floor
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._configuration import slots
+from softkin._frame import Frame
 from softkin._slerp import between
-from softkin._types import Configuration, Diagnosis, Frame, FrameLike, KinematicsError, Numbers, Reals, Signs, Status
+from softkin._types import Configuration, Diagnosis, FrameLike, KinematicsError, Numbers, Reals, Signs, Status
 
 if TYPE_CHECKING:
     from softkin._core import Mechanism

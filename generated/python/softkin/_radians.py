@@ -15,7 +15,6 @@ from softkin._input import reals
 from softkin._offset import OffsetKinematics
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import DEGREE, RADIAN
-from softkin._search import SearchedInverse
 from softkin._start import IterativeForward
 from softkin._twist import TwistChoice
 from softkin._types import (
@@ -50,8 +49,8 @@ def in_radians(part: Mechanism) -> Mechanism:
     cls = type(part)
     if cls not in _classes:
         roles = tuple(role for role in _ROLES if issubclass(cls, role))
-        listed = {} if not cls.PARAMETERS else {"PARAMETERS": tuple(map(_parameter, cls.PARAMETERS))}
-        own = {"__slots__": (), "__doc__": f"{cls.__name__} in radians.", "__module__": __name__, **listed}
+        listed = tuple(map(_parameter, cls.PARAMETERS))
+        own = {"__slots__": (), "__doc__": f"{cls.__name__} in radians.", "__module__": __name__, "PARAMETERS": listed}
         made_class = ABCMeta(f"{cls.__name__}InRadians", (InRadians, *roles), own)
         _classes[cls] = cast("type[Mechanism]", made_class)
     made: Any = _classes[cls]
@@ -115,7 +114,7 @@ class InRadians(Mechanism):
 
     def changed(self, **parameters: Any) -> Any:
         """The same machine with other values for some parameters, in radians."""
-        units = {p.name: p.unit for p in self.part.PARAMETERS}
+        units = self.part._parameter_units()
         given = {name: value * RADIAN if units.get(name) == "deg" else value for name, value in parameters.items()}
         if given.get("limits"):
             given["limits"] = {name: self._limit_in_degrees(name, ends) for name, ends in given["limits"].items()}
@@ -128,8 +127,7 @@ class InRadians(Mechanism):
 
     def _limit_is_angle(self, name: str) -> bool:
         units = {axis.name: axis.unit for axis in self.part.AXES}
-        units |= {p.name.removeprefix("lower_"): p.unit for p in self.part.PARAMETERS if p.name.startswith("lower_")}
-        return units.get(name) == "deg"
+        return units.get(name, self.part._parameter_units().get(f"lower_{name}")) == "deg"
 
     @property
     def limits(self) -> dict[str, Any]:
@@ -180,7 +178,7 @@ class InRadians(Mechanism):
 
     def inverse_all(self, frame: FrameLike, reference: Numbers | None = None) -> Sequence[Solution]:
         """Every branch of the inverse, in fixed slots: see the same call of `part`."""
-        if not isinstance(self.part, SearchedInverse):
+        if self.part._has_one_solution_a_branch():
             return super().inverse_all(frame, reference)
         near = None if reference is None else self._deg(reals(reference, len(self.AXES), "reference"))
         return tuple(self._solution_in_radians(s) for s in self.part.inverse_all(frame, near))
@@ -232,6 +230,18 @@ class InRadians(Mechanism):
 
     def _twist(self, axes: Reals) -> Matrix | Status:
         return self.part._twist(self._deg(axes))
+
+    def _turns_unseen(self) -> bool:
+        return self.part._turns_unseen()
+
+    def _follows(self) -> str:
+        return self.part._follows()
+
+    def _nearest_flange(self, rotation: Rotation) -> Rotation | Status:
+        return self.part._nearest_flange(rotation)
+
+    def _parameter_units(self) -> dict[str, str]:
+        return {name: "rad" if unit == "deg" else unit for name, unit in self.part._parameter_units().items()}
 
     def _image(self) -> Image | Status:
         return self.part._image()

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from softkin._array import Codes, OrientationPrograms, Programs, Reals, Rotation, Signs, Turns, Vector
+from softkin._array import Codes, Matrix, OrientationPrograms, Programs, Reals, Rotation, Signs, Turns, Vector
 from softkin._scalar import DEGREE, RADIAN
 
 
@@ -45,6 +45,22 @@ class RadianPrograms(OrientationPrograms):
     def limits(self, axes: Reals) -> Codes:
         """The statuses of the test of all limits."""
         return self.part.limits(self._deg(axes))  # type: ignore[no-any-return]
+
+    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The Jacobian by rows, per radian."""
+        return self.part.jacobian(self._deg(axes))  # type: ignore[no-any-return]
+
+    def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
+        """The margins, each zero at its singularity."""
+        return self.part.singularity(self._deg(axes))  # type: ignore[no-any-return]
+
+    def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
+        """The twist of the frame by rows, per radian."""
+        return self.part.twist(self._deg(axes))  # type: ignore[no-any-return]
+
+    def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
+        """The nearest rotation that the flange can have."""
+        return self.part.projection(rotation)  # type: ignore[no-any-return]
 
     def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
         """The vector to the end point of an orientation kinematics."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from math import acos, hypot, sin
 
-from softkin._types import Frame, Rotation
+from softkin._frame import Frame
+from softkin._types import Rotation
 
 Quaternion = tuple[float, float, float, float]
 _STRAIGHT = 1e-9

@@ -201,17 +201,6 @@ class P2Y(OffsetKinematics):
             return beyond("Y of the carriage", value_y, lowest_y, highest_y, "u")
         return None
 
-    def _quantities(self, axes: Reals) -> Reals | Status:
-        """The quantities beside the axes that have limits."""
-        axis_a1, axis_a2 = axes
-        k = self._constants
-        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
-        a1 = axis_a1 - offset_a1
-        a2 = axis_a2 - offset_a2
-        value_x = 0.5 * (a1 - a2)  # X of the carriage
-        value_y = 0.5 * (a1 + a2)  # Y of the carriage
-        return (value_x, value_y)
-
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2 = axes
@@ -227,6 +216,17 @@ class P2Y(OffsetKinematics):
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         return ((0.5, -0.5), (0.5, 0.5))
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        axis_a1, axis_a2 = axes
+        k = self._constants
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        value_x = 0.5 * (a1 - a2)  # X of the carriage
+        value_y = 0.5 * (a1 + a2)  # Y of the carriage
+        return (value_x, value_y)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

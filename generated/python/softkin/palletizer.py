@@ -469,16 +469,6 @@ class Palletizer(OffsetKinematics, TwistChoice):
             )
         return None
 
-    def _quantities(self, axes: Reals) -> Reals | Status:
-        """The quantities beside the axes that have limits."""
-        _, axis_a2, axis_a3, _ = axes
-        k = self._constants
-        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
-        a2 = DEGREE * (axis_a2 - offset_a2)
-        a3 = DEGREE * (axis_a3 - offset_a3)
-        value_elbow = (a3 - a2) / DEGREE  # the forearm relative to the rear arm
-        return (value_elbow,)
-
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
@@ -605,6 +595,16 @@ class Palletizer(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 0.0, 0.0, 1.0),
         )
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        _, axis_a2, axis_a3, _ = axes
+        k = self._constants
+        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        value_elbow = (a3 - a2) / DEGREE  # the forearm relative to the rear arm
+        return (value_elbow,)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

@@ -306,16 +306,6 @@ class PCC(OffsetKinematics):
             )
         return None
 
-    def _quantities(self, axes: Reals) -> Reals | Status:
-        """The quantities beside the axes that have limits."""
-        axis_a1, axis_a2 = axes
-        k = self._constants
-        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
-        a1 = DEGREE * (axis_a1 - offset_a1)
-        a2 = DEGREE * (axis_a2 - offset_a2)
-        value_elbow = (a2 - a1) / DEGREE  # the outer arm relative to the inner arm
-        return (value_elbow,)
-
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2 = axes
@@ -344,6 +334,16 @@ class PCC(OffsetKinematics):
         cos_a1 = cos(a1)
         cos_a2 = cos(a2)
         return ((-link_length_1 * sin_a1, -link_length_2 * sin_a2), (link_length_1 * cos_a1, link_length_2 * cos_a2))
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        axis_a1, axis_a2 = axes
+        k = self._constants
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        value_elbow = (a2 - a1) / DEGREE  # the outer arm relative to the inner arm
+        return (value_elbow,)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

@@ -433,21 +433,6 @@ class SCCC(OffsetKinematics, TwistChoice):
             )
         return None
 
-    def _quantities(self, axes: Reals) -> Reals | Status:
-        """The quantities beside the axes that have limits."""
-        axis_a1, axis_a2, axis_a3 = axes
-        k = self._constants
-        coupling_12, coupling_13, coupling_23, offset_a1 = k.coupling_12, k.coupling_13, k.coupling_23, k.offset_a1
-        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
-        a1 = DEGREE * (axis_a1 - offset_a1)
-        motor_a2 = DEGREE * (axis_a2 - offset_a2)
-        a2 = motor_a2 + a1 * coupling_12
-        value_joint_2 = a2 / DEGREE  # joint 2
-        motor_a3 = DEGREE * (axis_a3 - offset_a3)
-        a3 = motor_a3 + a1 * coupling_13 + coupling_23 * motor_a2
-        value_joint_3 = a3 / DEGREE  # joint 3
-        return (value_joint_2, value_joint_3)
-
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3 = axes
@@ -539,6 +524,21 @@ class SCCC(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0),
             (coupling_12_plus_coupling_13_plus_one, coupling_23_plus_one, 1.0),
         )
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        axis_a1, axis_a2, axis_a3 = axes
+        k = self._constants
+        coupling_12, coupling_13, coupling_23, offset_a1 = k.coupling_12, k.coupling_13, k.coupling_23, k.offset_a1
+        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        motor_a2 = DEGREE * (axis_a2 - offset_a2)
+        a2 = motor_a2 + a1 * coupling_12
+        value_joint_2 = a2 / DEGREE  # joint 2
+        motor_a3 = DEGREE * (axis_a3 - offset_a3)
+        a3 = motor_a3 + a1 * coupling_13 + coupling_23 * motor_a2
+        value_joint_3 = a3 / DEGREE  # joint 3
+        return (value_joint_2, value_joint_3)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

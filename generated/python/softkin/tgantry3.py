@@ -213,17 +213,6 @@ class TGantry3(OffsetKinematics):
             return beyond("Y of the carriage", value_y, lowest_y, highest_y, "u")
         return None
 
-    def _quantities(self, axes: Reals) -> Reals | Status:
-        """The quantities beside the axes that have limits."""
-        axis_a, axis_b, _ = axes
-        k = self._constants
-        offset_a, offset_b = k.offset_a, k.offset_b
-        a = axis_a - offset_a
-        b = axis_b - offset_b
-        value_x = 0.5 * (a + b)  # X of the carriage
-        value_y = 0.5 * (b - a)  # Y of the carriage
-        return (value_x, value_y)
-
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a, axis_b, axis_z = axes
@@ -237,6 +226,17 @@ class TGantry3(OffsetKinematics):
         if not reasonable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         return ((0.5, 0.5, 0.0), (-0.5, 0.5, 0.0), (0.0, 0.0, 1.0))
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        axis_a, axis_b, _ = axes
+        k = self._constants
+        offset_a, offset_b = k.offset_a, k.offset_b
+        a = axis_a - offset_a
+        b = axis_b - offset_b
+        value_x = 0.5 * (a + b)  # X of the carriage
+        value_y = 0.5 * (b - a)  # Y of the carriage
+        return (value_x, value_y)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
