@@ -41,6 +41,10 @@ def moves(robot: Scara4ZCcoupledType1) -> tuple[float, ...]:
     radians = robot.in_radians()
     axes, statuses = robot.nearest_batch([frame.position], [frame.rotation], [0.0, 0.0, 0.0, 0.0])
     assert axes.shape == (1, 4) and statuses[0] == softkin.Status.OK
+    mounted = robot.with_tool(Frame((30.0, 0.0, -60.0))).with_base(frame.matrix)
+    assert_type(mounted, softkin.Mounted)
+    assert_type(mounted.changed(tool=frame).in_radians(), softkin.Mounted)
+    assert_type(mounted.nearest(mounted.forward((10.0, 20.0, 5.0, 30.0))[0], [0, 0, 0, 0]), tuple[float, ...])
     try:
         return radians.inverse(frame, named)
     except KinematicsError as error:

@@ -127,7 +127,8 @@ class Mounted(Mechanism):
         """
         values = dict(given)
         is_radian = values.pop("in_radians", False)
-        if values.pop("mechanism", "Mounted") != "Mounted" or not {"bare"} <= set(values) <= {"bare", "base", "tool"}:
+        is_known = values.pop("mechanism", "Mounted") == "Mounted" and set(values) <= {"bare", "base", "tool"}
+        if not (is_known and isinstance(values.get("bare"), Mapping)):
             raise KinematicsError(Status.NOT_INITIALIZED, "Mounted: the entries must be bare, base and tool")
         bare = Mechanism.from_dict(values["bare"])
         made = mounted(bare, _frame(values.get("base", PLAIN)), _frame(values.get("tool", PLAIN)))

@@ -191,3 +191,36 @@ def test_a_coupling_of_parts_in_radians() -> None:
     with pytest.raises(KinematicsError, match="same unit") as refused:
         softkin.Coupled(scara.in_radians(), wrist)
     assert refused.value.status is Status.INVALID_COUPLING
+
+
+def test_what_a_dictionary_may_be() -> None:
+    """A base or a tool in any form of a frame; other entries are refused, and so is a tool that cannot be carried."""
+    gantry = softkin.Gantry3().to_dict()
+    made = Mechanism.from_dict({"mechanism": "Mounted", "bare": gantry, "base": BASE.matrix.tolist()})
+    assert made == softkin.Gantry3().with_base(BASE)
+    for given in (
+        {},
+        {"bare": 3},
+        {"bare": gantry, "tools": 1},
+        {"bare": gantry, "tool": {"position": (0.0, 0.0, 0.0)}},
+    ):
+        with pytest.raises(KinematicsError, match="Mounted: the entries") as refused:
+            Mechanism.from_dict({"mechanism": "Mounted", **given})
+        assert refused.value.status is Status.NOT_INITIALIZED
+    arm = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0).to_dict()
+    with pytest.raises(KinematicsError, match="cannot carry"):
+        softkin.Mounted.from_dict({"bare": arm, "tool": ((30.0, 0.0, 0.0), np.eye(3))})
+
+
+def test_limits_of_other_quantities_in_radians() -> None:
+    """An angle beside the axes is in radians behind a base and in a coupling, and `changed` takes it so."""
+    arm = softkin.PCC(link_length_1=300.0, link_length_2=200.0, limits={"elbow": (0.0, 90.0)})
+    for one in (arm, arm.with_base(BASE)):
+        own = one.in_radians()
+        assert own.limits["elbow"] == pytest.approx((0.0, np.pi / 2.0))
+        assert own.changed(limits={"elbow": (0.0, np.pi)}).in_degrees().limits["elbow"] == pytest.approx((0.0, 180.0))
+        assert own.changed(offset_a1=np.pi).in_degrees() == one.changed(offset_a1=180.0)
+    pair = softkin.Coupled(softkin.PCC(link_length_1=300.0, link_length_2=200.0), softkin.Tool())
+    assert "elbow" in pair.limits and pair.in_radians()._parameter_units()["lower_elbow"] == "rad"
+    limited = pair.changed(position=arm)
+    assert limited.in_radians().limits["elbow"] == pytest.approx((0.0, np.pi / 2.0))
