@@ -8,6 +8,7 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -224,3 +225,21 @@ def test_limits_of_other_quantities_in_radians() -> None:
     assert "elbow" in pair.limits and pair.in_radians()._parameter_units()["lower_elbow"] == "rad"
     limited = pair.changed(position=arm)
     assert limited.in_radians().limits["elbow"] == pytest.approx((0.0, np.pi / 2.0))
+
+
+@pytest.mark.parametrize(
+    "name", ["Kin_ArticulatedRobot_6DOF", "Kin_Scara4_ZCcoupled_Type1", "Kin_Gantry3", "scara, wrist"]
+)
+def test_all_slots_of_a_batch_take_little_memory(name: str) -> None:
+    """The traced peak is at most 1.3 times the result, as without base and tool, in radians too."""
+    robot, axes, _ = machines(name)[0]
+    for one, near in ((mounted(robot), axes), (mounted(robot).in_radians(), radian(robot, axes))):
+        frame, _ = one.forward(near)
+        positions, rotations = np.tile(frame.position, (100_000, 1)), np.tile(frame.rotation, (100_000, 1, 1))
+        one.inverse_all_batch(positions[:9], rotations[:9], near)
+        tracemalloc.start()
+        try:
+            found = one.inverse_all_batch(positions, rotations, near)
+            assert tracemalloc.get_traced_memory()[1] <= 1.3 * sum(part.nbytes for part in found)
+        finally:
+            tracemalloc.stop()
