@@ -38,7 +38,7 @@ _OF_AXES = (
 )
 """What programs call values of an axis: `offset_a1`."""
 _OF_BRANCHES = ("sigma", "branch", "sign")
-_RESERVED = {"check_limits", "machine_scale", "x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123")}
+_RESERVED = {"check_limits", "limits", "machine_scale", "x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123")}
 """Names that programs need for other values."""
 
 _MARKS = ("(*", "*)", '"""', "\\")

@@ -34,7 +34,7 @@ def limits_program(mechanism: Mechanism) -> Program:
         body += joint_lets(mechanism)
     for quantity in mechanism.limited:
         lets, (value,) = named_trigonometry(mechanism, [quantity.value / (DEGREE if quantity.is_angle else 1)])
-        name = _value(quantity)
+        name = value_of(quantity)
         reason = replace(
             about(quantity.meaning, Why.BELOW, unit=_unit(quantity.is_angle)), turns=turns.get(quantity.name, ())
         )
@@ -60,7 +60,8 @@ def _unit(is_angle: bool) -> Unit:
     return Unit.ANGLE if is_angle else Unit.LENGTH
 
 
-def _value(quantity: Limited) -> sp.Symbol:
+def value_of(quantity: Limited) -> sp.Symbol:
+    """What programs call the value of a quantity."""
     return real(f"value_{quantity.name}")
 
 
@@ -78,7 +79,7 @@ def _other_turn(joint: Joint) -> OtherTurn:
 
 def _of_quantity(quantity: Limited, mechanism: Mechanism) -> Iterator[OtherTurn]:
     """The axes that turn a quantity once per turn, inside their own limits and those of the quantity."""
-    value = _value(quantity)
+    value = value_of(quantity)
     low, high = _ends(quantity.name)
     for joint in reversed(mechanism.joints):
         slope = sp.diff(quantity.value, joint.symbol)

@@ -178,4 +178,14 @@ def _caught(call: Callable[[], Answer]) -> Answer:
     try:
         return {key: plain(value) for key, value in call().items()}
     except softkin.KinematicsError as error:
-        return {"status": int(error.status), "message": _NUMBER.sub("#", str(error))}
+        return {"status": int(error.status), "message": _NUMBER.sub("#", _message(error))}
+
+
+def _message(error: softkin.KinematicsError) -> str:
+    """The message, with the reason as data in it: its unit stands behind the reason, however a reader is told."""
+    why = error.refusal
+    if why is None:
+        return str(error)
+    amount = f", missing {why.missing:.4g}" if why.missing else ""
+    turn = f", which is turn {why.turn}" if why.turn else ""
+    return str(error).replace(why.in_words, f"{why.reason}{amount}{turn}")

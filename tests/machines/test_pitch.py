@@ -296,3 +296,31 @@ def test_the_reason_of_the_arm_is_said(name: str) -> None:
         assert robot.inverse_batch([far], None, configuration, row)[1].tolist() == [Status.UNREACHABLE]
     with pytest.raises(KinematicsError):
         robot.inverse(Frame((float("nan"),) * 3, frame.rotation), configuration, row)
+
+
+@EVERY
+def test_nearest_is_the_least_of_every_branch_with_a_tool(name: str) -> None:
+    """The nearest axes are not further than those of any slot, alone, in a batch, and in radians; limits choose."""
+    machine = made(name)
+    robot = machine.robot.with_tool(carried_tool(machine)).with_base(BASE)
+    counted = list(robot._criteria[0].axes)
+    for row in within_reach(machine, 3):
+        frame, near = robot.forward(row)[0], tuple((row + 3.0).tolist())
+        found = robot.nearest(frame.matrix, near)
+        slots = [slot.axes for slot in robot.inverse_all(frame, near) if slot.axes is not None]
+        away = [float((np.subtract(axes, near)[counted] ** 2).sum()) for axes in (found, *slots)]
+        assert slots and away[0] <= min(away[1:]) + 1e-4
+        reached = robot.forward(found)[0]
+        assert np.abs(np.subtract(reached.position, frame.position)).max() < 1e-8 * (machine.reach + 600.0)
+        axes, statuses = robot.nearest_batch([frame], None, near)
+        assert statuses[0] == Status.OK and np.abs(axes[0] - found).max() < 1e-5
+        turns = np.array([np.pi / 180.0 if axis.unit == "deg" else 1.0 for axis in robot.AXES])
+        own = robot.in_radians().nearest(frame, turns * near)
+        assert np.abs(own - turns * found).max() < 1e-6
+        first = robot.AXES[0].name
+        narrow = robot.changed(limits={first: (found[0] + 1.0, found[0] + 359.0)})
+        if all(abs((axes[0] - found[0] + 180.0) % 360.0 - 180.0) < 0.5 for axes in slots):
+            with pytest.raises(KinematicsError, match=first):
+                narrow.nearest(frame, near)
+        else:
+            assert narrow.nearest(frame, near)[0] != pytest.approx(found[0], abs=0.5)

@@ -16,6 +16,7 @@ from derive.emit.python.program import (
     binding_lines,
     constants_of,
     grouped,
+    has_search,
     step_lines,
     unpacked,
     values_of,
@@ -33,8 +34,11 @@ from derive.ir.program import (
     reads,
 )
 from derive.ir.tree import If, Item
+from derive.kinematics.kinematics import Kinematics
 from derive.lowering.scheduling import scheduled
 
+OF_A_SEARCH = 120_000
+"""The values of one row of a root scan, whose trials are computed together: measured."""
 CALLED = frozenset((
     "DEGREE", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc",
     "nearest_period", "opposite", "passed", "reasonable", "require", "root", "select", "settled", "sin", "solve",
@@ -110,3 +114,9 @@ def _refused_late(body: Iterable[Statement]) -> list[Statement]:
             found, waiting = [*found, *waiting], []
         found.append(statement)
     return [*found, *waiting]
+
+
+def values_of_a_row(kin: Kinematics) -> int:
+    """The values of one row on the way through the inverse: inputs, results, and what stands between them."""
+    programs = (kin.branch, *kin.shared)
+    return sum(len(p.inputs) + len(p.bound()) for p in programs) + OF_A_SEARCH * any(map(has_search, kin.shared))

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from derive.emit.python.calls import GIVEN
 from derive.emit.python.program import Argument, Method, Shape
+from derive.equations.limits import value_of
+from derive.ir.passes import normalise
+from derive.ir.program import Output
 from derive.kinematics.differential import TWIST_ROWS
 from derive.kinematics.kinematics import Kinematics
 
@@ -32,6 +35,7 @@ def methods(kin: Kinematics) -> list[Method]:
         branch(kin),
         limits(kin),
         *differential(kin),
+        *_quantities(kin),
         Method("image", "The orientations of the flange.", kin.image, (), "Image", IMAGE),
         *_compatible(kin),
         *end_point_shift(kin),
@@ -165,6 +169,16 @@ def _total_image(kin: Kinematics) -> list[Method]:
 def limits(kin: Kinematics) -> Method:
     """The test of all limits."""
     return Method("limits", "The test of the limits.", kin.limits, (_axes(kin),), "", (), is_explained=True)
+
+
+def _quantities(kin: Kinematics) -> list[Method]:
+    """The quantities beside the axes that have limits: what the test of the limits computes of them."""
+    if not kin.limited:
+        return []
+    names = [value_of(quantity) for quantity in kin.limited]
+    program = normalise("quantities", kin.limits.lets(), [Output(name.name, name) for name in names])
+    text = "The quantities beside the axes that have limits."
+    return [Method("quantities", text, program, (_axes(kin),), "Reals", tuple(n.name for n in names))]
 
 
 def _axes(kin: Kinematics) -> Argument:

@@ -14,7 +14,7 @@ from jinja2 import Environment
 from derive.description.dimensions import Role
 from derive.emit.language import GENERATED, Part, environment
 from derive.emit.python import entries, setup
-from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
+from derive.emit.python.arrays import CALLED, OF_A_SEARCH, TYPES, array_body, named_in, values_of_a_row
 from derive.emit.python.calls import every_root
 from derive.emit.python.finish import Function
 from derive.emit.python.layout import formatted
@@ -92,17 +92,25 @@ _FIXED = (
     "softkin/_core.py",
     "softkin/_coupled.py",
     "softkin/_differential.py",
+    "softkin/_ends.py",
     "softkin/_frame.py",
     "softkin/_input.py",
     "softkin/_limits.py",
     "softkin/_mounted.py",
+    "softkin/_names.py",
+    "softkin/_nearest.py",
+    "softkin/_nearest_batch.py",
     "softkin/_offset.py",
     "softkin/_orientation.py",
+    "softkin/_path.py",
+    "softkin/_radians.py",
+    "softkin/_radians_array.py",
     "softkin/_rotation.py",
     "softkin/_root.py",
     "softkin/_roots.py",
     "softkin/_scalar.py",
     "softkin/_search.py",
+    "softkin/_slerp.py",
     "softkin/_solutions.py",
     "softkin/_start.py",
     "softkin/_table.py",
@@ -110,6 +118,7 @@ _FIXED = (
     "softkin/_twist.py",
     "softkin/_types.py",
     "softkin/_unrolled/__init__.py",
+    "softkin/_value.py",
     "softkin/_vectors.py",
     "softkin/_velocities.py",
     "softkin/py.typed",
@@ -170,6 +179,7 @@ def _templates() -> Environment:
         "statuses": [{"name": s.name, "softmotion": s.value, "meaning": _MEANINGS[s]} for s in Status],
         "version": _VERSION,
         "chunk": _CHUNK,
+        "values_of_a_search": OF_A_SEARCH,
         "edge": literal(float(EDGE)),
         "held": literal(float(HELD)),
         "free_angle": literal(float(FREE_ANGLE)),
@@ -252,6 +262,7 @@ def _class_context(kin: Kinematics, arrays: Sequence[Method], lean: Unrolled | N
         "mechanism": kin.mechanism,
         "entries": entries,
         "keywords": setup.keywords(kin.parameters),
+        "attributes": setup.attributes(kin.parameters),
         "setup_body": setup_lines,
         "array_programs": _array_programs(kin),
         "bases": _bases(kin),
@@ -295,6 +306,7 @@ def _array_context(kin: Kinematics, arrays: Sequence[Method]) -> dict[str, Any]:
         "array_programs": array_programs,
         "imports": _sorted({array_programs} | named_in(lines, CALLED)),
         "types": _sorted(named_in(lines, TYPES)),
+        "values": values_of_a_row(kin),
         "methods": [
             {"head": head, "summary": m.summary, "body": body} for m, (head, body) in zip(arrays, texts, strict=True)
         ],

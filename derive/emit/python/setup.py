@@ -37,8 +37,14 @@ _TYPES = {Role.FLAG: "bool", Role.SIGN: "int"}
 
 def keywords(parameters: tuple[Parameter, ...]) -> str:
     """The parameters of `__init__`: a keyword for each parameter of the machine, with its default where it has one."""
-    typed = (f"{p.name}: {_TYPES.get(p.role, 'float')}{_default(p)}" for p in parameters)
+    typed = [f"{p.name}: {_TYPES.get(p.role, 'float')}{_default(p)}" for p in parameters]
+    typed.append("limits: Limits | None = None")
     return f"def __init__(self, *, {', '.join(typed)}) -> None:"
+
+
+def attributes(parameters: tuple[Parameter, ...]) -> list[str]:
+    """The parameters as typed attributes of the class."""
+    return [f"{p.name}: {_TYPES.get(p.role, 'float')}" for p in parameters]
 
 
 def setup_body(kin: Kinematics, read: Collection[str]) -> list[str]:

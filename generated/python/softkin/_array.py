@@ -77,6 +77,9 @@ _BOTH_SIGNS = np.array([1, -1])
 class Programs(ABC):
     """The programs of a mechanism that run on arrays."""
 
+    VALUES: int
+    """The values that the inverse computes of one row, inputs and results among them."""
+
     def __init__(self, constants: Any) -> None:
         """constants: those of the machine for which the programs compute."""
         self.constants = constants

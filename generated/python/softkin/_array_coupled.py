@@ -39,6 +39,7 @@ class CoupledPrograms(Programs):
         self.count, self.branches, self.periods = len(position.AXES), position.BRANCHES, len(position.PERIOD_AXES)
         self.limited = position.checks_limits, orientation.checks_limits
         self.flange, self.axis = flange, axis
+        self.VALUES = self.first.VALUES + self.second.VALUES
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """The frame of the second part on the frame of the first."""

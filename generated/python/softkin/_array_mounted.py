@@ -36,6 +36,7 @@ class MountedPrograms(Programs):
     def __init__(self, machine: Mounted, programs: Programs, kind: str, shift: OneVector | None) -> None:
         """programs: those of the bare machine. shift: from the flange to the tool, where it is the same everywhere."""
         self.machine, self.programs, self.kind, self.shift = machine, programs, kind, shift
+        self.VALUES = programs.VALUES
         self.base, self.base_rotation = machine.base.position, fixed(machine.base.rotation)
         self.tool, self.tool_rotation = machine.tool.position, fixed(machine.tool.rotation)
 

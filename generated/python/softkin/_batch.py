@@ -35,6 +35,12 @@ CHUNK = 8192
 """The rows that are computed together."""
 EVERY_SLOT = 3 * CHUNK
 """The rows times slots that are computed together where all slots are: many values are the same for several slots."""
+FEWEST, FEWEST_SEARCHED = 512, 96
+"""The rows that are computed together at least, unless there are fewer; and where a root scan has many trials a row."""
+MANY = 100_000
+"""From here on what is computed on the way must take little memory, also of a root scan."""
+SHARE = 0.25
+"""The share of the memory of the result that it takes."""
 _UNTRIED = 255
 """The status of rows for which no slot was tried."""
 
@@ -122,7 +128,7 @@ def inverse_all(
     table = Table(robot, positions, rotations, references)
     turns, width, count = (0,) * len(robot.PERIOD_AXES), len(robot.AXES), 2**robot.BRANCHES
     axes, statuses = np.empty((table.count, count, width)), np.empty((table.count, count), np.uint8)
-    size = min(CHUNK, EVERY_SLOT // count)
+    size = _rows_together(programs.VALUES, table.count, count, width)
     # Columns whose distance is no power of two: such columns displace each other from the cache when they become rows.
     of_slots = np.empty((count, width, min(table.count, size) + 8))
     of_signs = of_slots.reshape(*(2,) * robot.BRANCHES, *of_slots.shape[1:])
@@ -139,6 +145,17 @@ def inverse_all(
         statuses[rows] = status.reshape(count, poses.count).T
         axes[rows][statuses[rows] != Status.OK] = np.nan
     return axes, statuses
+
+
+def _rows_together(values: int, rows: int, slots: int, width: int) -> int:
+    """The rows that are computed together where all slots are: few enough that the values on the way need little.
+
+    values: those of one row, of which some are separate for every slot.
+    """
+    on_the_way = 8.0 * (slots * width + 1.35 * values + 16.0)
+    least = FEWEST if values < 120000 else FEWEST_SEARCHED if rows < MANY else 1
+    wanted = int(SHARE * rows * slots * (8 * width + 1) / on_the_way)
+    return max(1, min(CHUNK, EVERY_SLOT // slots, max(least, wanted)))
 
 
 def _later(refused: Codes, status: Codes) -> Codes:

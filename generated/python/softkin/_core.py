@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from math import nan
+from math import inf, isfinite, nan
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, Protocol, Self, TypeAlias, cast
 
 from softkin._configuration import (
     AUTOMATIC,
@@ -21,6 +21,7 @@ from softkin._configuration import (
     slots,
     squared_distance,
 )
+from softkin._ends import given_ends, limit_keys
 from softkin._frame import Frame
 from softkin._input import bytes_of, parameter_value, pose_of, position_of, reals, unusable
 from softkin._rotation import in_words, made_rotation
@@ -47,6 +48,7 @@ from softkin._types import (
     Turns,
     Vector,
 )
+from softkin._value import Value
 
 if TYPE_CHECKING:
     import numpy as np
@@ -54,6 +56,9 @@ if TYPE_CHECKING:
 
     from softkin._array import Programs
     from softkin._mounted import Mounted
+    from softkin._names import NamedConfiguration
+    from softkin._nearest import Measure
+    from softkin._path import Path
 
 WARNING_DISTANCE = 0.001
 """A pose of a coupling, which has no parameters, is singular where a margin is smaller than this in size."""
@@ -119,11 +124,12 @@ class Unrolled(NamedTuple):
     finish: Finish | None
 
 
-class Mechanism(ABC):
+class Mechanism(Value, ABC):
     """Forward and inverse kinematics of a mechanism.
 
     Positions are in the user's length unit, axis values in that unit or in degrees, the Jacobian per radian.
-    A call without an answer raises `KinematicsError`. Instances never change: one may serve several threads.
+    A call without an answer raises `KinematicsError`. Instances never change: one may serve several threads. They are
+    equal where class and parameters are, and every parameter is an attribute.
     """
 
     __slots__ = ("checks_limits", "parameters")
@@ -156,19 +162,30 @@ class Mechanism(ABC):
     """The indices of the axes that decide an automatic choice."""
 
     parameters: Mapping[str, float]
-    """The parameters as given: flags are bool, directions int."""
+    """The parameters as given: flags are bool, directions int; the end of a one-sided limit is infinite."""
+    checks_limits: bool
+    """Whether the inverse tests the limits."""
+
+    if TYPE_CHECKING:  # each class names its own parameters
+
+        def __init__(self, **parameters: Any) -> None: ...
 
     def _accept(self, given: Mapping[str, Any]) -> None:
         """Store the parameters, each in its type; raises NOT_INITIALIZED for the first one that is not allowed.
 
-        given: the parameters by name, among other values.
+        given: the parameters by name, among other values; `limits` is a mapping of limits, or None.
         """
         found = {p.name: parameter_value(self.NAME, p, given[p.name]) for p in self.PARAMETERS}
-        self.parameters = MappingProxyType(found)
+        limits = (
+            {} if given.get("limits") is None else given_ends(self.NAME, self.PARAMETERS, self.AXES, given["limits"])
+        )
+        self.parameters = MappingProxyType(found | limits)
         self.checks_limits = bool(found["check_limits"])
         for parameter in self.PARAMETERS:
             if not parameter.allows(found[parameter.name]):
                 raise self._refusal(parameter.meaning, parameter.name)
+            if parameter.name in limits and found[parameter.name] != parameter.default:
+                raise self._refusal("limits are given once: as a mapping, or each by itself", parameter.name)
 
     def _window(self, key: str, otherwise: tuple[float, float] | None = None, turns: float | None = None) -> Window:
         """The range of an axis or of another quantity, by the last part of the names of its limits.
@@ -182,6 +199,8 @@ class Mechanism(ABC):
         if is_given and not lower < upper:
             raise self._refusal(f"lower_{key} below upper_{key}, or both 0", f"lower_{key}", f"upper_{key}")
         low, high = (lower, upper) if is_given or otherwise is None else otherwise
+        if not (isfinite(low) and isfinite(high)):
+            return self._one_sided_window(key, low, high, otherwise)
         tolerance = 1e-9 + 1e-9 * abs(low) + 1e-9 * abs(high)
         middle = 0.5 * low + 0.5 * high
         has_limits = is_given or otherwise is not None
@@ -191,6 +210,18 @@ class Mechanism(ABC):
         if not (has_limits and self.checks_limits):
             return Window(-1e12, 1e12, single, middle)
         return Window(low - tolerance, high + tolerance, single, middle)
+
+    def _one_sided_window(self, key: str, low: float, high: float, otherwise: tuple[float, float] | None) -> Window:
+        """The range of an axis of which one end is not limited; where it always has limits, these are that end."""
+        tolerance = 1e-9 + sum([1e-9 * abs(end) for end in (low, high) if isfinite(end)])
+        if otherwise is not None:
+            low, high = max(low, otherwise[0]), min(high, otherwise[1])
+            if not low < high:
+                raise self._refusal(f"lower_{key} below upper_{key}", f"lower_{key}", f"upper_{key}")
+        if not self.checks_limits:
+            low, high = -inf, inf
+        lowest = low - tolerance if isfinite(low) else -1e12
+        return Window(lowest, high + tolerance if isfinite(high) else 1e12, False, 0.0)
 
     def _refusal(self, condition: str, *names: str) -> KinematicsError:
         """The error for the named parameters, which violate a condition; the condition on a single one is its range."""
@@ -202,16 +233,6 @@ class Mechanism(ABC):
             (parameter,) = (p for p in self.PARAMETERS if p.name in names)
             needed = f"it must be {parameter.range} ({condition})"
         return KinematicsError(Status.NOT_INITIALIZED, f"{self.NAME}: {found} is not allowed: {needed}")
-
-    def __repr__(self) -> str:
-        """The call that makes this mechanism."""
-        given = [(p, self.parameters[p.name]) for p in self.PARAMETERS if self.parameters[p.name] != p.default]
-        values = (f"{p.name}={v!r}" for p, v in given)
-        return f"{type(self).__name__}({', '.join(values)})"
-
-    def __reduce__(self) -> tuple[Callable[..., Mechanism], tuple[type[Mechanism], dict[str, float]]]:
-        """Copying and pickling create the mechanism again from its parameters."""
-        return _made, (type(self), dict(self.parameters))
 
     def forward(self, axes: Numbers) -> tuple[Frame, Configuration]:
         """The frame at axis values, and their configuration. Axis limits are not tested.
@@ -318,6 +339,124 @@ class Mechanism(ABC):
             return axes
         return self._beyond_limits(axes) or Diagnosis(Status.OK, "", 0.0)
 
+    def nearest(
+        self, frame: FrameLike, reference: Numbers, *, weights: Numbers | None = None, measure: Measure = "squares"
+    ) -> Reals:
+        """The axis values inside the limits that reach a frame and are nearest to a reference.
+
+        Unlike `inverse`, it chooses among all branches and all turns, up to 254 turns away, and limits choose with it:
+        for a move from point to point.
+        frame: as for `inverse`. reference: one value for each axis, usually the present axis values.
+        measure: `squares`, the least sum of squared differences, or `largest`, the least largest difference (ties: the
+        least sum of squares of the turns). weights: a factor of the difference of each axis, at least 0; None counts
+        the rotary axes in degrees, and the linear ones where there are none, as an automatic choice does. Distances
+        that differ by less than its tie (squared 1e-6, times the largest weight squared) go to the lower slot.
+        Raises BAD_INPUT, UNREACHABLE or IMPOSSIBLE; the `refusal` is the reason of the nearest miss: the limit that a
+        solution exceeds least, as a share of the range, or else the least missing amount of a branch.
+        """
+        from softkin import _nearest
+
+        position, rows = self._pose(frame)
+        near = reals(reference, len(self.AXES), "reference")
+        metric = _nearest.metric_of(self, weights, measure)
+        rotation = self._used("nearest", rows)
+        found = _nearest.nearest(self, position, rotation, near, metric)
+        if isinstance(found, Diagnosis):
+            self._fail("nearest", found, position=position, rotation=rows, reference=near)
+        return found
+
+    def nearest_batch(
+        self,
+        positions: ArrayLike,
+        rotations: ArrayLike | None,
+        references: ArrayLike,
+        *,
+        weights: Numbers | None = None,
+        measure: Measure = "squares",
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """`nearest` of N rows → axes (N, n), statuses (N,).
+
+        positions, rotations and references are those of `inverse_batch`. A row whose status is not OK holds NaN. Where
+        a turn moves several axes (a pitch, a gear coupling), and for a searched arm, rows are computed one by one.
+        Raises BAD_INPUT for a wrong shape, a wrong measure or wrong weights.
+        """
+        from softkin import _nearest, _nearest_batch
+
+        metric = _nearest.metric_of(self, weights, measure)
+        return _nearest_batch.nearest_batch(self, positions, rotations, references, metric)
+
+    def configuration(self, **names: str | int) -> NamedConfiguration:
+        """The configuration with these branches and turns: `robot.configuration(elbow="left", A4=2)`.
+
+        A branch is given by its name or as a byte (1, 2; 0 automatic; 3, read as automatic), the turn of an axis as a
+        number: 1 contains 0 degrees, 2 the next turn, -1 the one before; 0 leaves it open. What is not given is as in
+        `DEFAULT_CONFIGURATION`. The name of a byte with spaces is given with underscores.
+        Raises BAD_INPUT for an unknown name, with the known ones.
+        """
+        from softkin import _names
+
+        return _names.configuration(self, names)
+
+    def names(self, configuration: Iterable[int]) -> dict[str, str | int]:
+        """The inverse of `configuration`: by the name of each byte, the name of the branch or the number of the turn.
+
+        An open branch is `automatic`; `coincide` where `forward` says that the branches meet.
+        Raises BAD_INPUT for what is no configuration of this machine.
+        """
+        from softkin import _names
+
+        return _names.names(self, bytes_of(configuration, len(self.CONFIGURATION)))
+
+    def path(
+        self,
+        frames: Iterable[FrameLike],
+        configuration: Iterable[int] | None = None,
+        reference: Numbers | None = None,
+        *,
+        samples: int = 1,
+        singular: float | None = None,
+    ) -> Path:
+        """The axes along straight lines from frame to frame, on one branch, until the machine cannot go on.
+
+        The tool turns about one axis at constant speed between two frames. The first frame is solved as `inverse` does,
+        with the configuration and the reference; from there on the branch stays, and every axis follows on its turn.
+        samples: the number of equal steps of each line. singular: margins smaller than this make a singular stretch;
+        None stands for the warning distance of the machine.
+        The path stops where there is no answer, where an axis is beyond a limit, or where an axis jumps: see `Path`.
+        It is found between the samples, too. Raises BAD_INPUT for what is no frame, and where there is no frame.
+        """
+        from softkin import _path
+
+        near = self._warning_distance() if singular is None else singular
+        return _path.path(self, frames, configuration, reference, samples, near)
+
+    def line(
+        self,
+        start: FrameLike,
+        goal: FrameLike,
+        configuration: Iterable[int] | None = None,
+        reference: Numbers | None = None,
+        *,
+        samples: int = 100,
+        singular: float | None = None,
+    ) -> Path:
+        """The path from one frame straight to another: `path` of both."""
+        return self.path((start, goal), configuration, reference, samples=samples, singular=singular)
+
+    def in_radians(self) -> Self:
+        """The same machine with radians for degrees: axes, references, offsets, limits, what `diagnose` says.
+
+        Its calls are those of this machine, batches included; the Jacobian is per radian in both. A pitch stays per
+        turn, a gear per degree. It is not an instance of this class; `in_degrees()` of it is this machine.
+        """
+        from softkin import _radians
+
+        return cast("Self", _radians.in_radians(self))
+
+    def in_degrees(self) -> Self:
+        """This machine, whose angles are in degrees."""
+        return self
+
     def jacobian(self, axes: Numbers) -> Matrix:
         """The Jacobian: rows as in `JACOBIAN_ROWS`, one column for each axis, per radian for an axis in degrees."""
         values = reals(axes, len(self.AXES), "axes")
@@ -331,9 +470,13 @@ class Mechanism(ABC):
         margins = self._singularity(reals(axes, len(self.AXES), "axes"))
         if isinstance(margins, Status):
             return Singularity(True, dict.fromkeys(self.MARGINS, nan))
-        near = self.parameters.get("warning_distance", WARNING_DISTANCE)
+        near = self._warning_distance()
         is_singular = any(abs(margin) < near for margin in margins)
         return Singularity(is_singular, dict(zip(self.MARGINS, margins, strict=True)))
+
+    def _warning_distance(self) -> float:
+        """The size of a margin below which a pose is called singular."""
+        return self.parameters.get("warning_distance", WARNING_DISTANCE)
 
     def jacobian_batch(self, axes: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
         """The Jacobians of N rows: axes (N, n) → Jacobians (N, rows, n), statuses (N,).
@@ -500,6 +643,45 @@ class Mechanism(ABC):
             if found:
                 return finish(found, reference)
         return Mechanism._every_branch(self, position, rotation, reference)
+
+    def _every_solution(
+        self, position: Vector, rotation: Rotation, reference: Reals
+    ) -> Iterable[tuple[Signs, Reals | Diagnosis]]:
+        """The axes of every branch on open turns, or why it has none; limits are not tested."""
+        every, turns = slots((AUTOMATIC,) * self.BRANCHES), (0,) * len(self.PERIOD_AXES)
+        solve: Branches | None = getattr(self, "_all_trusted", None)
+        if solve is not None and getattr(self, "_finish", None) is not None and reasonable(*position, *reference):
+            found = solve((position, rotation), reference)
+            if any(found):  # else why there is none
+                return [(signs, axes) for (_, signs), axes in zip(every, found, strict=True) if axes is not None]
+        return [(signs, self._branch(position, rotation, signs, turns, reference)) for _, signs in every]
+
+    def _has_one_solution_a_branch(self) -> bool:
+        """Whether a branch has one solution at most, but for turns."""
+        return True
+
+    def _ranges(self) -> tuple[tuple[float, float], ...]:
+        """The ranges of the axes, then of other quantities with limits; wide where limits are not tested."""
+        k = vars(getattr(self, "_constants"))  # noqa: B009  each class has its own
+        found = [(k[f"lowest_{key}"], k[f"highest_{key}"]) for key in limit_keys(self.PARAMETERS)]
+        return tuple(found)
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits, in the unit of these."""
+        return ()
+
+    def _limited_values(self, axes: Reals) -> Reals:
+        """These quantities, of axes that have been solved for."""
+        found = self._quantities(axes)
+        return () if isinstance(found, Status) else found
+
+    def _parameter_units(self) -> dict[str, str]:
+        """The units of the parameters by name."""
+        return {p.name: p.unit for p in self.PARAMETERS}
+
+    def _full_turn(self) -> float:
+        """A full turn in the unit of the rotary axes."""
+        return 360.0
 
     def _inside(self, axes: Reals | Diagnosis) -> Reals | int:
         """The axes if they are inside their limits, else the number of the status."""
@@ -691,7 +873,3 @@ class Mechanism(ABC):
 
     @abstractmethod
     def _array_programs(self) -> Programs: ...
-
-
-def _made(mechanism: Callable[..., Mechanism], parameters: dict[str, float]) -> Mechanism:
-    return mechanism(**parameters)

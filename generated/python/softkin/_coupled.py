@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeAlias, TypeVar
 
 from softkin._configuration import TIE, Criterion
 from softkin._core import SEVERAL_AXES, TURN, TWIST, Image, Mechanism, Pose
+from softkin._ends import Ends
 from softkin._input import bytes_of
 from softkin._orientation import OrientationKinematics, turning_axis
 from softkin._twist import TwistChoice
@@ -73,6 +74,7 @@ class Coupled(Mechanism):
         self.FREEDOM = total.freedom
         self._orientations: Image = total.rotation, total.base_axis, total.flange_axis
         self._describe(position, orientation)
+        self._seal()
 
     def _describe(self, first: Mechanism, second: Mechanism) -> None:
         """Set the axes, the bytes and the margins of both parts."""
@@ -86,10 +88,10 @@ class Coupled(Mechanism):
         self.BRANCHES = first.BRANCHES + second.BRANCHES
         self.HELD = first.HELD + tuple(count + i for i in second.HELD)
         self.PERIOD_AXES = first.PERIOD_AXES + tuple(count + i for i in second.PERIOD_AXES)
-        angles = tuple(i for i, axis in enumerate(self.AXES) if axis.unit == "deg")
+        angles = tuple(i for i, axis in enumerate(self.AXES) if axis.unit != "u")
         seen = set(first.DISTANCE_AXES) & set(angles) or not first.BRANCHES
         self.DISTANCE_AXES = angles if seen and angles else (*first.DISTANCE_AXES, *angles)
-        rotary = (Criterion(angles, TIE),) if angles else ()
+        rotary = (Criterion(angles, TIE * (first._full_turn() / 360.0) ** 2),) if angles else ()
         self._nearest_by = rotary if seen and angles else (*rotary, *first._criteria)
 
     @property
@@ -100,9 +102,58 @@ class Coupled(Mechanism):
         """The call that makes this mechanism."""
         return f"Coupled({self.position_part!r}, {self.orientation_part!r})"
 
-    def __reduce__(self) -> tuple[Callable[..., Mechanism], tuple[Mechanism, Mechanism]]:  # type: ignore[override]
-        """Copying and pickling couple the parts again."""
-        return Coupled, (self.position_part, self.orientation_part)
+    def _keywords(self) -> dict[str, Any]:
+        return {"position": self.position_part, "orientation": self.orientation_part}
+
+    def __hash__(self) -> int:
+        """A hash by value."""
+        return hash((type(self), self.position_part, self.orientation_part))
+
+    __eq__ = Mechanism.__eq__
+
+    @property
+    def limits(self) -> dict[str, Ends | None]:
+        """The limits of both parts: those of the axes, then those of other quantities."""
+        first, second = self.position_part, self.orientation_part
+        own = {
+            axis.name: second.limits[name.name]
+            for axis, name in zip(self.AXES[self._count :], second.AXES, strict=True)
+        }
+        return {axis.name: first.limits[axis.name] for axis in first.AXES} | own | first.limits
+
+    def changed(self, **parameters: Any) -> Self:
+        """The same coupling of other parts: `position=` and `orientation=`."""
+        made: Self = super().changed(**parameters)
+        return made
+
+    def in_degrees(self) -> Self:
+        """The same coupling of the parts in degrees."""
+        first, second = self.position_part.in_degrees(), self.orientation_part.in_degrees()
+        return self if first is self.position_part else type(self)(first, second)
+
+    def in_radians(self) -> Self:
+        """The same coupling in radians: see `Mechanism.in_radians`."""
+        return super().in_radians() if self.in_degrees() is self else self
+
+    def _full_turn(self) -> float:
+        return self.position_part._full_turn()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Both parts as plain data."""
+        parts = self.position_part.to_dict(), self.orientation_part.to_dict()
+        return {"mechanism": "Coupled", "position": parts[0], "orientation": parts[1]}
+
+    @classmethod
+    def from_dict(cls, given: Mapping[str, Any]) -> Self:
+        """The coupling of `to_dict`. Raises NOT_INITIALIZED for other data, INVALID_COUPLING for an impossible pair."""
+        values = dict(given)
+        is_radian = values.pop("in_radians", False)
+        if values.pop("mechanism", "Coupled") != "Coupled" or set(values) != {"position", "orientation"}:
+            raise KinematicsError(Status.NOT_INITIALIZED, "Coupled: the entries must be position and orientation")
+        position = Mechanism.from_dict(values["position"])
+        orientation = OrientationKinematics.from_dict(values["orientation"])
+        made = cls(position, orientation)
+        return made.in_radians() if is_radian else made
 
     @property
     def _branch_bytes(self) -> list[int]:
@@ -236,6 +287,27 @@ class Coupled(Mechanism):
                 return _of(part, refused)
         return None
 
+    def _parameter_units(self) -> dict[str, str]:
+        return self.orientation_part._parameter_units() | self.position_part._parameter_units()
+
+    def _ranges(self) -> tuple[tuple[float, float], ...]:
+        """The ranges of all axes, then of all other quantities."""
+        first, second = self.position_part._ranges(), self.orientation_part._ranges()
+        cut, count = self._count, len(self.orientation_part.AXES)
+        return first[:cut] + second[:count] + first[cut:] + second[count:]
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        first, second = (
+            self.position_part._quantities(axes[: self._count]),
+            self.orientation_part._quantities(axes[self._count :]),
+        )
+        if isinstance(first, Status):
+            return first
+        return second if isinstance(second, Status) else first + second
+
+    def _has_one_solution_a_branch(self) -> bool:
+        return self.position_part._has_one_solution_a_branch() and self.orientation_part._has_one_solution_a_branch()
+
     def _singularity(self, axes: Reals) -> Reals | Status:
         carrier = self.position_part._singularity(axes[: self._count])
         if isinstance(carrier, Status):
@@ -273,9 +345,11 @@ def _check(position: Mechanism, orientation: Mechanism) -> None:
     for place, part, role in (("first", position, "position"), ("second", orientation, "orientation")):
         found = part.ROLE if isinstance(part, Mechanism) else None
         if found != role:
-            name = f"{part.NAME} is a {found} kinematics" if found else f"{part!r} is no mechanism"
-            raise _refused(f"the {place} part must be a {role} kinematics, but {name}")
+            name = f"{part.NAME} is {_a(found)} kinematics" if found else f"{part!r} is no mechanism"
+            raise _refused(f"the {place} part must be {_a(role)} kinematics, but {name}")
     assert isinstance(orientation, OrientationKinematics)
+    if position._full_turn() != orientation._full_turn():
+        raise _refused(f"{position!r} and {orientation!r} must have the same unit of angles")
     if isinstance(position, TwistChoice) and orientation.AXES:
         raise _refused(f"{position.NAME} follows the turn of the tool itself: {orientation.NAME} may have no axes")
     image = position.orientation_image()
@@ -300,6 +374,11 @@ def _tool_of(orientation: OrientationKinematics) -> tuple[Vector, Rotation]:
         raise _refused(f"{orientation.NAME} has no end point: {pose.meaning}")
     position, rotation, _ = pose
     return position, rotation
+
+
+def _a(role: str) -> str:
+    """A role with its article."""
+    return f"{'an' if role[0] in 'aeiou' else 'a'} {role}"
 
 
 def _of(part: Mechanism, refused: Diagnosis) -> Diagnosis:

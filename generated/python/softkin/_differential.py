@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from softkin._array import Array, Codes, Programs
 from softkin._batch import CHUNK
 from softkin._columns import columns
-from softkin._core import SINGULAR
 from softkin._table import numbers
 from softkin._types import Status
 
@@ -50,4 +49,4 @@ def singularity(robot: Mechanism, programs: Programs, axes: ArrayLike) -> tuple[
             margins[rows, k] = margin
         failed[rows] = status != Status.OK
     margins[failed] = np.nan
-    return failed | (np.abs(margins) < SINGULAR).any(axis=1), margins
+    return failed | (np.abs(margins) < robot._warning_distance()).any(axis=1), margins

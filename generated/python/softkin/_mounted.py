@@ -6,13 +6,14 @@ Its inverse commands the flange of the bare machine: `_tools` says which tools i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import hypot, nan
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self, cast
 
 from softkin._configuration import AUTOMATIC, Criterion, slots
 from softkin._core import PITCH, TURN, TWIST, Image, Mechanism, Pose
+from softkin._ends import Ends
 from softkin._frame import IDENTITY, ORIGIN, Frame
 from softkin._scalar import reasonable
 from softkin._search import SearchedInverse
@@ -22,6 +23,7 @@ from softkin._types import (
     Configuration,
     Diagnosis,
     FrameLike,
+    KinematicsError,
     Matrix,
     Numbers,
     Reals,
@@ -81,25 +83,56 @@ class Mounted(Mechanism):
         }  # fmt: skip
         for name, value in known.items():
             object.__setattr__(self, name, value)
+        self._seal()
 
     def __repr__(self) -> str:
         """The calls that make this mechanism."""
         base = "" if self.base == PLAIN else f".with_base({self.base!r})"
         return f"{self.bare!r}{base}" + ("" if self.tool == PLAIN else f".with_tool({self.tool!r})")
 
-    def __eq__(self, other: object) -> bool:
-        """Whether the other one is the same machine, mounted alike."""
-        if not isinstance(other, Mounted):
-            return NotImplemented
-        return (self.bare, self.base, self.tool) == (other.bare, other.base, other.tool)
-
     def __hash__(self) -> int:
         """The hash of machine, base and tool."""
         return hash((self.bare, self.base, self.tool))
 
-    def __reduce__(self) -> tuple[Callable[..., Mechanism], tuple[Mechanism, Frame, Frame]]:  # type: ignore[override]
+    __eq__ = Mechanism.__eq__
+
+    def __reduce__(self) -> tuple[Callable[..., Mechanism], tuple[Mechanism, Frame, Frame]]:
         """Copying and pickling mount the machine again."""
         return mounted, (self.bare, self.base, self.tool)
+
+    @property
+    def limits(self) -> dict[str, Ends | None]:
+        """The limits of the bare machine."""
+        return self.bare.limits
+
+    def changed(self, **parameters: Any) -> Self:
+        """The same with other parameters of the bare machine, or with `base=` and `tool=` in the place of its own."""
+        base, tool = parameters.pop("base", self.base), parameters.pop("tool", self.tool)
+        return cast("Self", mounted(self.bare.changed(**parameters), base, tool))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The bare machine, the base and the tool as plain data."""
+        return {
+            "mechanism": "Mounted",
+            "bare": self.bare.to_dict(),
+            "base": _plain(self.base),
+            "tool": _plain(self.tool),
+        }
+
+    @classmethod
+    def from_dict(cls, given: Mapping[str, Any]) -> Self:
+        """The machine of `to_dict`; a base or a tool that is missing is none.
+
+        Raises NOT_INITIALIZED for other data, BAD_INPUT for what is no frame, INVALID_COUPLING for an impossible tool.
+        """
+        values = dict(given)
+        is_radian = values.pop("in_radians", False)
+        is_known = values.pop("mechanism", "Mounted") == "Mounted" and set(values) <= {"bare", "base", "tool"}
+        if not (is_known and isinstance(values.get("bare"), Mapping)):
+            raise KinematicsError(Status.NOT_INITIALIZED, "Mounted: the entries must be bare, base and tool")
+        bare = Mechanism.from_dict(values["bare"])
+        made = mounted(bare, _frame(values.get("base", PLAIN)), _frame(values.get("tool", PLAIN)))
+        return cast("Self", made.in_radians() if is_radian else made)
 
     @property
     def _criteria(self) -> tuple[Criterion, ...]:
@@ -127,6 +160,21 @@ class Mounted(Mechanism):
 
     def _written(self, margins: Reals, axes: Reals) -> Configuration:
         return self.bare._written(margins, axes)
+
+    def _parameter_units(self) -> dict[str, str]:
+        return self.bare._parameter_units()
+
+    def _ranges(self) -> tuple[tuple[float, float], ...]:
+        return self.bare._ranges()
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        return self.bare._quantities(axes)
+
+    def _warning_distance(self) -> float:
+        return self.bare._warning_distance()
+
+    def _has_one_solution_a_branch(self) -> bool:
+        return self.bare._has_one_solution_a_branch()
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
         return self.bare._beyond_limits(axes)
@@ -201,6 +249,13 @@ class Mounted(Mechanism):
             return super()._every_branch(position, rotation, reference)
         return self.bare._every_branch(*self._flange(*self._seen_from_base(position, rotation)), reference)
 
+    def _every_solution(
+        self, position: Vector, rotation: Rotation, reference: Reals
+    ) -> Iterable[tuple[Signs, Reals | Diagnosis]]:
+        if self._kind == PITCH:
+            return super()._every_solution(position, rotation, reference)
+        return self.bare._every_solution(*self._flange(*self._seen_from_base(position, rotation)), reference)
+
     def inverse_all(self, frame: FrameLike, reference: Numbers | None = None) -> Sequence[Solution]:
         """Every branch of the inverse, in fixed slots: see `inverse_all` of the bare machine."""
         if not isinstance(self.bare, SearchedInverse):
@@ -262,6 +317,8 @@ class Mounted(Mechanism):
 class StartedMounted(Mounted, IterativeForward):
     """A mounted machine whose forward kinematics iterates."""
 
+    PARAMETERS = ()
+
     def _forward_from(self, axes: Reals, start_position: Vector, start_rotation: Rotation) -> Pose | Status:
         start = self.base.inverse() @ (start_position, start_rotation) @ self.tool.inverse()
         assert isinstance(self.bare, IterativeForward)
@@ -276,10 +333,30 @@ class StartedMounted(Mounted, IterativeForward):
 
 
 def mounted(robot: Mechanism, base: FrameLike = PLAIN, tool: FrameLike = PLAIN) -> Mounted:
-    """The machine on a base and with a tool, beyond those that it has; refuses a tool that it cannot carry."""
+    """The machine on a base and with a tool, beyond those that it has; refuses a tool that it cannot carry.
+
+    A machine in radians is mounted in degrees: the result is in radians.
+    """
+    in_degrees = robot.in_degrees()
+    if in_degrees is not robot:
+        return mounted(in_degrees, base, tool).in_radians()
     stand, carried = Frame.of(base), Frame.of(tool)
     if isinstance(robot, Mounted):
         stand, carried = stand @ robot.base, robot.tool @ carried
         robot = robot.bare
     check_tool(robot, carried)
     return (StartedMounted if isinstance(robot, IterativeForward) else Mounted)(robot, stand, carried)
+
+
+def _plain(frame: Frame) -> dict[str, Any]:
+    """A frame as plain data."""
+    return {"position": list(frame.position), "rotation": [list(row) for row in frame.rotation]}
+
+
+def _frame(given: Any) -> Frame:
+    """The frame of plain data, or of any form that the calls take."""
+    if not isinstance(given, Mapping):
+        return Frame.of(given)
+    if set(given) != {"position", "rotation"}:
+        raise KinematicsError(Status.NOT_INITIALIZED, "Mounted: the entries of a frame must be position and rotation")
+    return Frame.of((given["position"], given["rotation"]))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from softkin._configuration import AUTOMATIC, Slot, slots
 from softkin._core import Mechanism
@@ -61,6 +61,34 @@ class SearchedInverse(Mechanism):
             for joints in self._all_joints(given) if not isinstance(given, Status) else ():
                 self._sort_in(found, self._from_joints(joints, turns, near))
         return tuple(self._solutions(slot, found.get(slot[1], [])) for slot in every)
+
+    def _every_solution(
+        self, position: Vector, rotation: Rotation, reference: Reals
+    ) -> Iterable[tuple[Signs, Reals | Diagnosis]]:
+        """Every root of every scan, then that of the branch of the reference next to it; else why there is none."""
+        if not self._is_searched():
+            yield from super()._every_solution(position, rotation, reference)
+            return
+        turns, every = (0,) * len(self.PERIOD_AXES), slots((AUTOMATIC,) * self.BRANCHES)
+        found: dict[Signs, list[Reals]] = {signs: [] for _, signs in every}
+        for signs in dict.fromkeys(slot[1][: self.SIDES] for slot in every):
+            given = self._search_given(
+                position, rotation, (*signs, *(0,) * (self.BRANCHES - self.SIDES)), turns, reference
+            )
+            for joints in self._all_joints(given) if not isinstance(given, Status) else ():
+                self._sort_in(found, self._from_joints(joints, turns, reference))
+        pose = self._forward(reference)
+        near = every[0][1] if isinstance(pose, Status) else tuple(1 if margin > 0.0 else -1 for margin in pose[2])
+        own = self._branch(position, rotation, near, turns, reference)
+        answers = [(signs, axes) for _, signs in every for axes in found[signs]]
+        if not isinstance(own, Diagnosis):
+            answers.append((near, own))
+        yield from answers
+        if not answers:
+            yield from super()._every_solution(position, rotation, reference)
+
+    def _has_one_solution_a_branch(self) -> bool:
+        return not self._is_searched()
 
     def _sort_in(self, found: dict[Signs, list[Reals]], axes: Reals | Status) -> None:
         """Add a solution under the signs of its branch; where branches coincide, under the signs of both."""

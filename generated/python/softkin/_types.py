@@ -113,9 +113,16 @@ class Diagnosis(NamedTuple):
 
     @property
     def in_words(self) -> str:
-        """The reason, followed by the amount and the turn if there are any."""
-        amount = f", missing {self.missing:.4g}" if self.missing else ""
-        return self.reason + amount + (f", which is turn {self.turn}" if self.turn else "")
+        """The reason, followed by the amount in its unit and the turn, if there are any."""
+        text, unit = split_unit(self.reason)
+        amount = f", missing {float(f'{self.missing:.4g}')!r}" + (f" {unit}" if unit else "") if self.missing else ""
+        return text + amount + (f", which is turn {self.turn}" if self.turn else "")
+
+
+def split_unit(reason: str) -> tuple[str, str]:
+    """A reason without the unit at its end, and the unit: `A2: out of reach [u]`."""
+    text, bracket, unit = reason.rpartition(" [")
+    return (text, unit[:-1]) if bracket and unit.endswith("]") and unit[:-1] in ("u", "deg", "rad") else (reason, "")
 
 
 class Singularity(NamedTuple):

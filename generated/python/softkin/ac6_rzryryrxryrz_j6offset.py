@@ -64,6 +64,7 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array_programs.ac6_rzryryrxryrz_j6offset import ArrayPrograms
+    from softkin._ends import Limits
     from softkin._types import Matrix, Reals, Rotation, Signs, Turns, Values, Vector
 
 
@@ -181,6 +182,34 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     PERIOD_AXES = (0, 1, 2, 3, 4, 5)
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
 
+    d1: float
+    a1: float
+    a2: float
+    a3: float
+    d4: float
+    j6_offset_x: float
+    d6: float
+    offset_a1: float
+    offset_a2: float
+    offset_a3: float
+    offset_a4: float
+    offset_a5: float
+    offset_a6: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_a3: float
+    upper_a3: float
+    lower_a4: float
+    upper_a4: float
+    lower_a5: float
+    upper_a5: float
+    lower_a6: float
+    upper_a6: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -211,6 +240,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         upper_a6: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -241,9 +271,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         upper_a6: A6: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _try_joint(self, given: Values) -> Values | Status:
         """The residual of the closure at a trial, its slope, and the angles that may turn fast."""

@@ -56,6 +56,7 @@ from softkin._unrolled.delta_c import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -209,6 +210,27 @@ class DeltaC(OffsetKinematics, TwistChoice):
     PERIOD_AXES = (0, 1, 2, 3)
     DISTANCE_AXES = (0, 1, 2, 3)
 
+    base_radius: float
+    arm_length: float
+    rod_length: float
+    plate_radius: float
+    offset_a1: float
+    offset_a2: float
+    offset_a3: float
+    offset_a4: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_a3: float
+    upper_a3: float
+    lower_a4: float
+    upper_a4: float
+    tcp_above: bool
+    min_type2_margin: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -232,6 +254,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
         min_type2_margin: float = 0.001,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -255,10 +278,12 @@ class DeltaC(OffsetKinematics, TwistChoice):
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

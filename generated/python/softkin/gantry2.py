@@ -35,6 +35,7 @@ from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -91,6 +92,15 @@ class Gantry2(OffsetKinematics):
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1)
 
+    offset_x: float
+    offset_y: float
+    lower_x: float
+    upper_x: float
+    lower_y: float
+    upper_y: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -102,6 +112,7 @@ class Gantry2(OffsetKinematics):
         upper_y: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -113,9 +124,11 @@ class Gantry2(OffsetKinematics):
         upper_y: Y: upper limit of the axis, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

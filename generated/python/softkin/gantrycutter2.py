@@ -39,6 +39,7 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -102,6 +103,19 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     PERIOD_AXES = (2,)
     DISTANCE_AXES = (2,)
 
+    direction_r: int
+    offset_x: float
+    offset_y: float
+    offset_r: float
+    lower_x: float
+    upper_x: float
+    lower_y: float
+    upper_y: float
+    lower_r: float
+    upper_r: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -117,6 +131,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         upper_r: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -132,9 +147,11 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         upper_r: R: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

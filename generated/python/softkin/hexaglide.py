@@ -67,6 +67,7 @@ from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import StartedPrograms
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Values, Vector
 
 
@@ -631,6 +632,78 @@ class Hexaglide(IterativeForward):
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
 
+    rail_1_y: float
+    rail_1_z: float
+    rail_2_y: float
+    rail_2_z: float
+    rail_3_y: float
+    rail_3_z: float
+    rail_4_y: float
+    rail_4_z: float
+    rail_5_y: float
+    rail_5_z: float
+    rail_6_y: float
+    rail_6_z: float
+    platform_1_x: float
+    platform_1_y: float
+    platform_1_z: float
+    platform_2_x: float
+    platform_2_y: float
+    platform_2_z: float
+    platform_3_x: float
+    platform_3_y: float
+    platform_3_z: float
+    platform_4_x: float
+    platform_4_y: float
+    platform_4_z: float
+    platform_5_x: float
+    platform_5_y: float
+    platform_5_z: float
+    platform_6_x: float
+    platform_6_y: float
+    platform_6_z: float
+    rod_length_1: float
+    rod_length_2: float
+    rod_length_3: float
+    rod_length_4: float
+    rod_length_5: float
+    rod_length_6: float
+    carriage_side_1: int
+    carriage_side_2: int
+    carriage_side_3: int
+    carriage_side_4: int
+    carriage_side_5: int
+    carriage_side_6: int
+    home_x: float
+    home_y: float
+    home_z: float
+    home_roll: float
+    home_pitch: float
+    home_yaw: float
+    max_angle_base_joint: float
+    max_angle_platform_joint: float
+    offset_a1: float
+    offset_a2: float
+    offset_a3: float
+    offset_a4: float
+    offset_a5: float
+    offset_a6: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_a3: float
+    upper_a3: float
+    lower_a4: float
+    upper_a4: float
+    lower_a5: float
+    upper_a5: float
+    lower_a6: float
+    upper_a6: float
+    min_type2_margin: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -705,6 +778,7 @@ class Hexaglide(IterativeForward):
         min_type2_margin: float = 0.001,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -779,9 +853,11 @@ class Hexaglide(IterativeForward):
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _find_platform(self, given: Values) -> Values | Status:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""

@@ -57,6 +57,7 @@ from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import StartedPrograms
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Values, Vector
 
 
@@ -493,6 +494,72 @@ class Hexapod(IterativeForward):
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
 
+    base_1_x: float
+    base_1_y: float
+    base_1_z: float
+    base_2_x: float
+    base_2_y: float
+    base_2_z: float
+    base_3_x: float
+    base_3_y: float
+    base_3_z: float
+    base_4_x: float
+    base_4_y: float
+    base_4_z: float
+    base_5_x: float
+    base_5_y: float
+    base_5_z: float
+    base_6_x: float
+    base_6_y: float
+    base_6_z: float
+    platform_1_x: float
+    platform_1_y: float
+    platform_1_z: float
+    platform_2_x: float
+    platform_2_y: float
+    platform_2_z: float
+    platform_3_x: float
+    platform_3_y: float
+    platform_3_z: float
+    platform_4_x: float
+    platform_4_y: float
+    platform_4_z: float
+    platform_5_x: float
+    platform_5_y: float
+    platform_5_z: float
+    platform_6_x: float
+    platform_6_y: float
+    platform_6_z: float
+    home_x: float
+    home_y: float
+    home_z: float
+    home_roll: float
+    home_pitch: float
+    home_yaw: float
+    max_angle_base_joint: float
+    max_angle_platform_joint: float
+    offset_l1: float
+    offset_l2: float
+    offset_l3: float
+    offset_l4: float
+    offset_l5: float
+    offset_l6: float
+    lower_l1: float
+    upper_l1: float
+    lower_l2: float
+    upper_l2: float
+    lower_l3: float
+    upper_l3: float
+    lower_l4: float
+    upper_l4: float
+    lower_l5: float
+    upper_l5: float
+    lower_l6: float
+    upper_l6: float
+    min_type2_margin: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -561,6 +628,7 @@ class Hexapod(IterativeForward):
         min_type2_margin: float = 0.001,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -629,9 +697,11 @@ class Hexapod(IterativeForward):
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _find_platform(self, given: Values) -> Values | Status:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""

@@ -44,6 +44,7 @@ from softkin._unrolled.kin_5axes import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -132,6 +133,26 @@ class Kin5Axes(Mechanism):
     PERIOD_AXES = (3, 4)
     DISTANCE_AXES = (3, 4)
 
+    tool_length: float
+    tool_side: int
+    offset_x: float
+    offset_y: float
+    offset_z: float
+    offset_a: float
+    offset_b: float
+    lower_x: float
+    upper_x: float
+    lower_y: float
+    upper_y: float
+    lower_z: float
+    upper_z: float
+    lower_a: float
+    upper_a: float
+    lower_b: float
+    upper_b: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -154,6 +175,7 @@ class Kin5Axes(Mechanism):
         upper_b: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -176,10 +198,12 @@ class Kin5Axes(Mechanism):
         upper_b: B: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

@@ -37,6 +37,7 @@ from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -120,6 +121,19 @@ class P2XType2(OffsetKinematics):
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1)
 
+    arm_length: float
+    tcp_link_distance: float
+    offset_a1: float
+    offset_a2: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    tcp_above: bool
+    min_type2_margin: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -135,6 +149,7 @@ class P2XType2(OffsetKinematics):
         min_type2_margin: float = 0.001,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -150,9 +165,11 @@ class P2XType2(OffsetKinematics):
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

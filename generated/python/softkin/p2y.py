@@ -35,6 +35,7 @@ from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -97,6 +98,19 @@ class P2Y(OffsetKinematics):
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1)
 
+    offset_a1: float
+    offset_a2: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_x: float
+    upper_x: float
+    lower_y: float
+    upper_y: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -112,6 +126,7 @@ class P2Y(OffsetKinematics):
         upper_y: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -127,9 +142,11 @@ class P2Y(OffsetKinematics):
         upper_y: upper limit of Y of the carriage, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
@@ -208,6 +225,17 @@ class P2Y(OffsetKinematics):
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         return ((0.5, -0.5), (0.5, 0.5))
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        axis_a1, axis_a2 = axes
+        k = self._constants
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        value_x = 0.5 * (a1 - a2)  # X of the carriage
+        value_y = 0.5 * (a1 + a2)  # Y of the carriage
+        return (value_x, value_y)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

@@ -52,6 +52,7 @@ from softkin._unrolled.palletizer import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -175,6 +176,29 @@ class Palletizer(OffsetKinematics, TwistChoice):
     PERIOD_AXES = (0, 1, 2, 3)
     DISTANCE_AXES = (0, 1, 2, 3)
 
+    base_height: float
+    shoulder_offset: float
+    link_length_1: float
+    link_length_2: float
+    wrist_offset_x: float
+    wrist_offset_z: float
+    offset_a1: float
+    offset_a2: float
+    offset_a3: float
+    offset_a4: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_a3: float
+    upper_a3: float
+    lower_a4: float
+    upper_a4: float
+    lower_elbow: float
+    upper_elbow: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -200,6 +224,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         upper_elbow: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -225,10 +250,12 @@ class Palletizer(OffsetKinematics, TwistChoice):
         upper_elbow: upper limit of the forearm relative to the rear arm, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
@@ -578,6 +605,16 @@ class Palletizer(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 0.0, 0.0, 1.0),
         )
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        _, axis_a2, axis_a3, _ = axes
+        k = self._constants
+        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        value_elbow = (a3 - a2) * RADIAN  # the forearm relative to the rear arm
+        return (value_elbow,)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

@@ -43,6 +43,7 @@ from softkin._unrolled.pcc import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -124,6 +125,19 @@ class PCC(OffsetKinematics):
     PERIOD_AXES = (0, 1)
     DISTANCE_AXES = (0, 1)
 
+    link_length_1: float
+    link_length_2: float
+    offset_a1: float
+    offset_a2: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_elbow: float
+    upper_elbow: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -139,6 +153,7 @@ class PCC(OffsetKinematics):
         upper_elbow: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -154,10 +169,12 @@ class PCC(OffsetKinematics):
         upper_elbow: upper limit of the outer arm relative to the inner arm, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
@@ -328,6 +345,16 @@ class PCC(OffsetKinematics):
         cos_a1 = cos(a1)
         cos_a2 = cos(a2)
         return ((-link_length_1 * sin_a1, -link_length_2 * sin_a2), (link_length_1 * cos_a1, link_length_2 * cos_a2))
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        axis_a1, axis_a2 = axes
+        k = self._constants
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        value_elbow = (a2 - a1) * RADIAN  # the outer arm relative to the inner arm
+        return (value_elbow,)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

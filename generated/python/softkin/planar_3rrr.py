@@ -65,6 +65,7 @@ from softkin._unrolled.planar_3rrr import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import StartedPrograms
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Values, Vector
 
 
@@ -394,6 +395,43 @@ class Planar3RRR(IterativeForward, TwistChoice):
     PERIOD_AXES = (0, 1, 2)
     DISTANCE_AXES = (0, 1, 2)
 
+    base_1_x: float
+    base_1_y: float
+    base_2_x: float
+    base_2_y: float
+    base_3_x: float
+    base_3_y: float
+    platform_1_x: float
+    platform_1_y: float
+    platform_2_x: float
+    platform_2_y: float
+    platform_3_x: float
+    platform_3_y: float
+    arm_length_1: float
+    arm_length_2: float
+    arm_length_3: float
+    rod_length_1: float
+    rod_length_2: float
+    rod_length_3: float
+    home_x: float
+    home_y: float
+    home_heading: float
+    offset_a1: float
+    offset_a2: float
+    offset_a3: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_a3: float
+    upper_a3: float
+    home_elbow_1_left: bool
+    home_elbow_2_left: bool
+    home_elbow_3_left: bool
+    min_type2_margin: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -433,6 +471,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         min_type2_margin: float = 0.001,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -472,10 +511,12 @@ class Planar3RRR(IterativeForward, TwistChoice):
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _find_platform(self, given: Values) -> Values | Status:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""

@@ -41,6 +41,7 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -105,6 +106,18 @@ class PolarZ(Mechanism):
     PERIOD_AXES = (0,)
     DISTANCE_AXES = (0,)
 
+    offset_c: float
+    offset_r: float
+    offset_z: float
+    lower_c: float
+    upper_c: float
+    lower_r: float
+    upper_r: float
+    lower_z: float
+    upper_z: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -119,6 +132,7 @@ class PolarZ(Mechanism):
         upper_z: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -133,9 +147,11 @@ class PolarZ(Mechanism):
         upper_z: Z: upper limit of the axis, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

@@ -41,6 +41,7 @@ from softkin._unrolled.scara2_z import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -123,6 +124,20 @@ class Scara2Z(OffsetKinematics):
     PERIOD_AXES = (0, 1)
     DISTANCE_AXES = (0, 1)
 
+    arm_length_1: float
+    arm_length_2: float
+    offset_a1: float
+    offset_a2: float
+    offset_z: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_z: float
+    upper_z: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -139,6 +154,7 @@ class Scara2Z(OffsetKinematics):
         upper_z: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -155,10 +171,12 @@ class Scara2Z(OffsetKinematics):
         upper_z: Z: upper limit of the axis, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

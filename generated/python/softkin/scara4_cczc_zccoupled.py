@@ -50,6 +50,7 @@ from softkin._unrolled.scara4_cczc_zccoupled import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -165,6 +166,26 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
     PERIOD_AXES = (3, 0, 1)
     DISTANCE_AXES = (0, 1, 3)
 
+    link_length_1: float
+    link_length_2: float
+    pitch_zc: float
+    gear_coupling: float
+    flange_down: bool
+    offset_a1: float
+    offset_a2: float
+    offset_a3: float
+    offset_a4: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_a3: float
+    upper_a3: float
+    lower_a4: float
+    upper_a4: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -187,6 +208,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         upper_a4: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -209,10 +231,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         upper_a4: A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

@@ -52,6 +52,7 @@ from softkin._unrolled.sccc import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -158,6 +159,28 @@ class SCCC(OffsetKinematics, TwistChoice):
     PERIOD_AXES = (0, 1, 2)
     DISTANCE_AXES = (0, 1, 2)
 
+    link_length_1: float
+    link_length_2: float
+    link_length_3: float
+    coupling_12: float
+    coupling_13: float
+    coupling_23: float
+    offset_a1: float
+    offset_a2: float
+    offset_a3: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_a3: float
+    upper_a3: float
+    lower_joint_2: float
+    upper_joint_2: float
+    lower_joint_3: float
+    upper_joint_3: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -182,6 +205,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         upper_joint_3: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -206,10 +230,12 @@ class SCCC(OffsetKinematics, TwistChoice):
         upper_joint_3: upper limit of joint 3, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
@@ -514,6 +540,21 @@ class SCCC(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0),
             (coupling_12_plus_coupling_13_plus_one, coupling_23_plus_one, 1.0),
         )
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        axis_a1, axis_a2, axis_a3 = axes
+        k = self._constants
+        coupling_12, coupling_13, coupling_23, offset_a1 = k.coupling_12, k.coupling_13, k.coupling_23, k.offset_a1
+        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        motor_a2 = DEGREE * (axis_a2 - offset_a2)
+        a2 = motor_a2 + a1 * coupling_12
+        value_joint_2 = a2 * RADIAN  # joint 2
+        motor_a3 = DEGREE * (axis_a3 - offset_a3)
+        a3 = motor_a3 + a1 * coupling_13 + coupling_23 * motor_a2
+        value_joint_3 = a3 * RADIAN  # joint 3
+        return (value_joint_2, value_joint_3)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

@@ -37,6 +37,7 @@ from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -102,6 +103,22 @@ class TGantry3(OffsetKinematics):
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1, 2)
 
+    offset_a: float
+    offset_b: float
+    offset_z: float
+    lower_a: float
+    upper_a: float
+    lower_b: float
+    upper_b: float
+    lower_z: float
+    upper_z: float
+    lower_x: float
+    upper_x: float
+    lower_y: float
+    upper_y: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -120,6 +137,7 @@ class TGantry3(OffsetKinematics):
         upper_y: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -138,9 +156,11 @@ class TGantry3(OffsetKinematics):
         upper_y: upper limit of Y of the carriage, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
@@ -215,6 +235,17 @@ class TGantry3(OffsetKinematics):
         if not reasonable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         return ((0.5, 0.5, 0.0), (-0.5, 0.5, 0.0), (0.0, 0.0, 1.0))
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        """The quantities beside the axes that have limits."""
+        axis_a, axis_b, _ = axes
+        k = self._constants
+        offset_a, offset_b = k.offset_a, k.offset_b
+        a = axis_a - offset_a
+        b = axis_b - offset_b
+        value_x = 0.5 * (a + b)  # X of the carriage
+        value_y = 0.5 * (b - a)  # Y of the carriage
+        return (value_x, value_y)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

@@ -33,6 +33,7 @@ from softkin._types import Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -81,6 +82,12 @@ class Tool(OrientationKinematics):
     PERIOD_AXES = ()
     DISTANCE_AXES = ()
 
+    tool_x: float
+    tool_y: float
+    tool_z: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -89,6 +96,7 @@ class Tool(OrientationKinematics):
         tool_z: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -97,9 +105,11 @@ class Tool(OrientationKinematics):
         tool_z: Flange to the tool, along Z [u]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

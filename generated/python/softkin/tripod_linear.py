@@ -45,6 +45,7 @@ from softkin._unrolled.tripod_linear import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -205,6 +206,25 @@ class TripodLinear(OffsetKinematics):
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1, 2)
 
+    outer_radius: float
+    inner_radius: float
+    arm_length: float
+    rail_angle: float
+    max_angle_ball_joint: float
+    offset_a1: float
+    offset_a2: float
+    offset_a3: float
+    lower_a1: float
+    upper_a1: float
+    lower_a2: float
+    upper_a2: float
+    lower_a3: float
+    upper_a3: float
+    tcp_below: bool
+    min_type2_margin: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -226,6 +246,7 @@ class TripodLinear(OffsetKinematics):
         min_type2_margin: float = 0.001,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -247,10 +268,12 @@ class TripodLinear(OffsetKinematics):
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

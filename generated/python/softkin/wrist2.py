@@ -42,6 +42,7 @@ from softkin._unrolled.wrist2 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -131,6 +132,20 @@ class Wrist2(OrientationKinematics):
     PERIOD_AXES = (0, 1)
     DISTANCE_AXES = (0, 1)
 
+    tool_length: float
+    roll_axis_offset_x: float
+    roll_axis_offset_y: float
+    roll_axis_offset_z: float
+    tool_side: int
+    offset_a: float
+    offset_b: float
+    lower_a: float
+    upper_a: float
+    lower_b: float
+    upper_b: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -147,6 +162,7 @@ class Wrist2(OrientationKinematics):
         upper_b: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -163,10 +179,12 @@ class Wrist2(OrientationKinematics):
         upper_b: B: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

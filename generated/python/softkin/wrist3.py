@@ -43,6 +43,7 @@ from softkin._unrolled.wrist3 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
+    from softkin._ends import Limits
     from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
@@ -112,6 +113,21 @@ class Wrist3(OrientationKinematics):
     PERIOD_AXES = (0, 1, 2)
     DISTANCE_AXES = (0, 1, 2)
 
+    tool_offset_x: float
+    tool_offset_y: float
+    tool_offset_z: float
+    offset_a: float
+    offset_b: float
+    offset_c: float
+    lower_a: float
+    upper_a: float
+    lower_b: float
+    upper_b: float
+    lower_c: float
+    upper_c: float
+    check_limits: bool
+    warning_distance: float
+
     def __init__(
         self,
         *,
@@ -129,6 +145,7 @@ class Wrist3(OrientationKinematics):
         upper_c: float = 0.0,
         check_limits: bool = True,
         warning_distance: float = 0.001,
+        limits: Limits | None = None,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -146,10 +163,12 @@ class Wrist3(OrientationKinematics):
         upper_c: C: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
         self._constants = Constants(self)
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
+        self._seal()
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""

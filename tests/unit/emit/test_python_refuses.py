@@ -46,8 +46,10 @@ def test_the_error_has_the_diagnosis(mechanism: Mechanism) -> None:
         if error is not None:
             refused += 1
             assert error.refusal == found and error.status is found.status
-            assert found.reason and found.reason in str(error)
-            assert found.missing == 0.0 or f", missing {found.missing:.4g}" in str(error)
+            assert found.reason and str(error).endswith(found.in_words)
+            text, _, unit = found.reason.partition(" [")
+            amount = f", missing {float(f'{found.missing:.4g}')} {unit.rstrip(']')}".rstrip() if found.missing else ""
+            assert found.in_words == f"{text}{amount}" and "[" not in found.in_words
     assert refused or not any("reach" in text or "planar" in text for text in texts_in_the_inverse(robot))
 
 

@@ -1,0 +1,1 @@
+"""Calls that every machine has around its inverse: nearest, radians, names, paths, values."""

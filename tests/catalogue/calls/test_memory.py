@@ -1,0 +1,55 @@
+"""The memory of `inverse_all_batch`: from 100,000 rows on little more than its result."""
+
+from __future__ import annotations
+
+import tracemalloc
+
+import numpy as np
+import pytest
+
+from tests.catalogue.calls.robots import NAMES, poses, robots
+
+MANY = 100_000
+MOST = 1.3
+SEARCHED = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
+
+
+def on_the_way(name: str, rows: int) -> tuple[float, float]:
+    """The bytes of the result, and those of everything else at the peak."""
+    robot = robots(name)[0].made
+    axes = np.array(poses(name, 0, 3)).reshape(3, len(robot.AXES))
+    positions, rotations = (np.resize(part, (rows, *part.shape[1:])) for part in robot.forward_batch(axes)[:2])
+    near = np.resize(axes, (rows, len(robot.AXES)))
+    robot.inverse_all_batch(positions[:9], rotations[:9], near[:9])
+    tracemalloc.start()
+    try:
+        found = robot.inverse_all_batch(positions, rotations, near)
+        size = float(sum(part.nbytes for part in found))
+        return size, tracemalloc.get_traced_memory()[1] - size
+    finally:
+        tracemalloc.stop()
+
+
+ITERATED = ("Kin_Hexapod", "Softkin_Hexaglide")
+"""Machines of which one row takes long."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=[pytest.mark.slow] if n in ITERATED else []) for n in NAMES if n != SEARCHED],
+)
+def test_the_peak_is_hardly_more_than_the_result(name: str) -> None:
+    """Traced, without the input."""
+    size, more = on_the_way(name, MANY)
+    assert size + more <= MOST * size
+
+
+def test_a_root_scan_takes_few_rows_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many rows together as of a batch of 100,000, in a shorter one: what is on the way stays."""
+    from softkin import _batch
+
+    robot = robots(SEARCHED)[0].made
+    together = _batch._rows_together(robot._array_programs().VALUES, MANY, 2**robot.BRANCHES, len(robot.AXES))
+    monkeypatch.setattr(_batch, "_rows_together", lambda *given: together)
+    size, more = on_the_way(SEARCHED, 3 * together)
+    assert more <= (MOST - 1.0) * size / (3 * together) * MANY

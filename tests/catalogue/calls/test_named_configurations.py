@@ -1,0 +1,62 @@
+"""Configurations by names, and back."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from itertools import product
+
+import pytest
+import softkin
+from softkin import KinematicsError, Status
+
+from tests.catalogue.calls.robots import NAMES, poses, robots
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_names_and_back(name: str) -> None:
+    """Every slot on turns: its names make it again, and it is a configuration as any tuple."""
+    for number, one in enumerate(robots(name)):
+        robot = one.made
+        described = robot.CONFIGURATION
+        for branches in product((0, 1, 2, 3), repeat=robot.BRANCHES):
+            turns = iter((-3, 2, 0, 5, -1, 127, 1))
+            signs = iter(branches)
+            given = tuple(next(signs) if byte.kind == "branch" else next(turns) for byte in described)
+            names = robot.names(given)
+            assert list(names) == [byte.name for byte in described]
+            made = robot.configuration(**{key.replace(" ", "_"): value for key, value in names.items()})
+            assert made == given and made.names == names and isinstance(made, tuple)
+            for other in (copy.copy(made), copy.deepcopy(made), pickle.loads(pickle.dumps(made))):
+                assert other == made and repr(other) == repr(made)
+            assert all(f"{key.replace(' ', '_')}={value!r}" in repr(made) for key, value in names.items())
+        axes = poses(name, number, 1)[0]
+        frame, own = robot.forward(axes)
+        named = robot.configuration(**{key.replace(" ", "_"): value for key, value in robot.names(own).items()})
+        assert robot.inverse(frame, named, axes) == robot.inverse(frame, own, axes)
+        assert robot.configuration() == robot.DEFAULT_CONFIGURATION
+
+
+def test_what_is_refused() -> None:
+    """Unknown names and values are told the known ones."""
+    robot = softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0)
+    assert robot.configuration(elbow="left", A4=2) == (2, 2, 0, 0)
+    assert repr(robot.configuration(elbow="left", A4=2)) == "configuration(elbow='left', A4=2, A1=0, A2=0)"
+    for given, words in (
+        ({"arm": "left"}, "elbow, A4, A1, A2"),
+        ({"elbow": "up"}, "'right', 'left', 'automatic'"),
+        ({"elbow": 4}, "0 to 3"),
+        ({"elbow": True}, "0 to 3"),
+        ({"A4": "two"}, "whole number"),
+        ({"A4": 200}, "whole number"),
+        ({"A4": 1.5}, "whole number"),
+        ({"A3": 1}, "elbow, A4, A1, A2"),
+    ):
+        with pytest.raises(KinematicsError, match=words) as refused:
+            robot.configuration(**given)  # type: ignore[arg-type]
+        assert refused.value.status is Status.BAD_INPUT
+    with pytest.raises(KinematicsError, match="none"):
+        softkin.Gantry2().configuration(elbow="left")
+    for wrong in ((4, 0, 0, 0), (1, 0, 0)):
+        with pytest.raises(KinematicsError):
+            robot.names(wrong)

@@ -1,0 +1,189 @@
+"""A machine is a value: written down and read again, equal, hashed, copied, and never changed."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+import softkin
+from softkin import KinematicsError, Mechanism, Status
+
+from tests.catalogue.calls.robots import NAMES, drawn_limits, poses, robots, with_limits
+
+SCARA = {"link_length_1": 325.0, "link_length_2": 225.0}
+
+
+class Own(softkin.Scara2Z):
+    """A user's machine, whose dimensions nobody gives, with an attribute of its own."""
+
+    def __init__(self, label: str) -> None:
+        super().__init__(arm_length_1=300.0, arm_length_2=200.0)
+        self.label = label
+
+
+class Slotted(softkin.Gantry2):
+    """A user's machine with a slot."""
+
+    __slots__ = ("label",)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.label = "mine"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_machine_is_a_value(name: str) -> None:
+    """Copies of every kind are equal; another parameter makes another machine."""
+    rng = np.random.default_rng(6)
+    for number, one in enumerate(robots(name)):
+        axes = poses(name, number, 1)[0]
+        made = with_limits(one.made, drawn_limits(one, axes, rng))
+        written = json.loads(json.dumps(made.to_dict(), allow_nan=False))
+        copies = (
+            copy.copy(made),
+            copy.deepcopy(made),
+            pickle.loads(pickle.dumps(made)),
+            Mechanism.from_dict(written),
+            type(made).from_json(made.to_json()),
+            eval(repr(made), vars(softkin)),
+            made.changed(),
+        )
+        for other in copies:
+            assert other == made and hash(other) == hash(made)
+            assert type(other) is type(made) and repr(other) == repr(made) and other.limits == made.limits
+            assert other.forward(axes) == made.forward(axes)
+        for parameter in made.PARAMETERS:
+            assert getattr(made, parameter.name) == made.parameters[parameter.name]
+        before = (repr(made), made.checks_limits, made.forward(axes))
+        for attribute in ("checks_limits", "parameters", "_constants", "forward", "AXES", "limits", "part", "new"):
+            with pytest.raises(AttributeError):
+                setattr(made, attribute, {})
+        for attribute in ("checks_limits", "parameters"):
+            with pytest.raises(AttributeError):
+                delattr(made, attribute)
+        with pytest.raises(TypeError):
+            made.parameters["check_limits"] = False  # type: ignore[index]
+        assert (repr(made), made.checks_limits, made.forward(axes)) == before
+        if made.PARAMETERS:
+            other = made.changed(check_limits=False)
+            assert other != made and not other.check_limits and other.changed(check_limits=True) == made
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_one_mapping_is_the_single_limits(name: str) -> None:
+    """Both ends by a mapping or by themselves: the same machine; one end alone limits one side."""
+    made = robots(name)[0].made
+    if isinstance(made, softkin.Coupled):
+        return
+    for axis in made.AXES:
+        key = axis.name.lower()
+        both = made.changed(limits={axis.name: (-3.0, 5.0)})
+        assert both == made.changed(**{f"lower_{key}": -3.0, f"upper_{key}": 5.0})
+        assert both.limits[axis.name] == (-3.0, 5.0)
+        assert both.changed(limits={axis.name: None}).limits[axis.name] is None
+        for ends, inside, outside in (((-3.0, None), (0.0, 100.0), -4.0), ((None, 5.0), (0.0, -100.0), 6.0)):
+            sided = made.changed(limits={axis.name: ends})
+            assert sided.limits[axis.name] == ends
+            low, high = sided._ranges()[made.AXES.index(axis)]
+            least, most = made._ranges()[made.AXES.index(axis)]  # a radius is not negative, whatever the limits
+            assert all(low <= value <= high for value in inside if least <= value <= most)
+            assert not low <= outside <= high
+
+
+def test_one_sided_limits_refuse() -> None:
+    """In a scalar call and in a batch, at the end and with its tolerance; the other side is free."""
+    robot = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=200.0, limits={"Z": (None, 10.0), "A1": (0.0, None)})
+    for axes, expected in (
+        ((5.0, 30.0, -1e6), Status.OK),
+        ((5.0, 30.0, 10.0 + 1e-9), Status.OK),
+        ((5.0, 30.0, 10.1), Status.UNREACHABLE),
+        ((-1.0, 30.0, 0.0), Status.UNREACHABLE),
+        ((1000.0, 30.0, 0.0), Status.OK),
+    ):
+        frame, configuration = robot.forward(axes)
+        assert robot.diagnose(frame, configuration, axes).status is expected
+        _, status = robot.inverse_batch([frame.position], [frame.rotation], configuration, axes)
+        assert status[0] == expected
+    climbing = softkin.Scara4ZCcoupledType1(**SCARA, pitch_zc=20.0, limits={"A4": (None, 100.0)})
+    assert climbing._ranges()[3] == pytest.approx((-720.0, 100.0), abs=1e-5)  # a climbing axis always has limits
+
+
+def test_what_limits_may_be() -> None:
+    """Unknown axes, wrong pairs, limits given twice."""
+    for limits in (
+        {"A9": (0.0, 1.0)},
+        {"A1": (1.0,)},
+        {"A1": (2.0, 1.0)},
+        {"A1": (0.0, 0.0)},
+        {"A1": (float("nan"), 1.0)},
+        {"A1": (0.0, float("inf"))},
+        {"A1": (0.0, 1e300)},
+        {"A1": "12"},
+        {"A1": {0.0, 1.0}},
+        {"A1": 5.0},
+        [("A1", (0.0, 1.0))],
+    ):
+        with pytest.raises(KinematicsError) as refused:
+            softkin.Scara4ZCcoupledType1(**SCARA, limits=limits)  # type: ignore[arg-type]
+        assert refused.value.status is Status.NOT_INITIALIZED
+    with pytest.raises(KinematicsError, match="A1, A2, A3, A4"):
+        softkin.Scara4ZCcoupledType1(**SCARA, limits={"A9": None})
+    with pytest.raises(KinematicsError, match="given once"):
+        softkin.Scara4ZCcoupledType1(**SCARA, lower_a1=-5.0, upper_a1=5.0, limits={"A1": (-5.0, 5.0)})
+    assert set(softkin.PCC(link_length_1=300.0, link_length_2=200.0, limits={"elbow": (0.0, 170.0)}).limits) == {
+        "A1", "A2", "elbow",
+    }  # fmt: skip
+
+
+def test_what_a_dictionary_may_be() -> None:
+    """A class reads its own, `Mechanism` any; other names are told."""
+    plain = {"mechanism": "Kin_Scara4_ZCcoupled_Type1", **SCARA}
+    robot = softkin.Scara4ZCcoupledType1(**SCARA)
+    assert Mechanism.from_dict(plain) == softkin.Scara4ZCcoupledType1.from_dict(SCARA) == robot
+    for given, words in (
+        ({**plain, "link_length_3": 1.0}, "link_length_3.*link_length_1"),
+        ({"mechanism": "Kin_Scara4_ZCcoupled_Type1"}, "link_length_1, link_length_2"),
+        ({"mechanism": "Kin_Nothing"}, "Kin_Scara4"),
+        (SCARA, "mechanism"),
+    ):
+        with pytest.raises(KinematicsError, match=words):
+            Mechanism.from_dict(given)
+    with pytest.raises(KinematicsError):
+        softkin.Gantry2.from_dict(plain)
+    for text in ("{", "[]", "3"):
+        with pytest.raises(KinematicsError):
+            Mechanism.from_json(text)
+
+
+def test_subclasses() -> None:
+    """A subclass pickles whatever its arguments are, keeps its own attributes, and cannot change the machine."""
+    for robot in (Own("left"), Slotted()):
+        axes = (1.0,) * len(robot.AXES)
+        for other in (copy.copy(robot), copy.deepcopy(robot), pickle.loads(pickle.dumps(robot))):
+            assert type(other) is type(robot) and other == robot and other.label == robot.label
+            assert other.forward(axes) == robot.forward(axes)
+        with pytest.raises(AttributeError):
+            robot.checks_limits = False
+        assert type(robot.changed(check_limits=False)) is type(robot)
+    own = Own("left")
+    own.label = "right"
+    assert own.label == "right" and own.in_radians().forward((0.1, 0.2, 3.0))
+    assert own != softkin.Scara2Z(arm_length_1=300.0, arm_length_2=200.0)
+
+
+def test_machines_are_keys() -> None:
+    """Equal machines are one key, of a dictionary and of a set."""
+    first, second = softkin.Gantry2(), softkin.Gantry2(offset_x=0)
+    assert len({first, second, softkin.Gantry2(offset_x=1.0), softkin.Gantry3()}) == 3
+    wrist: Any = softkin.Wrist2()
+    pair = softkin.Coupled(softkin.Gantry3(), wrist)
+    assert {pair: 1}[softkin.Coupled(softkin.Gantry3(), softkin.Wrist2())] == 1
+    assert pair.changed(orientation=softkin.Wrist3()) == softkin.Coupled(softkin.Gantry3(), softkin.Wrist3())
+    with pytest.raises(KinematicsError, match="must be an orientation kinematics"):
+        softkin.Coupled(softkin.Gantry3(), softkin.Gantry3())  # type: ignore[arg-type]
+    with pytest.raises(KinematicsError, match="is an orientation kinematics"):
+        softkin.Coupled(softkin.Wrist3(), softkin.Wrist3())
