@@ -69,6 +69,11 @@ def _parameter(p: Parameter) -> str:
     return _call("Parameter.of", *map(literal, (p.role.value, p.name, p.meaning)), **unusual)
 
 
+def limit_keys(kin: Kinematics) -> str:
+    """What has limits, by the last part of the names of their parameters."""
+    return literal((*(j.key for j in kin.mechanism.joints), *(q.name for q in kin.mechanism.limited)))
+
+
 def configuration(kin: Kinematics) -> list[str]:
     """The bytes of the configuration: branches first, then periods."""
     branches = [

@@ -21,7 +21,7 @@ from softkin._configuration import (
     slots,
     squared_distance,
 )
-from softkin._ends import given_ends, limit_keys
+from softkin._ends import given_ends, limit_names
 from softkin._frame import Frame
 from softkin._input import bytes_of, parameter_value, pose_of, position_of, reals, unusable
 from softkin._rotation import in_words, made_rotation
@@ -177,7 +177,9 @@ class Mechanism(Value, ABC):
         """
         found = {p.name: parameter_value(self.NAME, p, given[p.name]) for p in self.PARAMETERS}
         limits = (
-            {} if given.get("limits") is None else given_ends(self.NAME, self.PARAMETERS, self.AXES, given["limits"])
+            {}
+            if given.get("limits") is None
+            else given_ends(self.NAME, limit_names(self.LIMIT_KEYS, self.AXES), self.PARAMETERS, given["limits"])
         )
         self.parameters = MappingProxyType(found | limits)
         self.checks_limits = bool(found["check_limits"])
@@ -663,7 +665,7 @@ class Mechanism(Value, ABC):
     def _ranges(self) -> tuple[tuple[float, float], ...]:
         """The ranges of the axes, then of other quantities with limits; wide where limits are not tested."""
         k = vars(getattr(self, "_constants"))  # noqa: B009  each class has its own
-        found = [(k[f"lowest_{key}"], k[f"highest_{key}"]) for key in limit_keys(self.PARAMETERS)]
+        found = [(k[f"lowest_{key}"], k[f"highest_{key}"]) for key in self.LIMIT_KEYS]
         return tuple(found)
 
     def _quantities(self, axes: Reals) -> Reals | Status:

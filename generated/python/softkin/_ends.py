@@ -20,27 +20,25 @@ Limits: TypeAlias = Mapping[str, Ends | None]
 _LOWER, _UPPER = "lower_", "upper_"
 
 
-def limit_keys(parameters: Iterable[Parameter]) -> tuple[str, ...]:
-    """What has limits, by the last part of the names of its parameters: every axis in order, then other quantities."""
-    return tuple(p.name.removeprefix(_LOWER) for p in parameters if p.name.startswith(_LOWER))
+def limit_names(keys: tuple[str, ...], axes: tuple[Axis, ...]) -> dict[str, str]:
+    """The name in a mapping of limits → the last part of the names of its parameters.
 
-
-def limit_names(parameters: Iterable[Parameter], axes: tuple[Axis, ...]) -> dict[str, str]:
-    """The name in a mapping of limits → the last part of the names of its parameters."""
-    keys = limit_keys(parameters)
+    keys: these last parts, `LIMIT_KEYS` of a class.
+    """
     if not keys:  # a coupling: its parts have the limits
         return {}
     return dict(zip((*(axis.name for axis in axes), *keys[len(axes) :]), keys, strict=True))
 
 
-def given_ends(machine: str, parameters: tuple[Parameter, ...], axes: tuple[Axis, ...], given: Any) -> dict[str, float]:
+def given_ends(
+    machine: str, names: Mapping[str, str], parameters: tuple[Parameter, ...], given: Any
+) -> dict[str, float]:
     """The values of the parameters that a mapping of limits stands for: an end without a limit is infinite.
 
-    Raises NOT_INITIALIZED for an unknown name, which is told the known ones, and for ends that are no limits.
+    names: those of `limit_names`. Raises NOT_INITIALIZED for an unknown name, which is told the known ones, and for ends that are no limits.
     """
     if not isinstance(given, Mapping):
         raise _refused(f"{machine}: limits must be a mapping from the names of axes to (lower, upper), not {given!r}")
-    names = limit_names(parameters, axes)
     by_name = {p.name: p for p in parameters}
     found: dict[str, float] = {}
     for name, ends in given.items():
@@ -58,12 +56,10 @@ def given_ends(machine: str, parameters: tuple[Parameter, ...], axes: tuple[Axis
     return found
 
 
-def ends_of(
-    parameters: tuple[Parameter, ...], axes: tuple[Axis, ...], values: Mapping[str, float]
-) -> dict[str, Ends | None]:
-    """The limits in the values of parameters, by name."""
+def ends_of(names: Mapping[str, str], values: Mapping[str, float]) -> dict[str, Ends | None]:
+    """The limits in the values of parameters, by name. names: those of `limit_names`."""
     found: dict[str, Ends | None] = {}
-    for name, key in limit_names(parameters, axes).items():
+    for name, key in names.items():
         lower, upper = values[_LOWER + key], values[_UPPER + key]
         ends = lower if isfinite(lower) else None, upper if isfinite(upper) else None
         found[name] = ends if abs(lower) + abs(upper) > 0.0 else None

@@ -22,6 +22,9 @@ class Value:
     NAME: str
     AXES: tuple[Axis, ...]
     PARAMETERS: tuple[Parameter, ...]
+    LIMIT_KEYS: tuple[str, ...] = ()
+    """What has limits of its own, by the last part of the names of their parameters: every axis in order, then other
+    quantities."""
     parameters: Mapping[str, float]
 
     _kept: tuple[frozenset[str], dict[str, Any]]
@@ -126,12 +129,12 @@ class Value:
 
     def _one_sided(self) -> set[str]:
         """The names of the limits of which one end is missing."""
-        keys = limit_names(self.PARAMETERS, self.AXES).values()
+        keys = limit_names(self.LIMIT_KEYS, self.AXES).values()
         pairs = ((f"lower_{key}", f"upper_{key}") for key in keys)
         return {name for pair in pairs if not all(isfinite(self.parameters[n]) for n in pair) for name in pair}
 
     def _sided_limits(self, sided: set[str]) -> dict[str, Ends | None]:
-        keys = limit_names(self.PARAMETERS, self.AXES)
+        keys = limit_names(self.LIMIT_KEYS, self.AXES)
         return {name: ends for name, ends in self.limits.items() if f"lower_{keys[name]}" in sided}
 
     @property
@@ -140,7 +143,7 @@ class Value:
 
         The names are those of the axes, then those of other quantities with limits. In the unit of the axis.
         """
-        return ends_of(self.PARAMETERS, self.AXES, self.parameters)
+        return ends_of(limit_names(self.LIMIT_KEYS, self.AXES), self.parameters)
 
     def changed(self, **parameters: Any) -> Self:
         """The same machine with other values for some parameters; `limits` changes those of the axes that it names.
@@ -150,7 +153,7 @@ class Value:
         given = self._keywords()
         if _LIMITS in parameters and _LIMITS in given:
             parameters[_LIMITS] = given[_LIMITS] | dict(parameters[_LIMITS])
-        keys = limit_names(self.PARAMETERS, self.AXES)
+        keys = limit_names(self.LIMIT_KEYS, self.AXES)
         for name in parameters.get(_LIMITS) or ():
             for word in ("lower", "upper") if name in keys else ():
                 given.pop(f"{word}_{keys[name]}", None)
@@ -160,7 +163,7 @@ class Value:
 
     def to_dict(self) -> dict[str, Any]:
         """The machine as plain data, for JSON or YAML: its name, its parameters and its limits, all of them."""
-        keys = limit_names(self.PARAMETERS, self.AXES).values()
+        keys = limit_names(self.LIMIT_KEYS, self.AXES).values()
         ends = {f"{word}_{key}" for key in keys for word in ("lower", "upper")}
         plain = {name: value for name, value in self.parameters.items() if name not in ends}
         listed = {name: None if both is None else list(both) for name, both in self.limits.items()}

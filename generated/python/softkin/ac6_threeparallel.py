@@ -174,6 +174,7 @@ class Ac6ThreeParallel(Mechanism):
     ROLE = "complete"
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2, 3, 4, 5)
+    LIMIT_KEYS = ("a1", "a2", "a3", "a4", "a5", "a6")
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
 
     d1: float

@@ -130,6 +130,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     ROLE = "complete"
     BRANCHES = 1
     PERIOD_AXES = (3, 4, 5)
+    LIMIT_KEYS = ("a1", "a2", "a3", "a4", "a5", "a6")
     DISTANCE_AXES = (3, 4, 5)
 
     flange_x: float

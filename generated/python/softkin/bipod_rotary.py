@@ -160,6 +160,7 @@ class BipodRotary(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 2
     PERIOD_AXES = (0, 1)
+    LIMIT_KEYS = ("a1", "a2")
     DISTANCE_AXES = (0, 1)
 
     inner_arm: float

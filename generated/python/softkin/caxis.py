@@ -82,6 +82,7 @@ class CAxis(OrientationKinematics, TwistChoice):
     ROLE = "orientation"
     BRANCHES = 0
     PERIOD_AXES = (0,)
+    LIMIT_KEYS = ("c",)
     DISTANCE_AXES = (0,)
 
     offset_c: float

@@ -92,6 +92,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     ROLE = "orientation"
     BRANCHES = 0
     PERIOD_AXES = (0,)
+    LIMIT_KEYS = ("c",)
     DISTANCE_AXES = (0,)
 
     tool_x: float

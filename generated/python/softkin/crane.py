@@ -104,6 +104,7 @@ class Crane(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = (1,)
+    LIMIT_KEYS = ("r", "theta", "phi")
     DISTANCE_AXES = (1, 2)
 
     offset_r: float

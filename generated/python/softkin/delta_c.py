@@ -208,6 +208,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
     ROLE = "position"
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2, 3)
+    LIMIT_KEYS = ("a1", "a2", "a3", "a4")
     DISTANCE_AXES = (0, 1, 2, 3)
 
     base_radius: float

@@ -331,6 +331,7 @@ class DeltaP3CType3(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2)
+    LIMIT_KEYS = ("a1", "a2", "a3")
     DISTANCE_AXES = (0, 1, 2)
 
     azimuth_1: float

@@ -216,6 +216,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     ROLE = "position"
     BRANCHES = 2
     PERIOD_AXES = (0, 1, 3)
+    LIMIT_KEYS = ("a1", "a2", "a3", "a4")
     DISTANCE_AXES = (0, 1, 3)
 
     base_distance: float

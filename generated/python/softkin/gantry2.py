@@ -90,6 +90,7 @@ class Gantry2(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = ()
+    LIMIT_KEYS = ("x", "y")
     DISTANCE_AXES = (0, 1)
 
     offset_x: float

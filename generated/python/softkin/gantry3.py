@@ -94,6 +94,7 @@ class Gantry3(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = ()
+    LIMIT_KEYS = ("x", "y", "z")
     DISTANCE_AXES = (0, 1, 2)
 
     offset_x: float

@@ -101,6 +101,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = (2,)
+    LIMIT_KEYS = ("x", "y", "r")
     DISTANCE_AXES = (2,)
 
     direction_r: int

@@ -106,6 +106,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
     ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = (3,)
+    LIMIT_KEYS = ("x", "y", "z", "r")
     DISTANCE_AXES = (3,)
 
     direction_r: int

@@ -134,6 +134,7 @@ class HeadHeadCB(Mechanism):
     ROLE = "complete"
     BRANCHES = 1
     PERIOD_AXES = (3, 4)
+    LIMIT_KEYS = ("x", "y", "z", "c", "b")
     DISTANCE_AXES = (3, 4)
 
     fork_offset: float

@@ -138,6 +138,7 @@ class HeadTableBC(Mechanism):
     ROLE = "complete"
     BRANCHES = 1
     PERIOD_AXES = (3, 4)
+    LIMIT_KEYS = ("x", "y", "z", "b", "c")
     DISTANCE_AXES = (3, 4)
 
     head_offset: float

@@ -630,6 +630,7 @@ class Hexaglide(IterativeForward):
     ROLE = "complete"
     BRANCHES = 0
     PERIOD_AXES = ()
+    LIMIT_KEYS = ("a1", "a2", "a3", "a4", "a5", "a6")
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
 
     rail_1_y: float

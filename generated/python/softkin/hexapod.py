@@ -492,6 +492,7 @@ class Hexapod(IterativeForward):
     ROLE = "complete"
     BRANCHES = 0
     PERIOD_AXES = ()
+    LIMIT_KEYS = ("l1", "l2", "l3", "l4", "l5", "l6")
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
 
     base_1_x: float

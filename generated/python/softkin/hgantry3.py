@@ -101,6 +101,7 @@ class HGantry3(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = ()
+    LIMIT_KEYS = ("a", "b", "z", "x", "y")
     DISTANCE_AXES = (0, 1, 2)
 
     offset_a: float

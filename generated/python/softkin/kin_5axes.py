@@ -131,6 +131,7 @@ class Kin5Axes(Mechanism):
     ROLE = "complete"
     BRANCHES = 1
     PERIOD_AXES = (3, 4)
+    LIMIT_KEYS = ("x", "y", "z", "a", "b")
     DISTANCE_AXES = (3, 4)
 
     tool_length: float

@@ -218,6 +218,7 @@ class KinType12XY(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 2
     PERIOD_AXES = (0, 1)
+    LIMIT_KEYS = ("a1", "a2")
     DISTANCE_AXES = (0, 1)
 
     link_length_1: float

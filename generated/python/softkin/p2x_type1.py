@@ -155,6 +155,7 @@ class P2XType1(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 2
     PERIOD_AXES = ()
+    LIMIT_KEYS = ("a1", "a2")
     DISTANCE_AXES = (0, 1)
 
     arm_length_1: float

@@ -119,6 +119,7 @@ class P2XType2(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = ()
+    LIMIT_KEYS = ("a1", "a2")
     DISTANCE_AXES = (0, 1)
 
     arm_length: float

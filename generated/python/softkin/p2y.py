@@ -96,6 +96,7 @@ class P2Y(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = ()
+    LIMIT_KEYS = ("a1", "a2", "x", "y")
     DISTANCE_AXES = (0, 1)
 
     offset_a1: float

@@ -174,6 +174,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
     ROLE = "position"
     BRANCHES = 2
     PERIOD_AXES = (0, 1, 2, 3)
+    LIMIT_KEYS = ("a1", "a2", "a3", "a4", "elbow")
     DISTANCE_AXES = (0, 1, 2, 3)
 
     base_height: float

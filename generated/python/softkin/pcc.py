@@ -123,6 +123,7 @@ class PCC(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (0, 1)
+    LIMIT_KEYS = ("a1", "a2", "elbow")
     DISTANCE_AXES = (0, 1)
 
     link_length_1: float

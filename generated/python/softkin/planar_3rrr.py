@@ -393,6 +393,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
     ROLE = "position"
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2)
+    LIMIT_KEYS = ("a1", "a2", "a3")
     DISTANCE_AXES = (0, 1, 2)
 
     base_1_x: float

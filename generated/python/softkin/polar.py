@@ -99,6 +99,7 @@ class Polar(Mechanism):
     ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = (0,)
+    LIMIT_KEYS = ("c", "r")
     DISTANCE_AXES = (0,)
 
     offset_c: float

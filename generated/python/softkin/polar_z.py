@@ -104,6 +104,7 @@ class PolarZ(Mechanism):
     ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = (0,)
+    LIMIT_KEYS = ("c", "r", "z")
     DISTANCE_AXES = (0,)
 
     offset_c: float

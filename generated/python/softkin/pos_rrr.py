@@ -147,6 +147,7 @@ class PosRRR(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 2
     PERIOD_AXES = (0, 1, 2)
+    LIMIT_KEYS = ("a1", "a2", "a3")
     DISTANCE_AXES = (0, 1, 2)
 
     d1: float

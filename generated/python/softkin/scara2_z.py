@@ -122,6 +122,7 @@ class Scara2Z(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (0, 1)
+    LIMIT_KEYS = ("a1", "a2", "z")
     DISTANCE_AXES = (0, 1)
 
     arm_length_1: float

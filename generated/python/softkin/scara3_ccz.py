@@ -123,6 +123,7 @@ class Scara3CCZ(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (0, 1)
+    LIMIT_KEYS = ("a1", "a2", "a3")
     DISTANCE_AXES = (0, 1)
 
     link_length_1: float

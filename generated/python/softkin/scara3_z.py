@@ -130,6 +130,7 @@ class Scara3Z(TwistChoice):
     ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (0, 1, 2)
+    LIMIT_KEYS = ("a1", "a2", "a3", "z")
     DISTANCE_AXES = (0, 1, 2)
 
     arm_length_1: float

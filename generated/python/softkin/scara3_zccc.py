@@ -138,6 +138,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
     ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (1, 2, 3)
+    LIMIT_KEYS = ("a1", "a2", "a3", "a4")
     DISTANCE_AXES = (1, 2, 3)
 
     link_length_1: float

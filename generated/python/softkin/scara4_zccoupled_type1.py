@@ -154,6 +154,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
     ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (3, 0, 1)
+    LIMIT_KEYS = ("a1", "a2", "a3", "a4")
     DISTANCE_AXES = (0, 1, 3)
 
     link_length_1: float

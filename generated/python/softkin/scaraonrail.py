@@ -143,6 +143,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
     BRANCHES = 1
     PERIOD_AXES = (1, 2, 4)
     HELD = (0,)
+    LIMIT_KEYS = ("e1", "a1", "a2", "a3", "a4")
     DISTANCE_AXES = (1, 2, 4)
 
     link_length_1: float

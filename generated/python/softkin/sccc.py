@@ -157,6 +157,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (0, 1, 2)
+    LIMIT_KEYS = ("a1", "a2", "a3", "joint_2", "joint_3")
     DISTANCE_AXES = (0, 1, 2)
 
     link_length_1: float

@@ -149,6 +149,7 @@ class TableTableAC(Mechanism):
     ROLE = "complete"
     BRANCHES = 1
     PERIOD_AXES = (3, 4)
+    LIMIT_KEYS = ("x", "y", "z", "a", "c")
     DISTANCE_AXES = (3, 4)
 
     pivot_y: float

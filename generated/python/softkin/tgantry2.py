@@ -97,6 +97,7 @@ class TGantry2(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = ()
+    LIMIT_KEYS = ("a", "b", "x", "y")
     DISTANCE_AXES = (0, 1)
 
     offset_a: float

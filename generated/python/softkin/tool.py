@@ -80,6 +80,7 @@ class Tool(OrientationKinematics):
     ROLE = "orientation"
     BRANCHES = 0
     PERIOD_AXES = ()
+    LIMIT_KEYS = ()
     DISTANCE_AXES = ()
 
     tool_x: float

@@ -204,6 +204,7 @@ class TripodLinear(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 3
     PERIOD_AXES = ()
+    LIMIT_KEYS = ("a1", "a2", "a3")
     DISTANCE_AXES = (0, 1, 2)
 
     outer_radius: float

@@ -275,6 +275,7 @@ class TripodP3Z(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 3
     PERIOD_AXES = ()
+    LIMIT_KEYS = ("a1", "a2", "a3")
     DISTANCE_AXES = (0, 1, 2)
 
     arm_length: float

@@ -219,6 +219,7 @@ class TripodRotary(OffsetKinematics):
     ROLE = "position"
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2)
+    LIMIT_KEYS = ("a1", "a2", "a3")
     DISTANCE_AXES = (0, 1, 2)
 
     arm_length_1: float

@@ -130,6 +130,7 @@ class Wrist2(OrientationKinematics):
     ROLE = "orientation"
     BRANCHES = 1
     PERIOD_AXES = (0, 1)
+    LIMIT_KEYS = ("a", "b")
     DISTANCE_AXES = (0, 1)
 
     tool_length: float

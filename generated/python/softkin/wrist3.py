@@ -111,6 +111,7 @@ class Wrist3(OrientationKinematics):
     ROLE = "orientation"
     BRANCHES = 1
     PERIOD_AXES = (0, 1, 2)
+    LIMIT_KEYS = ("a", "b", "c")
     DISTANCE_AXES = (0, 1, 2)
 
     tool_offset_x: float
