@@ -134,7 +134,7 @@ def _told(
     found = [(s, o) for s, o, _ in agreeing]
     own = [(s, o) for s, o in found if s.step in branch.indicator.free_symbols]
     same = [(s, o) for s, o, row in agreeing if _are_multiples(row, indicator)]
-    return next((few for few in (same, own) if few), found) if len(found) > 1 else found
+    return next((few for few in (same, own) if len(few) == 1), found) if len(found) > 1 else found
 
 
 def _are_multiples(one: np.ndarray, other: np.ndarray) -> bool:

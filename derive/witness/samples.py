@@ -103,21 +103,8 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
     chosen = _first_regular(closure, samples)
     possible = len(np.unique(chosen.machine))  # random dimensions may form a loop that never closes, or is singular
     if possible < min(2 if kin.mechanism.rods else 3, count) or chosen.machine[0] != 0:
-        raise Disagreement(_always_singular(kin.mechanism, machines, _first_missing(chosen, count)))
+        raise Disagreement("a machine has no regular pose: is the mechanism always singular?")
     return chosen
-
-
-def _first_missing(chosen: Samples, count: int) -> int:
-    """The number of the first machine without a sample."""
-    return next(k for k in range(count) if k not in chosen.machine)
-
-
-def _always_singular(mechanism: Mechanism, machines: dict[str, Array], own: int) -> str:
-    """What to say of the machine with the number `own`, which has no regular pose: which of its dimensions is zero."""
-    zero = [f"{p.name} = 0" for p in mechanism.parameters if p.nominal and machines[p.name][own] == 0.0]
-    if zero:
-        return f"with {' and '.join(zero)} the machine has no regular pose: state what is never zero as a length"
-    return "a machine has no regular pose: is the mechanism always singular?"
 
 
 def _drawn(

@@ -91,7 +91,7 @@ def test_defaults_are_the_ones_it_says(mechanism: Mechanism, machines: tuple[Mac
         expected = machines[0].given.get(parameter.name, parameter.default)
         assert robot.parameters[parameter.name] == expected
         own = next((p for p in mechanism.parameters if p.name == parameter.name), None)
-        usual = {"check_limits": 1.0, "min_type2_margin": 1e-3}.get(parameter.name, 0.0)
+        usual = {"check_limits": 1.0, "min_type2_margin": 1e-3, "warning_distance": 1e-3}.get(parameter.name, 0.0)
         by_role = {**dict.fromkeys((*LENGTHS, Role.ANGLE)), Role.SIGN: 1.0}
         if mechanism.is_platform and own is not None:  # what must be given, and what need not, is said one by one
             by_role |= dict.fromkeys((Role.DISTANCE, Role.ANGLE), own.default)

@@ -70,7 +70,7 @@ REFUSED = {
         "Softkin_ReadMatrix(m := f.mR, aElements := rot, eOrder := matrixOrder);",
         "VAR_IN_OUT CONSTANT rot",
     ),
-    "a write outside Initialize": Break(_MARGINS, "sinA2 := ", "machineScale := ", "Initialize"),
+    "a write outside Initialize": Break(_MARGINS, "sinA2 := ", "linkLength2 := ", "Initialize"),
     "a write to an input of the block": Break(
         _FORWARD, "f.vT.dX := x;", "dLinkLength1 := x;", "writes the input dLinkLength1"
     ),
@@ -87,7 +87,7 @@ REFUSED = {
         "METHOD PUBLIC GetKinematicsName", "GetKinematicsName := ", "// ", "never assigns"
     ),
     "the same name twice": Break(_FORWARD, "sinA12, y,", "sinA12, y, X,", "duplicate name"),
-    "a name of a method": Break(_BRANCH, "headingLength, reach,", "headingLength, jacobian,", "hides a member"),
+    "a name of a method": Break(_BRANCH, "headingAcross, reach,", "headingAcross, jacobian,", "hides a member"),
     "an error that does not exist": Break(_FORWARD, "Softkin_Names.NotInitialized", "Softkin_Names.Fine", "no member"),
     "an axis that does not exist": Break(_BRANCH, "a.a5 := 0.0;", "a.a6 := 0.0;", "no field a6"),
     "a byte that does not exist": Break(_FORWARD, "abyData[3]", "abyData[32]", "outside"),
@@ -120,7 +120,7 @@ WRONG = {
         "iReason := 2;\n    SolveBranch := Softkin_Names.Unreachable",
         "iReason := 2;\n    SolveBranch := Softkin_Names.InvalidCoupling",
     ),
-    "CartesianToAxes: a limit": Break(_LIMITS, "dValue := a.a3", "dValue := 0.5*a.a3"),
+    "CartesianToAxes: a limit": Break(_LIMITS, "(a.a3 <= axes[3].highest)", "(a.a3 <= 2.0*axes[3].highest)"),
     "CartesianToAxes: an output before a refusal": Break(
         _INVERSE, "status := TestLimits(", "a := solution;\nstatus := TestLimits("
     ),

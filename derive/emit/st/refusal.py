@@ -116,10 +116,10 @@ class Explained(Refusal):
 
     def _beyond(self, axis: Tested, first: int) -> Iterator[str]:
         given = f"axis := {axis.structure}, dValue := {axis.value}, iFirst := {first}"
-        results = ", ".join(f"{name} => {name}" for name in (REASON, MISSING, TURN))
-        yield f"IF Softkin_Beyond({given},"
-        yield f"    {results}) THEN"
-        yield from indented(self.of(Status.UNREACHABLE))
+        results = ", ".join(f"{name} => {name}" for name in (MISSING, TURN))
+        yield f"IF NOT (({axis.value} >= {axis.structure}.lowest) AND ({axis.value} <= {axis.structure}.highest)) THEN"
+        call = [f"{REASON} := Softkin_Beyond({given},", f"  {results});"]
+        yield from indented([*call, *self.of(Status.UNREACHABLE)])
         yield "END_IF"
 
     def _numbered(self, plain: str, turns: Sequence[tuple[OtherTurn, str]], printer: StructuredText) -> Iterator[str]:

@@ -3,10 +3,10 @@
 Paden and Kahan's subproblem 4; where e is made of three sides of a triangle, the law of cosines (their subproblem 3).
 Two roots. Let h = |(a, b)|, C = e / h and S = sigma sqrt((h - e)(h + e)) / h, the cosine and sine of the angle between
 u and the direction of (a, b). Then cos u = (a C - b S) / h and sin u = (b C + a S) / h. The factors h - e and h + e
-stay products: expanded they lose half the digits. Where h changes with the pose, C and S come from these factors alone,
+stay products: expanded they lose half the digits. Where h is a root, C and S come from these factors alone,
 whose ratio is the square of the tangent of half the angle: so C^2 + S^2 = 1 to rounding, whatever digits e has lost.
-Where h is made of lengths of the machine, their sum 2 h is one, too, and nothing is divided. Determinant a sin u - b
-cos u = h S: sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution. Where it is 1 both roots
+Where h is a product of lengths of the machine, their sum 2 h is one, too, and nothing is divided. Determinant a sin u -
+b cos u = h S: sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution. Where it is 1 both roots
 meet (degenerate case). Where joints can make h vanish, u is free there: e must vanish, too. Where h is made of
 parameters and commanded values alone, a pose is refused whose h is below 1e-9 of the length that it is compared with:
 the arm then has no length that u could turn.
@@ -150,16 +150,14 @@ def _amplitude(
     if problem.is_never_zero(square):
         scale = common * (unit if is_moved else effective)
     else:
-        is_fixed = False
         scale = equation.scales.get(angle, common * unit)
         divisor, aimable, guard = _vanishing(effective, (common, unit), angle, is_moved=is_moved)
     right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
     units = (along / divisor, across / divisor)
     size, left = common * divisor, right.xreplace({divisor: effective})
     return _Amplitude(
-        naming, size, guard, *units, right, determinant, scale, factors, is_fixed=is_fixed, told=told, aimable=aimable,
-        left=left,
-    )  # fmt: skip
+        naming, size, guard, *units, right, determinant, scale, factors, told=told, aimable=aimable, left=left
+    )
 
 
 def _is_moved(problem: Problem, square: sp.Expr) -> bool:

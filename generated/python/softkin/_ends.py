@@ -35,7 +35,8 @@ def given_ends(
 ) -> dict[str, float]:
     """The values of the parameters that a mapping of limits stands for: an end without a limit is infinite.
 
-    names: those of `limit_names`. Raises NOT_INITIALIZED for an unknown name, which is told the known ones, and for ends that are no limits.
+    names: those of `limit_names`. Raises NOT_INITIALIZED for an unknown name, which is told the known ones, and for
+    ends that are no limits.
     """
     if not isinstance(given, Mapping):
         raise _refused(f"{machine}: limits must be a mapping from the names of axes to (lower, upper), not {given!r}")

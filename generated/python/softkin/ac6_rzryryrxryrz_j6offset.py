@@ -29,11 +29,11 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 142 additions, 207 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 91344 additions, 139882 multiplications, 7320 divisions, 3898 square roots, 5304 sines
-    inverse, all 16 branches open: 1461777 additions, 2238208 multiplications, 117120 divisions, 62368 square
+    inverse: 94397 additions, 143669 multiplications, 8105 divisions, 3898 square roots, 5304 sines
+    inverse, all 16 branches open: 1510625 additions, 2298800 multiplications, 129680 divisions, 62368 square
     roots, 84864 sines
     repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 28 additions, 50 multiplications, 10 divisions, 3 square roots, 12
+    a branch at a singular pose, more: 28 additions, 50 multiplications, 11 divisions, 3 square roots, 12
     sines
     root scan along A6: at most 760 passes, all of which are counted
 
@@ -90,8 +90,6 @@ class Constants:
         size_of_j6_offset_x = abs(j6_offset_x)
         a2_plus_effective_q3_tried = a2 + effective_q3_tried
         a2_minus_effective_q3_tried = a2 - effective_q3_tried
-        quotient_in_cos_swing_q3_tried = 0.25 / (a2 * effective_q3_tried)
-        half_by_a2_by_effective_q3_tried = 0.5 / (a2 * effective_q3_tried)
         d4_by_effective_q3_tried = d4 / effective_q3_tried
         a3_by_effective_q3_tried = a3 / effective_q3_tried
         one_by_machine_scale = 1.0 / machine_scale
@@ -102,8 +100,6 @@ class Constants:
         self.searched, self.machine_scale_times_free_angle = searched, machine_scale_times_free_angle
         self.size_of_j6_offset_x, self.a2_plus_effective_q3_tried = size_of_j6_offset_x, a2_plus_effective_q3_tried
         self.a2_minus_effective_q3_tried = a2_minus_effective_q3_tried
-        self.quotient_in_cos_swing_q3_tried = quotient_in_cos_swing_q3_tried
-        self.half_by_a2_by_effective_q3_tried = half_by_a2_by_effective_q3_tried
         self.d4_by_effective_q3_tried = d4_by_effective_q3_tried
         self.a3_by_effective_q3_tried, self.one_by_machine_scale = a3_by_effective_q3_tried, one_by_machine_scale
         self.quotient_in_fits = quotient_in_fits
@@ -156,7 +152,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         Parameter.of(
             "ratio",
             "warning_distance",
-            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            "a margin (a number without a unit) of less than this in size is singular",
             default=0.001,
         ),
     )
@@ -271,7 +267,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         lower_a6: A6: lower limit of the axis, both 0: no limit [deg]
         upper_a6: A6: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
-        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        warning_distance: a margin (a number without a unit) of less than this in size is singular [1]
         limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
@@ -306,10 +302,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         a1, a2, a2_minus_effective_q3_tried = k.a1, k.a2, k.a2_minus_effective_q3_tried
         a2_plus_effective_q3_tried, a3 = k.a2_plus_effective_q3_tried, k.a3
         a3_by_effective_q3_tried, d1, d4 = k.a3_by_effective_q3_tried, k.d1, k.d4
-        d4_by_effective_q3_tried, d6 = k.d4_by_effective_q3_tried, k.d6
-        half_by_a2_by_effective_q3_tried, j6_offset_x = k.half_by_a2_by_effective_q3_tried, k.j6_offset_x
+        d4_by_effective_q3_tried, d6, j6_offset_x = k.d4_by_effective_q3_tried, k.d6, k.j6_offset_x
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        quotient_in_cos_swing_q3_tried = k.quotient_in_cos_swing_q3_tried
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # wrist centre: the last joints do not move this point
@@ -367,16 +361,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sum_in_one_plus_cos_q3_tried_2 = a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = -sum_in_one_plus_cos_q3_tried * sum_in_one_plus_cos_q3_tried_2
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * quotient_in_cos_swing_q3_tried
-        # sine squared, times the squared scale
-        sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
-        root_of_sin_swing_q3_tried = sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0
-        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
-        product_in_sin_swing_q3_tried = half_by_a2_by_effective_q3_tried * sign_elbow_tried
-        sin_swing_q3_tried = product_in_sin_swing_q3_tried * root_of_sin_swing_q3_tried
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
-        sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried * cos_q1_tried
@@ -396,9 +382,27 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_one_plus_cos_q3_tried = (
             sum_in_one_plus_cos_q3_tried_2 - sum_in_one_plus_cos_q3_tried
         ) * slope_reach_tried
+        if sum_q3_tried > 0.0:
+            divisor_of_cos_q3_tried = sum_q3_tried
+            slope_divisor_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+        else:
+            divisor_of_cos_q3_tried = 1.0
+            slope_divisor_of_cos_q3_tried = 0.0
+        one_by_sum_q3_tried = 1.0 / divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_q3_tried
+        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
+        # sine squared, times the squared scale
+        sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
+        root_of_sin_swing_q3_tried = sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0
+        sin_swing_q3_tried = 2.0 * one_by_sum_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
+        sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
-            slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
-        ) * quotient_in_cos_swing_q3_tried
+            slope_one_plus_cos_q3_tried
+            - slope_one_less_cos_q3_tried
+            - slope_divisor_of_cos_q3_tried * cos_swing_q3_tried
+        ) * one_by_sum_q3_tried
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried * slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried * slope_one_less_cos_q3_tried
         )
@@ -407,7 +411,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             if root_of_sin_swing_q3_tried > 0.0
             else 0.0
         )
-        slope_sin_swing_q3_tried = product_in_sin_swing_q3_tried * slope_root_of_sin_swing_q3_tried
+        slope_sin_swing_q3_tried = (
+            2.0 * sign_elbow_tried * slope_root_of_sin_swing_q3_tried
+            - slope_divisor_of_cos_q3_tried * sin_swing_q3_tried
+        ) * one_by_sum_q3_tried
         slope_cos_q3_tried = (
             a3_by_effective_q3_tried * slope_cos_swing_q3_tried + d4_by_effective_q3_tried * slope_sin_swing_q3_tried
         )
@@ -539,11 +546,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         a1, a2, a2_minus_effective_q3_tried = k.a1, k.a2, k.a2_minus_effective_q3_tried
         a2_plus_effective_q3_tried, a3 = k.a2_plus_effective_q3_tried, k.a3
         a3_by_effective_q3_tried, d1, d4 = k.a3_by_effective_q3_tried, k.d1, k.d4
-        d4_by_effective_q3_tried, d6 = k.d4_by_effective_q3_tried, k.d6
-        half_by_a2_by_effective_q3_tried, j6_offset_x = k.half_by_a2_by_effective_q3_tried, k.j6_offset_x
+        d4_by_effective_q3_tried, d6, j6_offset_x = k.d4_by_effective_q3_tried, k.d6, k.j6_offset_x
         machine_scale_times_free_angle, one_by_machine_scale = k.machine_scale_times_free_angle, k.one_by_machine_scale
-        quotient_in_cos_swing_q3_tried, quotient_in_fits = k.quotient_in_cos_swing_q3_tried, k.quotient_in_fits
-        size_of_j6_offset_x = k.size_of_j6_offset_x
+        quotient_in_fits, size_of_j6_offset_x = k.quotient_in_fits, k.size_of_j6_offset_x
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # wrist centre: the last joints do not move this point
@@ -576,14 +581,18 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         one_plus_cos_q3_tried = (reach_tried - a2_minus_effective_q3_tried) * (
             a2_minus_effective_q3_tried + reach_tried
         )
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * quotient_in_cos_swing_q3_tried
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        divisor_of_cos_q3_tried = sum_q3_tried if sum_q3_tried > 0.0 else 1.0
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
         sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         sin_swing_q3_tried = (
-            (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
-            * half_by_a2_by_effective_q3_tried
+            2.0
+            * (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
             * sign_elbow_tried
+            / divisor_of_cos_q3_tried
         )
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
@@ -1280,13 +1289,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         a1, a2, a2_minus_effective_q3_tried = k.a1, k.a2, k.a2_minus_effective_q3_tried
         a2_plus_effective_q3_tried, a3_by_effective_q3_tried = k.a2_plus_effective_q3_tried, k.a3_by_effective_q3_tried
         d1, d4_by_effective_q3_tried, d6 = k.d1, k.d4_by_effective_q3_tried, k.d6
-        effective_q3_tried, half_by_a2_by_effective_q3_tried = k.effective_q3_tried, k.half_by_a2_by_effective_q3_tried
-        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
-        mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
-        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, quotient_in_cos_swing_q3_tried, searched = k.offset_a6, k.quotient_in_cos_swing_q3_tried, k.searched
-        single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
-        single_a5, single_a6 = k.single_a5, k.single_a6
+        effective_q3_tried, machine_scale_times_free_angle = k.effective_q3_tried, k.machine_scale_times_free_angle
+        mid_a1, mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a1, k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        offset_a5, offset_a6, searched, single_a1 = k.offset_a5, k.offset_a6, k.searched, k.single_a1
+        single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
+        single_a6 = k.single_a6
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x_closed = x - d6 * r13  # wrist centre: the last joints do not move this point
@@ -1310,7 +1318,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         one_plus_cos_q3_closed = (reach_closed - a2_minus_effective_q3_tried) * (
             a2_minus_effective_q3_tried + reach_closed
         )
-        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) * quotient_in_cos_swing_q3_tried
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+        divisor_of_cos_q3_closed = sum_q3_closed if sum_q3_closed > 0.0 else 1.0
+        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
         # q3: out of reach
         if not (searched or (-1.0000000000005 <= cos_swing_q3_closed <= 1.0000000000005)):
             missing = (
@@ -1385,9 +1396,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             # sine squared, times the squared scale
             sine_square_q3_closed = one_less_cos_q3_closed * one_plus_cos_q3_closed
             sin_swing_q3_closed = (
-                (sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)
+                2.0
+                * (sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)
                 * sigma_elbow
-                * half_by_a2_by_effective_q3_tried
+                / divisor_of_cos_q3_closed
             )
             # where it is singular: the angle of the reference
             if reach_closed > machine_scale_times_free_angle:

@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 59 additions, 73 multiplications, 0 divisions, 0 square roots, 14 sines
-    inverse: 81 additions, 90 multiplications, 10 divisions, 6 square roots, 6 sines
-    inverse, all 8 branches open: 461 additions, 377 multiplications, 46 divisions, 17 square roots, 34 sines
+    inverse: 82 additions, 89 multiplications, 12 divisions, 6 square roots, 6 sines
+    inverse, all 8 branches open: 463 additions, 375 multiplications, 52 divisions, 17 square roots, 34 sines
     repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 12 additions, 11 multiplications, 2 divisions, 1 square roots, 6 sines
 
@@ -86,8 +86,6 @@ class Constants:
         twice_d3 = 2.0 * d3
         a2_plus_effective_q3 = a2 + effective_q3
         a2_minus_effective_q3 = a2 - effective_q3
-        quotient_in_cos_swing_q3 = 0.25 / (a2 * effective_q3)
-        half_by_a2_by_effective_q3 = 0.5 / (a2 * effective_q3)
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.d6 = d1, a1, a2, d3, a3, d4, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.offset_a5, self.offset_a6, self.effective_q3 = offset_a5, offset_a6, effective_q3
@@ -100,8 +98,6 @@ class Constants:
         self.a3_by_effective_q3 = a3_by_effective_q3
         self.a2_squared_plus_effective_q3_squared, self.twice_d3 = a2_squared_plus_effective_q3_squared, twice_d3
         self.a2_plus_effective_q3, self.a2_minus_effective_q3 = a2_plus_effective_q3, a2_minus_effective_q3
-        self.quotient_in_cos_swing_q3 = quotient_in_cos_swing_q3
-        self.half_by_a2_by_effective_q3 = half_by_a2_by_effective_q3
 
 
 class ArticulatedRobot6DOF(Mechanism):
@@ -151,7 +147,7 @@ class ArticulatedRobot6DOF(Mechanism):
         Parameter.of(
             "ratio",
             "warning_distance",
-            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            "a margin (a number without a unit) of less than this in size is singular",
             default=0.001,
         ),
     )
@@ -265,7 +261,7 @@ class ArticulatedRobot6DOF(Mechanism):
         lower_a6: A6: lower limit of the axis, both 0: no limit [deg]
         upper_a6: A6: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
-        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        warning_distance: a margin (a number without a unit) of less than this in size is singular [1]
         limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
@@ -417,16 +413,15 @@ class ArticulatedRobot6DOF(Mechanism):
         a2_plus_effective_q3 = k.a2_plus_effective_q3
         a2_squared_plus_effective_q3_squared = k.a2_squared_plus_effective_q3_squared
         a3_by_effective_q3, d1, d3, d4_by_effective_q3 = k.a3_by_effective_q3, k.d1, k.d3, k.d4_by_effective_q3
-        d6, effective_q3, half_by_a2_by_effective_q3 = k.d6, k.effective_q3, k.half_by_a2_by_effective_q3
-        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        d6, effective_q3, machine_scale_squared_times_plane = k.d6, k.effective_q3, k.machine_scale_squared_times_plane
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, quotient_in_cos_swing_q3, rounding_q1 = k.offset_a6, k.quotient_in_cos_swing_q3, k.rounding_q1
-        single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
-        single_a5, single_a6, size_q1_for_q3 = k.single_a5, k.single_a6, k.size_q1_for_q3
-        size_q1_for_q3_times_rounding, twice_d3 = k.size_q1_for_q3_times_rounding, k.twice_d3
+        offset_a6, rounding_q1, single_a1, single_a2 = k.offset_a6, k.rounding_q1, k.single_a1, k.single_a2
+        single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
+        size_q1_for_q3, size_q1_for_q3_times_rounding = k.size_q1_for_q3, k.size_q1_for_q3_times_rounding
+        twice_d3 = k.twice_d3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
@@ -506,7 +501,10 @@ class ArticulatedRobot6DOF(Mechanism):
         one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_swing_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             missing = (
@@ -527,9 +525,7 @@ class ArticulatedRobot6DOF(Mechanism):
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = (
-            -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * half_by_a2_by_effective_q3
-        )
+        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         # where it is singular: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3 * sin_swing_q3

@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 26 additions, 30 multiplications, 0 divisions, 0 square roots, 8 sines
-    inverse: 41 additions, 40 multiplications, 5 divisions, 4 square roots, 3 sines
-    inverse, all 4 branches open: 143 additions, 119 multiplications, 14 divisions, 9 square roots, 10 sines
+    inverse: 42 additions, 39 multiplications, 7 divisions, 4 square roots, 3 sines
+    inverse, all 4 branches open: 145 additions, 117 multiplications, 20 divisions, 9 square roots, 10 sines
     a branch at a singular pose, more: 11 additions, 11 multiplications, 2 divisions, 1 square roots, 4 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
@@ -76,8 +76,6 @@ class Constants:
         twice_d3 = 2.0 * d3
         a2_plus_effective_q3_2 = a2 + effective_q3_2
         a2_minus_effective_q3_2 = a2 - effective_q3_2
-        quotient_in_cos_swing_q3 = 0.25 / (a2 * effective_q3_2)
-        half_by_a2_by_effective_q3_2 = 0.5 / (a2 * effective_q3_2)
         twice_a2 = 2.0 * a2
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.offset_a1 = d1, a1, a2, d3, a3, d4, offset_a1
         self.offset_a2, self.offset_a3, self.effective_q3_2 = offset_a2, offset_a3, effective_q3_2
@@ -90,8 +88,7 @@ class Constants:
         self.d4_by_effective_q3_2, self.a3_by_effective_q3_2 = d4_by_effective_q3_2, a3_by_effective_q3_2
         self.a2_squared_plus_effective_q3_2_squared, self.twice_d3 = a2_squared_plus_effective_q3_2_squared, twice_d3
         self.a2_plus_effective_q3_2, self.a2_minus_effective_q3_2 = a2_plus_effective_q3_2, a2_minus_effective_q3_2
-        self.quotient_in_cos_swing_q3 = quotient_in_cos_swing_q3
-        self.half_by_a2_by_effective_q3_2, self.twice_a2 = half_by_a2_by_effective_q3_2, twice_a2
+        self.twice_a2 = twice_a2
 
 
 class PosRRR(OffsetKinematics):
@@ -128,7 +125,7 @@ class PosRRR(OffsetKinematics):
         Parameter.of(
             "ratio",
             "warning_distance",
-            "a pose counts as singular where a margin, a number without a unit, is smaller than this in size",
+            "a margin (a number without a unit) of less than this in size is singular",
             default=0.001,
         ),
     )
@@ -208,7 +205,7 @@ class PosRRR(OffsetKinematics):
         lower_a3: A3: lower limit of the axis, both 0: no limit [deg]
         upper_a3: A3: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
-        warning_distance: a pose counts as singular where a margin, a number without a unit, is smaller than this in size [1]
+        warning_distance: a margin (a number without a unit) of less than this in size is singular [1]
         limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())
@@ -293,14 +290,13 @@ class PosRRR(OffsetKinematics):
         a2_plus_effective_q3_2 = k.a2_plus_effective_q3_2
         a2_squared_plus_effective_q3_2_squared = k.a2_squared_plus_effective_q3_2_squared
         a3_by_effective_q3_2, d1, d3, d4_by_effective_q3_2 = k.a3_by_effective_q3_2, k.d1, k.d3, k.d4_by_effective_q3_2
-        effective_q3_2, half_by_a2_by_effective_q3_2 = k.effective_q3_2, k.half_by_a2_by_effective_q3_2
-        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        effective_q3_2, machine_scale_squared_times_plane = k.effective_q3_2, k.machine_scale_squared_times_plane
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        quotient_in_cos_swing_q3, rounding_q1, single_a1 = k.quotient_in_cos_swing_q3, k.rounding_q1, k.single_a1
-        single_a2, single_a3, size_q1_for_q3_2 = k.single_a2, k.single_a3, k.size_q1_for_q3_2
-        size_q1_for_q3_2_times_rounding, twice_d3 = k.size_q1_for_q3_2_times_rounding, k.twice_d3
+        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
+        size_q1_for_q3_2, size_q1_for_q3_2_times_rounding = k.size_q1_for_q3_2, k.size_q1_for_q3_2_times_rounding
+        twice_d3 = k.twice_d3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
@@ -379,7 +375,10 @@ class PosRRR(OffsetKinematics):
         one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_swing_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             missing = (
@@ -400,9 +399,7 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = (
-            -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * half_by_a2_by_effective_q3_2
-        )
+        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         # rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:

@@ -122,7 +122,7 @@ def test_what_it_is() -> None:
     assert own.limits["A1"] == pytest.approx((-math.pi / 2, math.pi)) and own.limits["A2"] == (None, math.pi / 2)
     assert own.offset_a1 == pytest.approx(math.pi / 2) and own.pitch_zc == 20.0
     assert [axis.unit for axis in own.AXES] == ["rad", "rad", "u", "rad"]
-    assert {p.unit for p in own.PARAMETERS} == {"u", "rad", "u/rev", ""}
+    assert {p.unit for p in own.PARAMETERS} == {"u", "rad", "u/rev", "1", ""}
     assert own.in_degrees() is robot and own.in_radians() is own and repr(own) == f"{robot!r}.in_radians()"
     for other in (copy.copy(own), copy.deepcopy(own), pickle.loads(pickle.dumps(own)), robot.in_radians()):
         assert other == own and hash(other) == hash(own) and other != robot

@@ -20,7 +20,7 @@ from tests.text.hexapod.blocks import made
 from tests.text.hexapod.test_structured_text import compare_some, in_the_other_mode
 from tests.text.units import compiled_text, file_of, text_of
 
-_SEARCH, _INVERSE, _JACOBIAN = "PRIVATE FindPlatform", "PRIVATE SolveBranch", "PUBLIC Jacobian"
+_SEARCH, _INVERSE, _JACOBIAN = "PRIVATE FindPlatform", "PRIVATE SolveBranch", "PROTECTED FindJacobian"
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ WRONG = {
         ":= Softkin_Names.NoError;"),
     "a column of the Jacobian": Fault(_JACOBIAN, "coefficients[2, 4] := moment2X", "coefficients[2, 4] := moment3X"),
     "a Jacobian per platform radius": Fault(_JACOBIAN, "*oneByPlatformRadius", ""),
-    "a margin": Fault("PUBLIC IsSingularity", "ABS(determinant) < 0.001", "ABS(determinant) < 10.0"),
+    "a margin": Fault("PROTECTED FindMargins", "aMargins[0] := determinant", "aMargins[0] := 1.0E-4*determinant"),
     "a length": Fault(_INVERSE, "span2Y*span2Y", "span2X*span2Y"),
     "a cone": Fault(_INVERSE, "alongBaseCone1 >= l1*leastCosBase", "alongBaseCone1 >= l1*0.999999"),
 }  # fmt: skip

@@ -108,7 +108,7 @@ FAULTS = {
         "test_round_trip.test_the_configuration_selects_the_same_axes",
     ),
     "another byte for a knee": Fault(
-        FIVE_BAR, "branch_knee_2 = (", "branch_knee_2 = -(", "test_configuration.test_bytes_say_branch_and_turn"
+        FIVE_BAR, "branch_knee_2 = -one", "branch_knee_2 = one", "test_configuration.test_bytes_say_branch_and_turn"
     ),
     "two legs exchanged": Fault(
         FIVE_BAR, "return (axis_a1, axis_a2)", "return (axis_a2, axis_a1)",
@@ -139,7 +139,7 @@ FAULTS = {
         "test_type2.test_the_least_margin_is_sharp",
     ),
     "a margin of another size": Fault(
-        FIVE_BAR, f"margin_arms_aligned = {ALIGNED}", f"margin_arms_aligned = 1.001 * {ALIGNED}",
+        FIVE_BAR, "margin_arms_aligned = one_by", "margin_arms_aligned = 1.001 * one_by",
         "test_type2.test_the_least_margin_is_sharp",
     ),
     "a margin that vanishes elsewhere": Fault(

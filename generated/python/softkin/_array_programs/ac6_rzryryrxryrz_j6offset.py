@@ -122,16 +122,8 @@ class ArrayPrograms(Programs):
         sum_in_one_plus_cos_q3_tried_2 = k.a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = -sum_in_one_plus_cos_q3_tried * sum_in_one_plus_cos_q3_tried_2
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * k.quotient_in_cos_swing_q3_tried
-        # sine squared, times the squared scale
-        sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
-        root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
-        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
-        product_in_sin_swing_q3_tried = k.half_by_a2_by_effective_q3_tried * sign_elbow_tried
-        sin_swing_q3_tried = product_in_sin_swing_q3_tried * root_of_sin_swing_q3_tried
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
-        sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = k.j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried * cos_q1_tried
@@ -151,9 +143,25 @@ class ArrayPrograms(Programs):
         slope_one_plus_cos_q3_tried = (
             sum_in_one_plus_cos_q3_tried_2 - sum_in_one_plus_cos_q3_tried
         ) * slope_reach_tried
+        slope_divisor_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+        holds = sum_q3_tried > 0.0
+        divisor_of_cos_q3_tried = select(holds, sum_q3_tried, 1.0)
+        slope_divisor_of_cos_q3_tried = select(holds, slope_divisor_of_cos_q3_tried, 0.0)
+        one_by_sum_q3_tried = 1.0 / divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_q3_tried
+        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
+        # sine squared, times the squared scale
+        sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
+        root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
+        sin_swing_q3_tried = 2.0 * one_by_sum_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
+        sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
-            slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
-        ) * k.quotient_in_cos_swing_q3_tried
+            slope_one_plus_cos_q3_tried
+            - slope_one_less_cos_q3_tried
+            - slope_divisor_of_cos_q3_tried * cos_swing_q3_tried
+        ) * one_by_sum_q3_tried
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried * slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried * slope_one_less_cos_q3_tried
         )
@@ -164,7 +172,10 @@ class ArrayPrograms(Programs):
             / select(root_of_sin_swing_q3_tried > 0.0, root_of_sin_swing_q3_tried, 1.0),
             0.0,
         )
-        slope_sin_swing_q3_tried = product_in_sin_swing_q3_tried * slope_root_of_sin_swing_q3_tried
+        slope_sin_swing_q3_tried = (
+            2.0 * sign_elbow_tried * slope_root_of_sin_swing_q3_tried
+            - slope_divisor_of_cos_q3_tried * sin_swing_q3_tried
+        ) * one_by_sum_q3_tried
         slope_cos_q3_tried = (
             k.a3_by_effective_q3_tried * slope_cos_swing_q3_tried
             + k.d4_by_effective_q3_tried * slope_sin_swing_q3_tried
@@ -342,11 +353,14 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_tried = (reach_tried - k.a2_minus_effective_q3_tried) * (
             k.a2_minus_effective_q3_tried + reach_tried
         )
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * k.quotient_in_cos_swing_q3_tried
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        divisor_of_cos_q3_tried = select(sum_q3_tried > 0.0, sum_q3_tried, 1.0)
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
         sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
-        sin_swing_q3_tried = root(sine_square_q3_tried) * k.half_by_a2_by_effective_q3_tried * sign_elbow_tried
+        sin_swing_q3_tried = 2.0 * root(sine_square_q3_tried) * sign_elbow_tried / divisor_of_cos_q3_tried
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
@@ -950,7 +964,10 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_closed = (reach_closed - k.a2_minus_effective_q3_tried) * (
             k.a2_minus_effective_q3_tried + reach_closed
         )
-        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) * k.quotient_in_cos_swing_q3_tried
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+        divisor_of_cos_q3_closed = select(sum_q3_closed > 0.0, sum_q3_closed, 1.0)
+        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
         reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
         reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
         reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
@@ -1019,7 +1036,7 @@ class ArrayPrograms(Programs):
             q1 = atan2(sin_q1_closed, cos_q1_closed)
             # sine squared, times the squared scale
             sine_square_q3_closed = one_less_cos_q3_closed * one_plus_cos_q3_closed
-            sin_swing_q3_closed = root(sine_square_q3_closed) * sigma_elbow * k.half_by_a2_by_effective_q3_tried
+            sin_swing_q3_closed = 2.0 * root(sine_square_q3_closed) * sigma_elbow / divisor_of_cos_q3_closed
 
             def elsewhere_cos_q2_closed(reference_a2: Real) -> Reals:
                 cos_q2_closed = cos(reference_a2)

@@ -260,12 +260,15 @@ class ArrayPrograms(Programs):
         one_less_cos_q3 = (k.a2_plus_effective_q3 + reach) * (k.a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - k.a2_minus_effective_q3) * (k.a2_minus_effective_q3 + reach)
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) * k.quotient_in_cos_swing_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = select(sum_q3 > 0.0, sum_q3, 1.0)
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = -root(sine_square_q3) * sigma_elbow * k.half_by_a2_by_effective_q3
+        sin_swing_q3 = -2.0 * root(sine_square_q3) * sigma_elbow / divisor_of_cos_q3
 
         def elsewhere_cos_q2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - k.offset_a2) * DEGREE

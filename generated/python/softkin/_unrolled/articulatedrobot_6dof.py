@@ -20,18 +20,16 @@ def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
     a1, a2, a2_minus_effective_q3 = k.a1, k.a2, k.a2_minus_effective_q3
     a2_plus_effective_q3, a3_by_effective_q3, d1, d3 = k.a2_plus_effective_q3, k.a3_by_effective_q3, k.d1, k.d3
-    d4_by_effective_q3, d6, effective_q3 = k.d4_by_effective_q3, k.d6, k.effective_q3
-    half_by_a2_by_effective_q3, highest_a1, highest_a2 = k.half_by_a2_by_effective_q3, k.highest_a1, k.highest_a2
-    highest_a3, highest_a4, highest_a5, highest_a6 = k.highest_a3, k.highest_a4, k.highest_a5, k.highest_a6
-    lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
-    lowest_a5, lowest_a6 = k.lowest_a5, k.lowest_a6
+    d4_by_effective_q3, d6, effective_q3, highest_a1 = k.d4_by_effective_q3, k.d6, k.effective_q3, k.highest_a1
+    highest_a2, highest_a3, highest_a4, highest_a5 = k.highest_a2, k.highest_a3, k.highest_a4, k.highest_a5
+    highest_a6, lowest_a1, lowest_a2, lowest_a3 = k.highest_a6, k.lowest_a1, k.lowest_a2, k.lowest_a3
+    lowest_a4, lowest_a5, lowest_a6 = k.lowest_a4, k.lowest_a5, k.lowest_a6
     machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
     offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-    offset_a6, quotient_in_cos_swing_q3, rounding_q1 = k.offset_a6, k.quotient_in_cos_swing_q3, k.rounding_q1
-    single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
-    single_a5, single_a6 = k.single_a5, k.single_a6
+    offset_a6, rounding_q1, single_a1, single_a2 = k.offset_a6, k.rounding_q1, k.single_a1, k.single_a2
+    single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
     angle_of_a3_by_effective_q3 = arctan2(d4_by_effective_q3 + 0.0, a3_by_effective_q3 + 0.0)
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
@@ -66,7 +64,10 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_swing_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
         # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
@@ -87,7 +88,7 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front) * RADIAN
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * half_by_a2_by_effective_q3
+        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3 * sin_swing_q3, a2 + effective_q3 * cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
@@ -218,11 +219,14 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_swing_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_back = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back) * RADIAN
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * half_by_a2_by_effective_q3
+        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3 * sin_swing_q3, a2 + effective_q3 * cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
@@ -458,7 +462,10 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_swing_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
@@ -472,9 +479,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3 = cos(reference_a1)
             sin_q1_before_q1_for_q3 = sin(reference_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = (
-            -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * half_by_a2_by_effective_q3
-        )
+        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         if reach > machine_scale_times_free_angle:
             angle_q2 = arctan2(-effective_q3 * sin_swing_q3, a2 + effective_q3 * cos_swing_q3) - arctan2(
                 wrist_x_from_q1, wrist_y_from_q1
