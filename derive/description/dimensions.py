@@ -15,8 +15,12 @@ from derive.ir.program import (
     Let,
 )
 from derive.ir.symbols import (
+    COORDINATE_NAMES,
+    ROTATION_ENTRIES,
     real,
 )
+
+_OF_THE_POSE = {*COORDINATE_NAMES, *(f"joint_{c}" for c in COORDINATE_NAMES), *(r.name for r in ROTATION_ENTRIES)}
 
 
 class Role(Enum):
@@ -55,11 +59,23 @@ class Parameter(Quantity):
     """A value for drawings and tests."""
     fixed: sp.Expr | None = None
     """The value of a number that stands in a chain: it has a name, and no user gives it."""
+    given: str = ""
+    """What the description calls it, where it is derived under another name."""
+
+    @property
+    def given_name(self) -> str:
+        """What the description calls it."""
+        return self.given or self.name
 
     @property
     def has_vendor_range(self) -> bool:
         """Whether the upper end is given by the vendor, and is not the largest input that any parameter may have."""
         return self.high < 1e9
+
+
+def _value_of(name: str) -> sp.Symbol:
+    """The symbol of a value of either sign. One that is called like a coordinate of the pose is not that coordinate."""
+    return real(f"given {name}" if name in _OF_THE_POSE else name)
 
 
 def length(name: str, meaning: str, *, nominal: float, high: float = 1e9, default: float | None = None) -> Parameter:
@@ -82,17 +98,17 @@ def signed_length(name: str, meaning: str, *, nominal: float) -> Parameter:
 
 def pitch(name: str, meaning: str, *, nominal: float, low: float = -1e9, high: float = 1e9) -> Parameter:
     """A travel per revolution, zero when not given."""
-    return Parameter(real(name), name, Role.PITCH, meaning, "u/rev", low, high, False, 0.0, nominal)
+    return Parameter(_value_of(name), name, Role.PITCH, meaning, "u/rev", low, high, False, 0.0, nominal)
 
 
 def gear(name: str, meaning: str, *, nominal: float) -> Parameter:
     """A travel per degree, zero when not given."""
-    return Parameter(real(name), name, Role.GEAR, meaning, "u/deg", -1e9, 1e9, False, 0.0, nominal)
+    return Parameter(_value_of(name), name, Role.GEAR, meaning, "u/deg", -1e9, 1e9, False, 0.0, nominal)
 
 
 def coupling(name: str, meaning: str, *, nominal: float) -> Parameter:
     """A ratio of one motor's turn to another joint's turn, zero when not given."""
-    return Parameter(real(name), name, Role.COUPLING, meaning, "1", -1e3, 1e3, False, 0.0, nominal)
+    return Parameter(_value_of(name), name, Role.COUPLING, meaning, "1", -1e3, 1e3, False, 0.0, nominal)
 
 
 def transmission(name: str, meaning: str, *, nominal: float) -> Parameter:
@@ -105,17 +121,17 @@ def angle(
     name: str, meaning: str, *, nominal: float, low: float = -360.0, high: float = 360.0, default: float | None = None
 ) -> Parameter:
     """An angle of the machine, in degrees; `radians(p)` inside expressions."""
-    return Parameter(real(name), name, Role.ANGLE, meaning, "deg", low, high, False, default, nominal)
+    return Parameter(_value_of(name), name, Role.ANGLE, meaning, "deg", low, high, False, default, nominal)
 
 
 def coordinate(name: str, meaning: str, *, nominal: float) -> Parameter:
     """A coordinate of a point, with a sign, that must be given."""
-    return Parameter(real(name), name, Role.DISTANCE, meaning, "u", -1e9, 1e9, False, None, nominal)
+    return Parameter(_value_of(name), name, Role.DISTANCE, meaning, "u", -1e9, 1e9, False, None, nominal)
 
 
 def distance(name: str, meaning: str, *, nominal: float, low: float = -1e9, default: float = 0.0) -> Parameter:
     """A length with a sign; when not given it is zero, or what the description of one machine gives."""
-    return Parameter(real(name), name, Role.DISTANCE, meaning, "u", low, 1e9, False, default, nominal)
+    return Parameter(_value_of(name), name, Role.DISTANCE, meaning, "u", low, 1e9, False, default, nominal)
 
 
 def radians(parameter: Parameter) -> sp.Expr:

@@ -36,6 +36,15 @@ class BrokenProgram(Exception):
     """A program that no language may print; the message names the program and the place."""
 
 
+class RepeatedName(BrokenProgram):
+    """Two values of a program have one name, or names that a language joins to one."""
+
+    def __init__(self, message: str, *names: str) -> None:
+        """names: as each of the two is called."""
+        super().__init__(message)
+        self.names = names
+
+
 def verify(program: Program) -> Program:
     """Return the program, or raise `BrokenProgram`: unbound or repeated name, unportable name, unknown primitive, mixed
     types.
@@ -108,7 +117,8 @@ def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:
         raise BrokenProgram(f"{program.name}: {name!r} is not a portable snake_case name")
     key = name.replace("_", "")  # Structured Text joins the words of a name, and ignores case
     if key in spelled:
-        raise BrokenProgram(f"{program.name}: {name!r} is bound twice (also as {spelled[key]!r})")
+        message = f"{program.name}: {name!r} is bound twice (also as {spelled[key]!r})"
+        raise RepeatedName(message, name, spelled[key])
     spelled[key] = name
 
 
@@ -126,7 +136,8 @@ def _refuse_name(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol])
         if isinstance(node, sp.Symbol) and node.name not in bound:
             raise BrokenProgram(f"{program.name}: {node.name!r} is read before it is bound, in {value}")
         if isinstance(node, sp.Symbol) and bound[node.name] != node:
-            raise BrokenProgram(f"{program.name}: {node.name!r} is read as another type than it is bound, in {value}")
+            message = f"{program.name}: {node.name!r} is read as another type than it is bound, in {value}"
+            raise RepeatedName(message, node.name)
 
 
 @cache

@@ -16,6 +16,7 @@ from derive.emit.language import GENERATED, Part, environment
 from derive.emit.python import entries, setup
 from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
 from derive.emit.python.calls import every_root
+from derive.emit.python.entries import inputs
 from derive.emit.python.finish import Function
 from derive.emit.python.layout import formatted
 from derive.emit.python.methods import branch, end_point_shift, forwards, limits, methods, shared
@@ -121,7 +122,8 @@ _MEANINGS = {
 
 def part(kinematics: Kinematics) -> Part:
     """The files of one mechanism, and its entries in the lists."""
-    return {"index": _index(kinematics), "files": _mechanism(_templates(), kinematics)}
+    found = {"index": _index(kinematics), "files": _mechanism(_templates(), kinematics)}
+    return {**found, "notes": list(inputs(kinematics).notes)}
 
 
 def files(parts: Sequence[Part]) -> dict[str, str]:
@@ -230,7 +232,7 @@ def _class_context(kin: Kinematics, arrays: Sequence[Method], lean: Unrolled | N
         "kin": kin,
         "mechanism": kin.mechanism,
         "entries": entries,
-        "keywords": setup.keywords(kin.parameters),
+        "keywords": setup.keywords(kin),
         "setup_body": setup_lines,
         "array_programs": _array_programs(kin),
         "bases": _bases(kin),

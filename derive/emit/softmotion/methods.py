@@ -10,8 +10,9 @@ from jinja2 import Environment
 
 from derive.emit.softmotion.block import Block, constants, direct, setup_of
 from derive.emit.softmotion.calls import BranchCall, branch_call
+from derive.emit.softmotion.inputs import inputs
 from derive.emit.st.contract import Contract, Parameter, Signature
-from derive.emit.st.names import input_name, parameter_name, stored_name
+from derive.emit.st.names import parameter_name, stored_name
 from derive.emit.st.program import Printed, printed
 from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal
 from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
@@ -229,7 +230,7 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
     if REASON in {p.name for p in signature.parameters}:
         refusal = Explained(signature, errors, error, reasons_of(kinematics), texts(kinematics))
     if signature.name == "Initialize":
-        given = {p.name: input_name(p) for p in kinematics.parameters}
+        given = dict(inputs(kinematics).names)
         stored = {let: stored_name(output) for let, output in direct(kinematics, program).items()}
         return printed(program, given, stored, taken, refusal)
     spelled = spelled_inputs(kinematics)
