@@ -20,7 +20,16 @@ from derive.ir.symbols import (
     real,
 )
 
-_OF_THE_POSE = {*COORDINATE_NAMES, *(f"joint_{c}" for c in COORDINATE_NAMES), *(r.name for r in ROTATION_ENTRIES)}
+_OF_EQUATIONS = {
+    *(*COORDINATE_NAMES, DEGREE.name),
+    *(f"joint_{c}" for c in COORDINATE_NAMES),
+    *(r.name for r in ROTATION_ENTRIES),
+    *(
+        "corner_area",
+        *(f"{word}_{k}" for word in ("power", "weight", "reach", "reach_x", "reach_y") for k in (1, 2, 3)),
+    ),
+}
+"""What equations, and conditions on reaches, call other values."""
 
 
 class Role(Enum):
@@ -74,25 +83,30 @@ class Parameter(Quantity):
 
 
 def _value_of(name: str) -> sp.Symbol:
-    """The symbol of a value of either sign. One that is called like a coordinate of the pose is not that coordinate."""
-    return real(f"given {name}" if name in _OF_THE_POSE else name)
+    """The symbol of a value of either sign."""
+    return real(_symbol_name(name))
+
+
+def _symbol_name(name: str) -> str:
+    """A parameter that is called like a coordinate of the pose is not that coordinate."""
+    return f"given {name}" if name in _OF_EQUATIONS else name
 
 
 def length(name: str, meaning: str, *, nominal: float, high: float = 1e9, default: float | None = None) -> Parameter:
     """A length that is more than zero, and must be given where the description, which is of one machine, gives none."""
-    symbol = sp.Symbol(name, positive=True)
+    symbol = sp.Symbol(_symbol_name(name), positive=True)
     return Parameter(symbol, name, Role.LENGTH, meaning, "u", 0.0, high, True, default, nominal)
 
 
 def optional_length(name: str, meaning: str, *, nominal: float, high: float = 1e9) -> Parameter:
     """A length that may be zero, and is when not given."""
-    symbol = sp.Symbol(name, nonnegative=True)
+    symbol = sp.Symbol(_symbol_name(name), nonnegative=True)
     return Parameter(symbol, name, Role.DISTANCE, meaning, "u", 0.0, high, False, 0.0, nominal)
 
 
 def signed_length(name: str, meaning: str, *, nominal: float) -> Parameter:
     """A length of either sign, as in tables of Denavit-Hartenberg parameters: it must be given and not be zero."""
-    symbol = sp.Symbol(name, real=True, nonzero=True)
+    symbol = sp.Symbol(_symbol_name(name), real=True, nonzero=True)
     return Parameter(symbol, name, Role.SIGNED_LENGTH, meaning, "u", -1e9, 1e9, False, None, nominal)
 
 
@@ -113,7 +127,7 @@ def coupling(name: str, meaning: str, *, nominal: float) -> Parameter:
 
 def transmission(name: str, meaning: str, *, nominal: float) -> Parameter:
     """A ratio of turns, of either sign, as of a gear or a belt: it must be given and not be zero."""
-    symbol = sp.Symbol(name, real=True, nonzero=True)
+    symbol = sp.Symbol(_symbol_name(name), real=True, nonzero=True)
     return Parameter(symbol, name, Role.TRANSMISSION, meaning, "1", -1e6, 1e6, False, None, nominal)
 
 
@@ -141,13 +155,13 @@ def radians(parameter: Parameter) -> sp.Expr:
 
 def flag(name: str, meaning: str, *, nominal: bool = False) -> Parameter:
     """A choice that is off when not given; 0 or 1 inside expressions."""
-    symbol = sp.Symbol(name, nonnegative=True)  # its square is itself: see algebra.reduce_units
+    symbol = sp.Symbol(_symbol_name(name), nonnegative=True)  # its square is itself: see algebra.reduce_units
     return Parameter(symbol, name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, float(nominal))
 
 
 def sign(name: str, meaning: str, *, nominal: int = 1) -> Parameter:
     """A direction: +1 or -1."""
-    symbol = sp.Symbol(name, real=True, nonzero=True)  # its square is one
+    symbol = sp.Symbol(_symbol_name(name), real=True, nonzero=True)  # its square is one
     return Parameter(symbol, name, Role.SIGN, meaning, "", -1.0, 1.0, False, 1.0, float(nominal))
 
 

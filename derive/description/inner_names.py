@@ -154,6 +154,7 @@ def _taken(mechanism: Mechanism) -> Iterator[str]:
     axes = [*(j.key for j in mechanism.joints), *(q.name for q in mechanism.limited)]
     yield from (f"{word}_{key}" for word in _OF_AXES for key in axes)
     yield from (f"{word}_{b.name}" for word in _OF_BRANCHES for b in mechanism.branches)
+    yield from (step.name.name for constraint in mechanism.constraints for step in constraint.steps)
 
 
 def _of_joints(mechanism: Mechanism, inner: Mapping[sp.Symbol, sp.Symbol]) -> Iterator[str]:

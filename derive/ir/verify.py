@@ -88,9 +88,8 @@ def _check_call(program: Program, call: Call) -> None:
     if strangers := [n.name for n in arguments if n not in call.program.inputs]:
         raise BrokenProgram(f"{program.name}: {call.program.name} does not read {strangers[0]!r}")
     if unbound := [s.name for s in call.constants if s not in program.inputs]:
-        raise BrokenProgram(
-            f"{program.name}: {call.program.name} reads {unbound[0]!r}, which is neither given nor an input"
-        )
+        message = f"{program.name}: {call.program.name} reads {unbound[0]!r}, which is neither given nor an input"
+        raise RepeatedName(message, *(name.name for name in program.bound()))
 
 
 def _check_loop(program: Program, loop: Iterate, bound: dict[str, sp.Symbol]) -> None:
@@ -134,7 +133,8 @@ def _refuse_name(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol])
     """Raise for the first name that is not bound, or bound as another type."""
     for node in sp.preorder_traversal(value):
         if isinstance(node, sp.Symbol) and node.name not in bound:
-            raise BrokenProgram(f"{program.name}: {node.name!r} is read before it is bound, in {value}")
+            message = f"{program.name}: {node.name!r} is read before it is bound, in {value}"
+            raise RepeatedName(message, *(name.name for name in program.bound()))  # one of them may be an input, too
         if isinstance(node, sp.Symbol) and bound[node.name] != node:
             message = f"{program.name}: {node.name!r} is read as another type than it is bound, in {value}"
             raise RepeatedName(message, node.name)

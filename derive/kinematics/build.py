@@ -236,6 +236,7 @@ def _finished(
     mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...], at_home: Sequence[Statement] = ()
 ) -> Kinematics:
     """The bundle of all programs."""
+    refuse_names(mechanism, (name for program in (*shared(programs), *programs) for name in program.bound()))
     parameters = machine_parameters(mechanism)
     moved = _hoisted(mechanism, parameters, programs, at_home)
     finished = {program.name: program for program in moved.programs}

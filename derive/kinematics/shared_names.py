@@ -12,7 +12,7 @@ import sympy as sp
 
 from derive.description.inner_names import in_given_names, inputs_named, joined, suspects, with_inner_names
 from derive.description.mechanism import DescriptionError, Mechanism
-from derive.ir.program import Let, Statement
+from derive.ir.program import Call, Program, Statement, shared
 from derive.ir.symbols import cosine, sine
 from derive.ir.verify import BrokenProgram, RepeatedName
 from derive.kinematics.kinematics import Kinematics
@@ -32,8 +32,11 @@ class SharedName(DescriptionError):
 
 
 def refuse_shared_names(mechanism: Mechanism, statements: Iterable[Statement]) -> None:
-    """Refuse a parameter named like a value of the derivation."""
-    refuse_names(mechanism, (s.name for s in statements if isinstance(s, Let)))
+    """Refuse a parameter named like a value of the derivation, or of a program that it calls."""
+    own = Program("derivation", (), tuple(statements), ())
+    programs = (own, *shared([own]))
+    given = (name for p in programs for s in p.body if isinstance(s, Call) for name, _ in s.given)
+    refuse_names(mechanism, (*given, *(name for p in programs for name in p.bound())))
 
 
 def refuse_names_of_joints(mechanism: Mechanism) -> None:
