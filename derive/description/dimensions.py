@@ -20,14 +20,12 @@ from derive.ir.symbols import (
     real,
 )
 
+_OF_REACHES = ("side_12", "side_13", "side_23", "equal_power", "reach")
 _OF_EQUATIONS = {
-    *(*COORDINATE_NAMES, DEGREE.name),
-    *(f"joint_{c}" for c in COORDINATE_NAMES),
+    *(*COORDINATE_NAMES, DEGREE.name, "corner_area"),
+    *(f"{word}_{c}" for word in ("joint", *_OF_REACHES) for c in COORDINATE_NAMES),
+    *(f"{word}_{k}" for word in ("power", "weight", "reach", "reach_x", "reach_y") for k in (1, 2, 3)),
     *(r.name for r in ROTATION_ENTRIES),
-    *(
-        "corner_area",
-        *(f"{word}_{k}" for word in ("power", "weight", "reach", "reach_x", "reach_y") for k in (1, 2, 3)),
-    ),
 }
 """What equations, and conditions on reaches, call other values."""
 

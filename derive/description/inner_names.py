@@ -73,7 +73,7 @@ def with_inner_names(mechanism: Mechanism, further: Mapping[str, int] | None = N
     symbols = _inner_symbols(mechanism, further or {})
     if not symbols:
         return mechanism
-    renamed: Mechanism = _renamed(mechanism, symbols)
+    renamed: Mechanism = with_symbols(mechanism, symbols)
     texts = {p.given: p.name for p in renamed.parameters if "_" in p.given}
     constraints = tuple(replace(c, message=_reworded(c.message, texts)) for c in renamed.constraints)
     return replace(renamed, constraints=constraints, notes=tuple(_reworded(note, texts) for note in renamed.notes))
@@ -172,17 +172,17 @@ def _taken_joints(mechanism: Mechanism) -> set[str]:
     return sums | set(_SHARED)
 
 
-def _renamed(value: Any, symbols: Mapping[sp.Symbol, sp.Symbol]) -> Any:
+def with_symbols(value: Any, symbols: Mapping[sp.Symbol, sp.Symbol]) -> Any:
     """The same data, however deep, with other symbols."""
     if isinstance(value, sp.Basic | sp.MatrixBase):
         return value.xreplace(symbols)
     if isinstance(value, tuple):
-        return tuple(_renamed(one, symbols) for one in value)
+        return tuple(with_symbols(one, symbols) for one in value)
     if isinstance(value, Parameter) and value.symbol in symbols:
         symbol = symbols[value.symbol]
         return replace(value, symbol=symbol, name=symbol.name, given=value.given_name)
     if is_dataclass(value) and not isinstance(value, type):
         own = {f.name: getattr(value, f.name) for f in fields(value) if f.init}
-        changed = {name: _renamed(one, symbols) for name, one in own.items()}
+        changed = {name: with_symbols(one, symbols) for name, one in own.items()}
         return replace(value, **changed)
     return value

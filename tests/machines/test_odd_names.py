@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from inspect import signature
 
@@ -11,8 +11,11 @@ import numpy as np
 import pytest
 from softkin import KinematicsError, Status
 
+from derive.description.inner_names import with_symbols
+from derive.description.mechanism import Mechanism
 from derive.description.validate import validate
 from derive.emit.st.names import input_name
+from derive.kinematics.build import build
 from derive.kinematics.parameters import machine_parameters
 from derive.pipeline import derive_one, files_of, languages
 from tests.catalogue.closure import Closure
@@ -21,6 +24,7 @@ from tests.harness.blark_grammar import parse_with_blark
 from tests.harness.pieces import split
 from tests.machines.made import Array, Made, imported_class
 from tests.machines.odd_names import ODD, Odd
+from tests.mechanisms import kinematics_of, named
 from tests.text.controller import OK, Controller, input_value
 from tests.text.shapes import names as names_in
 from tests.text.test_second_grammar import declaring
@@ -143,6 +147,29 @@ def test_batches_answer_the_same(name: str) -> None:
     back, again = robot.inverse_batch(positions[rows], rotations[rows], configurations[rows], axes[rows])
     assert rows.sum() > 5 and (again == Status.OK).all()
     assert np.abs(back - axes[rows]).max() <= 1e-6
+
+
+@pytest.mark.parametrize("name", ["Kin_P2X_Type1", "Kin_Scara4_ZCcoupled_Type1", "Softkin_DualScara"])
+def test_parameters_with_the_names_of_what_their_own_derivation_finds(name: str) -> None:
+    """The worst that can be asked for: the parameters of a mechanism are called like values of its own programs."""
+    mechanism = named(name)
+    usual = kinematics_of(mechanism)
+    joints = {j.symbol.name for j in mechanism.joints}
+    derived = sorted({s.name for p in (usual.setup, *usual.programs) for s in p.bound()} - joints)
+    rng = np.random.default_rng(3)
+    for _ in range(3):
+        names = rng.choice(derived, len(mechanism.parameters), replace=False).tolist()
+        odd = build(validate(called_otherwise(mechanism, names)))
+        assert [p.given_name for p in odd.parameters[: len(names)]] == names
+        assert [len(p.body) for p in odd.programs] == [len(p.body) for p in usual.programs]
+
+
+def called_otherwise(mechanism: Mechanism, names: Sequence[str]) -> Mechanism:
+    """The mechanism with other names of its parameters."""
+    pairs = zip(mechanism.parameters, names, strict=True)
+    symbols = {p.symbol: type(p.symbol)(name, **p.symbol.assumptions0) for p, name in pairs}
+    renamed: Mechanism = with_symbols(mechanism, symbols)
+    return replace(renamed, parameters=tuple(replace(p, given="") for p in renamed.parameters))
 
 
 @EVERY
