@@ -30,6 +30,7 @@ from derive.witness.disagreement import Disagreement
 PROCESSES = 2
 UNFIT = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
 """What a wrong description leads to: the message says enough."""
+_LANGUAGES = {python.name: "Python", StructuredTextFiles.name: "Structured Text"}
 Told = Callable[[str, str], None]
 """What is told about a stage: its name, and its result, which is empty at its begin."""
 
@@ -63,6 +64,11 @@ class Built:
     """What the witness found; None where it was kept from an earlier run."""
     undrawn: str = ""
     """Why there is no picture: a drawing is no part of the proof, and a machine without one is whole."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What every language says about names that it could not take from the description."""
+        return tuple(f"{_LANGUAGES.get(name, name)}: {n}" for name, part in self.parts.items() for n in part["notes"])
 
     def as_plain(self) -> dict[str, Any]:
         """What JSON can hold."""
