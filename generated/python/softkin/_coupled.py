@@ -150,6 +150,9 @@ class Coupled(Mechanism):
         is_radian = values.pop("in_radians", False)
         if values.pop("mechanism", "Coupled") != "Coupled" or set(values) != {"position", "orientation"}:
             raise KinematicsError(Status.NOT_INITIALIZED, "Coupled: the entries must be position and orientation")
+        for part in ("position", "orientation"):
+            if not isinstance(values[part], Mapping):
+                raise KinematicsError(Status.NOT_INITIALIZED, f"Coupled: {part} must be the dictionary of a machine")
         position = Mechanism.from_dict(values["position"])
         orientation = OrientationKinematics.from_dict(values["orientation"])
         made = cls(position, orientation)

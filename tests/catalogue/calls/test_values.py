@@ -187,3 +187,12 @@ def test_machines_are_keys() -> None:
         softkin.Coupled(softkin.Gantry3(), softkin.Gantry3())  # type: ignore[arg-type]
     with pytest.raises(KinematicsError, match="is an orientation kinematics"):
         softkin.Coupled(softkin.Wrist3(), softkin.Wrist3())
+
+
+@pytest.mark.parametrize("part", ["position", "orientation"])
+@pytest.mark.parametrize("wrong", [5, None, "Kin_Gantry3", ["Kin_Gantry3"]])
+def test_a_coupling_says_which_part_is_wrong(part: str, wrong: object) -> None:
+    """Data of another program, or a file that someone has edited."""
+    data = softkin.Coupled(softkin.Gantry3(), softkin.Wrist2()).to_dict()
+    with pytest.raises(KinematicsError, match=f"Coupled: {part} must be the dictionary of a machine"):
+        softkin.Coupled.from_dict({**data, part: wrong})
