@@ -32,12 +32,15 @@ def reals(values: Numbers, count: int, what: str) -> tuple[float, ...]:
 
 
 def refuse_strange(values: object, needed: str) -> None:
-    """Refuse what has numbers, but not in an order that counts (sets, mappings), bytes, and arrays with a mask."""
+    """Refuse what has numbers, but not in an order that counts (sets, mappings), bytes, and arrays with a mask or of
+    complex numbers."""
     if type(values) is tuple or type(values) is list:
         return
     masked = sys.modules.get("numpy.ma")  # where it is not loaded, nobody has an array with a mask
     if masked is not None and isinstance(values, masked.MaskedArray):
         raise _bad(f"{needed}, not an array with a mask: fill it, or leave its rows out")
+    if getattr(getattr(values, "dtype", None), "kind", None) == "c":
+        raise _bad(f"{needed}, not complex ones")
     if isinstance(values, Set | Mapping | bytes | bytearray):
         raise _bad(f"{needed} in a sequence, not {type(values).__name__}: {_shown(values)}")
 

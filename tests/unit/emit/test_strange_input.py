@@ -23,6 +23,7 @@ STRANGE: dict[str, Callable[[int], object]] = {
     "keys of a dict": lambda n: dict.fromkeys(map(float, range(n))).keys(),
     "bytes": lambda n: bytes(range(n)),
     "bytearray": lambda n: bytearray(range(n)),
+    "complex numbers": lambda n: np.array([1j] * n),
     "array with a mask": lambda n: np.ma.array([1.0] * n, mask=[True] + [False] * (n - 1)),
     "array with an open mask": lambda n: np.ma.array([1.0] * n),
     "text": lambda n: "1" * n,
