@@ -140,6 +140,34 @@ def test_the_typed_copy_says_what_the_text_says(unit: str) -> None:
     assert typed == {}
 
 
+@pytest.mark.parametrize("name", ["Softkin_SelfTest", "Softkin_Scara2_Z_SelfTest", "PRG_SoftkinSelfTest"])
+def test_the_typed_copy_of_a_self_test(name: str) -> None:
+    """It has what the self-test extends, its access modifiers, and every number of its tables."""
+    root = parse(EVERYTHING)
+    typed, text = typed_variables(root), wholes(root)[name].text()
+    (declared,) = parse_st(text, name)
+    for path, variables in declared_variables(declared):
+        assert typed[path] == variables, path
+    pou = _only(root, f".//p:pou[@name='{name}']")
+    assert [e.text for e in pou.iter("{*}Extends")] == re.findall(r"^FUNCTION_BLOCK \w+ EXTENDS (\w+)$", text, re.M)
+    found = [
+        (e.attrib["name"], word)
+        for e in pou.iter("{*}Method")
+        for word in ("Private", "Protected")
+        if e.find(f".//{{*}}AccessModifiers[@{word}='true']") is not None
+    ]
+    written = re.findall(r"^METHOD (PRIVATE|PROTECTED) (\w+)", text, re.M)
+    assert found == [(method, access.capitalize()) for access, method in written]
+    tables = {
+        v.attrib["name"]: [
+            s.attrib["value"] for s in v.iterfind("{*}initialValue/{*}arrayValue/{*}value/{*}simpleValue")
+        ]
+        for v in pou.iter("{*}variable")
+    }
+    for table, numbers in re.findall(r"^  (\w+) : ARRAY.*:= \[([^\]]*)\];", text, re.M):
+        assert tables[table] == [number.strip() for number in numbers.split(",")]
+
+
 def _only(element: Element, path: str) -> Element:
     (found,) = element.iterfind(path, {"p": "http://www.plcopen.org/xml/tc6_0200"})
     return found

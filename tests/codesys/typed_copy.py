@@ -96,6 +96,8 @@ def _written(initial: ast.Expression | None) -> str:
         return f"{_written(initial.object)}.{initial.name}"
     if isinstance(initial, ast.Name):
         return initial.text
+    if isinstance(initial, ast.Unary) and initial.operator == "-":
+        return f"-{_written(initial.operand)}"
     return str(initial.value) if isinstance(initial, ast.Literal) else ""
 
 

@@ -253,6 +253,24 @@ def test_a_member_that_breaks_a_rule_is_refused(name: str) -> None:
     assert message in refused(BLOCK.format(members=members))
 
 
+def test_a_block_that_runs_by_its_body_may_write() -> None:
+    """Where all methods are private or protected, body and methods write; an input is written by none, and one public
+    method, of the block or of its base, brings the rule back.
+    """
+    closed = method("nOwn := 1;").replace("PUBLIC", "PROTECTED") + "Act();\nnOwn := nOwn + 1;\n"
+    library = compile_st({"probe.st": BLOCK.format(members=closed)})
+    probe = library.new("Probe")
+    probe()
+    assert probe.nOwn == 2
+    writes_input = method("dIn := 1.0;").replace("PUBLIC", "PROTECTED")
+    assert "a method writes the input dIn" in refused(BLOCK.format(members=writes_input))
+    for public in (method(";", name="Open"), "PROPERTY PUBLIC Q : DINT\nGET\nQ := 1;\nEND_GET\nEND_PROPERTY\n"):
+        assert "only Initialize and AxisSettings may write" in refused(BLOCK.format(members=public + closed))
+    base = BLOCK.format(members=method(";", name="Open"))
+    derived = "FUNCTION_BLOCK Derived EXTENDS Probe\nMETHOD PROTECTED Act\nnOwn := 1;\nEND_METHOD\nEND_FUNCTION_BLOCK\n"
+    assert "only Initialize and AxisSettings may write" in refused(base + derived)
+
+
 INNER = BLOCK.format(members=method(";", name="Hidden").replace("PUBLIC", "PRIVATE"))
 USER = "FUNCTION_BLOCK User\nVAR\n fb : Probe;\nEND_VAR\n{body}\nEND_FUNCTION_BLOCK\n"
 

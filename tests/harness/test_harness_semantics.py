@@ -226,7 +226,7 @@ END_PROGRAM"""
 
 def test_blocks_with_a_body() -> None:
     """A function block with a body reads its inputs and writes its outputs when it is called."""
-    # A body that writes outputs is allowed only in a block without methods.
+    # A body that writes outputs is allowed only in a block without methods that others may call.
     text = """FUNCTION_BLOCK Base
 VAR_INPUT dIn : LREAL := 1.0; END_VAR
 VAR_IN_OUT dBoth : LREAL; v : SMC_Vector3D; END_VAR

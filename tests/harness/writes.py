@@ -1,4 +1,8 @@
-"""Rules of assignment: for constants, for inputs, and that only Initialize and AxisSettings change an instance."""
+"""Rules of assignment: for constants, for inputs, and that only Initialize and AxisSettings change an instance.
+
+The last rule is for blocks with a method that others may call: several tasks do. A block whose methods are private or
+protected runs by its body alone, in one task, and its methods are parts of that body.
+"""
 
 from . import ast
 from . import st_types as types
@@ -68,8 +72,17 @@ def _check_foreign(node: ast.Expression, facts: Facts) -> None:
 def _check_member(variable: types.Variable, node: ast.Expression, scope: Scope) -> None:
     if scope.is_method and variable.scope == "VAR_INPUT":
         raise StError(node.at, f"a method writes the input {variable.name}")
+    if scope.block is not None and runs_by_its_body(scope.block):
+        return
     if scope.is_method and scope.owner.lower() not in map(str.lower, (*WRITERS, READER)):
         raise StError(node.at, f"only {' and '.join(WRITERS)} may write the instance variable {variable.name}")
     block = scope.block
     if not scope.is_method and block is not None and block.methods and block.declaration.kind != "PROGRAM":
         raise StError(node.at, f"the body of a block with methods writes {variable.name}")
+
+
+def runs_by_its_body(block: types.Block) -> bool:
+    """Whether nothing but its body can be called from outside: it and its bases have no public method or property."""
+    routines = [routine.declaration.access for routine in block.methods.values()]
+    is_closed = not block.properties and set(routines) <= {"PRIVATE", "PROTECTED"}
+    return is_closed and not block.declaration.implements and (block.base is None or runs_by_its_body(block.base))

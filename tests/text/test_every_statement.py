@@ -28,6 +28,7 @@ from tests.text import (
 from tests.text.comparisons import COMPARISONS, POSELESS
 from tests.text.reasons import provoke
 from tests.text.samples import Sample, coinciding
+from tests.text.selftest import test_self_test
 from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pair, serial_pairs_of
 from tests.text.statements import Statements
 from tests.text.units import compiled, compiled_shared, file_of, shared_texts, text_of
@@ -83,6 +84,7 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
     scara, arm = (next(m for m in MECHANISMS if m.block_name == name) for name in OF_THE_BASE)
     for mechanism in (scara, arm):
         libraries += [compiled(mechanism), compiled(mechanism, matrix_size=36)]
+    libraries.append(test_self_test.with_faults(scara))
     statements = Statements(shared_texts(), libraries)
     with statements.watched():
         for mechanism in (scara, arm):
@@ -97,6 +99,7 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
             for one in pairs[:4]:
                 for sample in (*few(one.regular, FEW), *few(one.grid, A_FEW)):
                     compare_all(one, sample)
+        test_self_test.every_statement_of_the_base(libraries[-1], scara)
         for size in range(1, 7):
             test_shared_functions.test_solve(size)
         test_shared_functions.test_solve_where_nothing_solves(np.ones((3, 3)))

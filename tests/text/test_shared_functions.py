@@ -379,6 +379,13 @@ def test_the_reasons_of_limits() -> None:
     assert len({reason(udiAxis=k) for k in range(6)}) == 6 and reason(udiAxis=6) == ""
 
 
+def test_the_byte_of_a_choice() -> None:
+    """The first branch, the second one, and that nearest to the reference, whatever is chosen beside it."""
+    byte = compiled_shared().function("Softkin_ByteOfChoice")
+    found = [byte(first, automatic) for automatic in (False, True) for first in (True, False)]
+    assert found == [1, 2, 0, 0]
+
+
 def test_the_base_alone_supplies_nothing() -> None:
     """Every protected method of the base answers that nothing is initialised, and writes nothing."""
     made = compiled_shared().new("Softkin_Kinematics")

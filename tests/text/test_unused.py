@@ -6,6 +6,7 @@ import re
 
 import pytest
 
+from tests.harness import ast
 from tests.harness.parse import parse
 from tests.harness.unused import unused
 from tests.text.test_contract import FILES
@@ -17,13 +18,15 @@ def test_everything_declared_is_used(file: str) -> None:
     assert [one for declared in parse(FILES[file], file) for one in unused(declared)] == []
 
 
-def test_what_the_base_declares_is_read_by_a_block() -> None:
-    """No variable of the base block is there for nobody."""
-    texts = [text for text in FILES.values() if "EXTENDS Softkin_Kinematics" in text]
-    (base,) = (d for file, text in FILES.items() for d in parse(text, file) if d.name == "Softkin_Kinematics")
+@pytest.mark.parametrize("name", ["Softkin_Kinematics", "Softkin_SelfTest"])
+def test_what_the_base_declares_is_read_by_a_block(name: str) -> None:
+    """No variable of a base block is there for nobody."""
+    texts = [text for text in FILES.values() if f"EXTENDS {name}" in text]
+    (base,) = parse(FILES[f"softkin/{name}.st"], name)
+    assert isinstance(base, ast.Block)
     names = [v.name for section in base.sections for v in section.variables]
-    own = next(text for text in FILES.values() if "FUNCTION_BLOCK Softkin_Kinematics" in text).split("END_VAR", 2)[2]
-    assert names
+    own = FILES[f"softkin/{name}.st"].split("END_VAR", len(base.sections))[-1]
+    assert names and texts
     assert [name for name in names if not any(re.search(rf"\b{name}\b", text) for text in (own, *texts))] == []
 
 

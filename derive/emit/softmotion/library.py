@@ -22,7 +22,7 @@ from derive.emit.softmotion.methods import methods_of
 from derive.emit.softmotion.overview import row_of
 from derive.emit.softmotion.self_test import FOLDER as SELF_TESTS
 from derive.emit.softmotion.self_test import PROGRAM as SELF_TEST_PROGRAM
-from derive.emit.softmotion.self_test import test_of
+from derive.emit.softmotion.self_test import TOLERANCE, test_of
 from derive.emit.st.contract import Contract, load
 from derive.emit.st.expression import literal
 from derive.emit.st.layout import assigned, beside, case, gathered
@@ -164,6 +164,7 @@ def _templates() -> Environment:
         pivot=literal(float(PIVOT)),
         solvable=literal(float(SOLVABLE)),
         smallest=literal(1.0 / float(SOLVABLE)),
+        tolerance=literal(TOLERANCE),
         search=SEARCH,
         statuses=[status.name for status in Status],
         not_initialized=NOT_INITIALIZED,

@@ -9,17 +9,19 @@ from derive.description.mechanism import Parameter, Role
 from derive.emit.softmotion.block import Block
 from derive.emit.softmotion.inputs import inputs, parameter_input
 from derive.emit.st.expression import literal
-from derive.emit.st.layout import packed
+from derive.emit.st.layout import INSIDE, WIDTH, packed
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.reference_cases import Bytes, Called, Case, Reals, SelfTest
+from derive.kinematics.reference_cases import Called, Case, Reals, SelfTest
 
 FOLDER = "selftest"
 PROGRAM = "PRG_SoftkinSelfTest"
-_TOLERANCE = 2e-6
+TOLERANCE = 2e-6
 """The tolerance of a number that is rounded to 6 decimals."""
 _NUMBERS = {status: number for number, status in enumerate(Status)}
 _NO_FRAME = (0.0,) * 12
+_LINE, _LINE_OF_A_CALL = WIDTH - 2 * INSIDE - len("];"), WIDTH - 3 * INSIDE
+"""The columns of a line of values in a declaration, and of inputs in a call."""
 
 
 @dataclass(frozen=True)
@@ -38,11 +40,11 @@ class Test:
     name: str
     block: str
     count: int
-    tolerance: str
-    fields: tuple[str, ...]
+    axes: int
     bytes: int
-    machines: tuple[tuple[tuple[str, str], ...], ...]
-    """For every machine the values of the inputs that differ between machines, or from their defaults."""
+    inputs: tuple[str, ...]
+    """The lines of the call that gives a machine its inputs: those that differ between machines, or from their
+    defaults."""
     tables: tuple[Table, ...]
 
 
@@ -51,27 +53,42 @@ def test_of(kinematics: Kinematics, block: Block) -> Test | None:
     found = kinematics.self_test
     if found is None:
         return None
-    size = kinematics.configuration_size
+    axes, size = len(block.axes), kinematics.configuration_size
+    given = _given(kinematics.parameters, inputs(kinematics).names, found)
+    differing = [values for values in given.values() if len(set(values)) > 1]
+    machines = [_table("MACHINES", "LREAL", list(zip(*differing, strict=True)))] if differing else []
     return Test(
         name=f"{block.name}_SelfTest",
         block=block.name,
         count=len(found.cases),
-        tolerance=literal(_TOLERANCE),
-        fields=tuple(axis.field for axis in block.axes),
+        axes=axes,
         bytes=size,
-        machines=tuple(_inputs(kinematics.parameters, inputs(kinematics).names, found)),
-        tables=tuple(_tables(found.cases, len(block.axes), size)),
+        inputs=tuple(_inputs(given)),
+        tables=(*machines, *_tables(found.cases, axes, size)),
     )
 
 
-def _inputs(
-    parameters: Sequence[Parameter], names: Mapping[str, str], test: SelfTest
-) -> Iterator[tuple[tuple[str, str], ...]]:
-    """The inputs of every machine with their values: each machine sets all inputs that any machine sets."""
-    spelled = [{p.name: _value(p, machine) for p in parameters} for machine in test.machines]
-    given = [p for p in parameters if any(values[p.name] != parameter_input(p, "").default for values in spelled)]
-    for values in spelled:
-        yield tuple((names[p.name], values[p.name]) for p in given)
+def _given(parameters: Sequence[Parameter], names: Mapping[str, str], test: SelfTest) -> dict[str, tuple[str, ...]]:
+    """The inputs that a machine sets, each with its values in all machines. All but numbers are the same in all."""
+    found = {}
+    for parameter in parameters:
+        given = parameter_input(parameter, names[parameter.name])
+        values = tuple(_value(parameter, machine) for machine in test.machines)
+        if set(values) != {given.default}:
+            found[given.name] = values
+    return found
+
+
+def _inputs(given: Mapping[str, tuple[str, ...]]) -> list[str]:
+    """The lines of the call with these inputs."""
+    pieces, column = [], 0
+    for name, values in given.items():
+        if len(set(values)) == 1:
+            pieces.append(f"{name} := {values[0]}")
+        else:
+            pieces.append(f"{name} := MACHINES[entries[MACHINE], {column}]")
+            column += 1
+    return packed([f"{piece}," for piece in pieces[:-1]] + [f"{piece});" for piece in pieces[-1:]], _LINE_OF_A_CALL)
 
 
 def _value(parameter: Parameter, machine: Mapping[str, float]) -> str:
@@ -86,31 +103,27 @@ def _tables(cases: Sequence[Case], axes: int, size: int) -> Iterator[Table]:
     nothing = (0.0,) * axes
     poses: list[Reals] = list(dict.fromkeys(row or nothing for c in cases for row in (c.axes, c.reference)))
     frames: list[Reals] = list(dict.fromkeys(c.frame or _NO_FRAME for c in cases))
-    data: list[Bytes] = list(dict.fromkeys(c.configuration or (0,) * size for c in cases))
     rows = []
     for case in cases:
         answer = int(case.is_singular) if case.called is Called.SINGULARITY else _NUMBERS[case.status]
         places = poses.index(case.axes or nothing), poses.index(case.reference or nothing)
-        more = frames.index(case.frame or _NO_FRAME), data.index(case.configuration or (0,) * size)
-        rows.append(tuple(map(str, (case.called.value, case.machine, answer, *places, *more))))
-    yield _table("CASES", "INT", rows)
-    yield _column("OPERATIONS", "UDINT", [str(case.operations) for case in cases])
+        frame, data = frames.index(case.frame or _NO_FRAME), case.configuration or (0,) * size
+        numbers = case.called.value, case.machine, answer, *places, frame, case.operations
+        rows.append([str(number) for number in (*numbers, *(byte % 256 for byte in data))])
+    yield _table("CASES", "UDINT", rows)
     if axes:
         yield _table("AXIS_VALUES", "LREAL", [tuple(map(literal, row)) for row in poses])
     yield _table("FRAMES", "LREAL", [tuple(map(literal, row)) for row in frames])
-    if size:
-        yield _table("CONFIGURATIONS", "BYTE", [tuple(str(byte % 256) for byte in row) for row in data])
 
 
 def _table(name: str, kind: str, rows: Sequence[Sequence[str]]) -> Table:
-    """A table in which every row begins on a new line."""
-    lines = [line for row in rows for line in packed([f"{value}," for value in row])]
-    lines[-1] = lines[-1].removesuffix(",")
+    """A table with as many whole rows in every line as fit, two spaces apart; where none fits, its values fill the
+    lines."""
+    whole = [", ".join(row) for row in rows]
+    together = (_LINE + 2) // (max(map(len, whole)) + 3)
+    if together:
+        lines = [",  ".join(whole[at : at + together]) for at in range(0, len(whole), together)]
+        lines = [f"{line}," for line in lines[:-1]] + lines[-1:]
+    else:
+        lines = packed(", ".join(whole).split(" "), _LINE)
     return Table(name, f"ARRAY[0..{len(rows) - 1}, 0..{len(rows[0]) - 1}] OF {kind}", tuple(lines))
-
-
-def _column(name: str, kind: str, values: Sequence[str]) -> Table:
-    """A table of one value a row."""
-    lines = packed([f"{value}," for value in values])
-    lines[-1] = lines[-1].removesuffix(",")
-    return Table(name, f"ARRAY[0..{len(values) - 1}] OF {kind}", tuple(lines))

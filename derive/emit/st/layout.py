@@ -40,11 +40,11 @@ def wrapped(statement: str, width: int = WIDTH - INSIDE) -> list[str]:
     return [*lines, margin + statement]
 
 
-def packed(pieces: Sequence[str]) -> list[str]:
-    """Lines of several short pieces each, which leave room for an indent."""
+def packed(pieces: Sequence[str], width: int = WIDTH - 10) -> list[str]:
+    """Lines of several short pieces each; they leave room for an indent."""
     lines: list[str] = []
     for piece in pieces:
-        if lines and len(lines[-1]) + 1 + len(piece) <= WIDTH - 10:
+        if lines and len(lines[-1]) + 1 + len(piece) <= width:
             lines[-1] += f" {piece}"
         else:
             lines.append(piece)

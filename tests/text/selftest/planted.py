@@ -27,12 +27,14 @@ def planted(mechanism: Mechanism) -> Planted:
     faults: list[str] = []
     for method, pattern in (
         ("AxesToCartesian", r"^(f\.vT\.d[XYZ]|rot\[\d, \d\])() :=[^;]*;\n"),
-        ("AxesToCartesian", r"^(configuration\.abyData)(\[\d+\]) :=[^;]*;\n"),
+        ("AxesToCartesian", r"^(configBytes\.abyData)(\[\d+\]) :=[^;]*;\n"),
         ("SolveBranch", rf"^(a\.a[0-{max(axes - 1, 0)}])() :=[^;]*;\n"),
         ("FindMargins", r"^(FindMargins)() :=[^;]*;\n"),
         ("TestLimits", r"^(IF NOT checkLimits)() THEN\n"),
         ("CartesianToAxes", r"^(a := solution)();\n"),
     ):
+        if "abyData" in pattern and not (mechanism.branches or mechanism.period_joints):
+            continue
         if axes or method not in ("SolveBranch", "TestLimits"):
             head = _in_method(head, method, pattern, faults)
     declared = head.replace("\nVAR_INPUT\n", f"\nVAR_INPUT\n  {_SWITCH} : INT := 0;\n", 1)
@@ -61,5 +63,5 @@ def _in_method(text: str, method: str, pattern: str, faults: list[str]) -> str:
         return f"{found.group()}{place} := {place} + SEL({chosen}, 0.0, 0.0001);\n"
 
     changed, count = re.subn(pattern, wrong, text[start:end], flags=re.MULTILINE)
-    assert count or "configuration" in pattern, f"nothing to spoil in {method}"
+    assert count, f"nothing to spoil in {method}"
     return text[:start] + changed + text[end:]

@@ -11,18 +11,22 @@ import pytest
 
 from bench.counting import counting_library
 from derive.description.mechanism import Mechanism
+from tests.harness import ast
 from tests.harness.library import Library, compile_st
+from tests.harness.parse import parse
 from tests.mechanisms import catalogue
 from tests.text.breakage import MECHANISM, WRONG, texts
 from tests.text.counting import counted
 from tests.text.selftest.planted import planted
-from tests.text.units import FOLDER, file_of, shared_texts, text_of
+from tests.text.units import FOLDER, compiled_shared, file_of, shared_texts, text_of
 
 ALL = tuple(m for _, m in catalogue())
 PROGRAM = "PRG_SoftkinSelfTest"
 SELF_TESTS = {path.name: path.read_text(encoding="utf-8") for path in sorted((FOLDER / "selftest").glob("*.st"))}
 UNBOUNDED = 10**9
 """More operations than any case needs."""
+OPERATIONS = 6
+"""The column of the table of cases with the operations of a case, at most."""
 WORST = 1e-6
 """What rounding the expected numbers to 6 decimals leaves is half of it."""
 
@@ -34,11 +38,18 @@ def self_test(mechanism: Mechanism) -> dict[str, str]:
 
 
 @cache
+def cases(name: str) -> tuple[tuple[int, ...], ...]:
+    """The rows of the table of cases of a self-test."""
+    found = re.search(r"CASES : ARRAY\[0\.\.(\d+), 0\.\.(\d+)\] OF UDINT := \[([\d,\s]*)\]", SELF_TESTS[name])
+    assert found is not None
+    last, width, numbers = int(found[1]), int(found[2]) + 1, [int(number) for number in found[3].split(",")]
+    assert len(numbers) == (last + 1) * width
+    return tuple(tuple(numbers[at : at + width]) for at in range(0, len(numbers), width))
+
+
 def counts(name: str) -> int:
     """How many cases a self-test has, by its own table."""
-    found = re.search(r"CASES : ARRAY\[0\.\.(\d+),", SELF_TESTS[name])
-    assert found is not None
-    return int(found.group(1)) + 1
+    return len(cases(name))
 
 
 def run(library: Library, name: str) -> Any:
@@ -57,6 +68,69 @@ def run(library: Library, name: str) -> Any:
 def test_there_is_one_for_every_block() -> None:
     """There is a self-test for every block, and one program that runs them all."""
     assert set(SELF_TESTS) == {f"{m.block_name}_SelfTest.st" for m in ALL} | {f"{PROGRAM}.st"}
+
+
+SUPPLIED = ("ReadCase", "CallBlock")
+"""The methods of the base of all self-tests that a self-test supplies."""
+
+
+@pytest.mark.parametrize("mechanism", ALL, ids=lambda m: m.name)
+def test_every_self_test_supplies_what_the_base_calls(mechanism: Mechanism) -> None:
+    """It overrides these two methods with the identical header, has no other, and adds neither inputs nor outputs to
+    those of the base, so that their order is that of the base."""
+    base = compiled_shared().objects["Softkin_SelfTest"]
+    (own,) = parse(SELF_TESTS[f"{mechanism.block_name}_SelfTest.st"], mechanism.block_name)
+    assert isinstance(own, ast.Block)
+    assert (own.extends, own.implements, own.properties) == (base.name, (), ())
+    assert [header(m) for m in own.methods] == [header(m) for m in base.methods if m.name in SUPPLIED]
+    assert {(s.scope, s.constant) for s in own.sections} == {("VAR", True), ("VAR", False)}
+    (called,) = own.body
+    assert isinstance(called, ast.CallStatement) and isinstance(called.call.function, ast.Name)
+    assert (called.call.function.text, called.call.arguments) == ("RunCase", ())
+
+
+def header(method: ast.Routine) -> tuple[object, ...]:
+    """What the header of a method says."""
+    return method.name, method.access, method.returns, method.params
+
+
+def test_the_base_of_self_tests_is_an_ordinary_block() -> None:
+    """It implements and extends nothing; its inputs and outputs are those that every self-test has had, in their order;
+    all its methods are private or protected. Alone it has no cases: one call, which fails."""
+    base = compiled_shared().objects["Softkin_SelfTest"]
+    assert base.implements == () and base.extends is None
+    assert [p.name for p in base.params if p.scope == "VAR_INPUT"] == ["xRestart", "udiOperations"]
+    assert [p.name for p in base.params if p.scope == "VAR_OUTPUT"] == OUTPUTS
+    assert {m.access for m in base.methods} == {"PRIVATE", "PROTECTED"}
+    assert {m.name for m in base.methods if m.access == "PROTECTED"} == {*SUPPLIED, "RunCase"}
+    assert not re.search(r"\b(ABSTRACT|FINAL)\b", shared_texts()["Softkin_SelfTest.st"])
+    alone = compiled_shared().new(base.name)
+    alone()
+    assert (alone.xDone, alone.iPassed, alone.iFailed, alone.iFirstCase, alone.sFirstCall) == (
+        True, 0, 1, 0, "Initialize"
+    )  # fmt: skip
+
+
+OUTPUTS = ["xDone", "iPassed", "iFailed", "dWorst", "iFirstCase", "sFirstCall", "iLeftOut"]
+
+
+def every_statement_of_the_base(library: Library, mechanism: Mechanism) -> None:
+    """Runs them: all cases, every planted fault, no case at all, and the base alone."""
+    test = library.new(f"{mechanism.block_name}_SelfTest")
+    for fault in range(len(planted(mechanism).faults) + 1):
+        test.kinematics.iFault = fault
+        test(xRestart=True)
+        while not test.xDone:
+            test(xRestart=False)
+    test(xRestart=False)
+    test(xRestart=True, udiOperations=0)
+    library.new("Softkin_SelfTest")()
+
+
+def with_faults(mechanism: Mechanism) -> Library:
+    """The self-test of a mechanism with a block that has faults to choose from."""
+    texts = {**self_test(mechanism), file_of(mechanism): planted(mechanism).text}
+    return compile_st({**shared_texts(), **texts})
 
 
 @pytest.mark.parametrize("order", ["rows", "columns"])
@@ -100,16 +174,14 @@ def test_no_cycle_does_more_than_it_may(mechanism: Mechanism) -> None:
 
 def stated_operations(name: str) -> list[int]:
     """What the table of a self-test says that each case needs at most."""
-    found = re.search(r"OPERATIONS : [^[]*\[[^[]*\[([\d,\s]*)\]", SELF_TESTS[f"{name}.st"])
-    assert found is not None
-    return [int(number) for number in found.group(1).split(",")]
+    return [row[OPERATIONS] for row in cases(f"{name}.st")]
 
 
 @pytest.mark.parametrize("mechanism", ALL, ids=lambda m: m.name)
 def test_every_planted_fault_is_found(mechanism: Mechanism) -> None:
     """And a test that is restarted with a block that is right again passes again."""
     spoiled = planted(mechanism)
-    library = compile_st({**shared_texts(), **self_test(mechanism), file_of(mechanism): spoiled.text})
+    library = with_faults(mechanism)
     name = f"{mechanism.block_name}_SelfTest"
     test = run(library, name)
     assert (test.iFailed, test.iLeftOut, test.iFirstCase, test.sFirstCall) == (0, 0, -1, "")
