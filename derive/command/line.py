@@ -4,6 +4,7 @@ softkin new my_machine.py                  write a commented description to star
 softkin explain my_machine.py              print each step of its derivation, and its branches to be named
 softkin check my_machine.py                derive and measure it, and write nothing
 softkin derive my_machine.py --out build   derive it: Python package, Structured Text, PLCopenXML, picture
+softkin live --machine my_machine.json     show it in the browser, moved by the axis values of its controller
 
 Status 0 is success; 2 a machine, or a command, that cannot be right; 1 a catalogue that is not as it should be.
 """
@@ -15,7 +16,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from derive.command import catalogue, explain, new, own
+from derive.command import catalogue, explain, live, new, own
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
 from derive.importing import line as importing
@@ -93,6 +94,8 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     imported = commands.add_parser("import", help=text, description=text)
     importing.add_arguments(imported)
     imported.set_defaults(run=importing.run)
+    text = "serve the viewer on this computer, and move it with the axis values of a controller"
+    live.add_arguments(commands.add_parser("live", help=text, description=text))
 
 
 _PROFILE = "a profile of templates/st/softmotion.toml, for an older library"

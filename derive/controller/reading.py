@@ -1,0 +1,59 @@
+"""What a source says about one axis: a finite number, or the reason why it is none."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Quality(Enum):
+    """How much the value of an axis may be trusted."""
+
+    GOOD = "good"
+    STALE = "stale"
+    """A number, which no answer has confirmed for a while."""
+    BAD = "bad"
+    """No number, or one that the controller itself does not call good."""
+    MISSING = "missing"
+    """No answer yet."""
+
+
+@dataclass(frozen=True)
+class Unusable:
+    """What a source gives in place of a number."""
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class Reading:
+    """The last answer about an axis."""
+
+    value: float | None
+    """In degrees or units of length of the machine; None where the answer is unusable."""
+    reason: str
+    """Why it is unusable; empty where it is not."""
+    at: float
+    """When the answer came, in seconds of the clock of the feed."""
+
+
+def judged(raw: object, scale: float, at: float) -> Reading:
+    """The reading of an answer, which is any object: a finite number times a scale, or the reason why it is none."""
+    if isinstance(raw, Unusable):
+        return Reading(None, raw.reason, at)
+    if isinstance(raw, bool) or not isinstance(raw, int | float):
+        return Reading(None, f"no number: {_shown(raw)}", at)
+    try:
+        value = float(raw) * scale
+    except OverflowError:
+        return Reading(None, "a number that is too large", at)
+    if not math.isfinite(value):
+        return Reading(None, f"not finite: {raw}", at)
+    return Reading(value, "", at)
+
+
+def _shown(raw: object) -> str:
+    """The answer in a few characters."""
+    text = repr(raw)
+    return text if len(text) <= 40 else f"{text[:37]}..."
