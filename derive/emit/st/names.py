@@ -7,11 +7,13 @@ from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 
 from derive.description.mechanism import Parameter, Role
+from derive.emit.language import TEMPLATES
 from derive.emit.st.reserved import reserved
 from derive.ir.types import Type
 
 _LETTERS = {"zc": "ZC"}
 """Words that stand for axes, and so are written in capital letters."""
+_DECLARED = re.compile(r"^  (\w+) : ", re.MULTILINE)
 _NEUTRAL = re.compile(r"[a-z]+(_[a-z0-9]+)+")
 _PREFIX = {Role.FLAG: "x", Role.SIGN: "i"}
 
@@ -60,8 +62,17 @@ def type_name(kind: Type) -> str:
 
 @cache
 def stored_name(name: str) -> str:
-    """The instance variable for a constant: `link_length_1` → `linkLength1`."""
-    return spellings((name,), ())[name]
+    """The instance variable for a constant: `link_length_1` → `linkLength1`. No variable of the base block has that
+    name, nor one of its methods' variables: in a flat block they stand beside it.
+    """
+    return spellings((name,), _of_the_base())[name]
+
+
+@cache
+def _of_the_base() -> tuple[str, ...]:
+    """What the templates of the base block declare."""
+    texts = (path.read_text(encoding="utf-8") for path in sorted((TEMPLATES / "st" / "base").glob("*.j2")))
+    return tuple(name for text in texts for name in _DECLARED.findall(text))
 
 
 def respelled(text: str, names: Mapping[str, str]) -> str:
