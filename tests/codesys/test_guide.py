@@ -12,11 +12,14 @@ import pytest
 from softkin import ArticulatedRobot6DOF, Scara2Z
 
 from derive.__main__ import OUTPUT
+from derive.description.mechanism import Role
 from derive.emit.st.contract import load
+from derive.emit.st.names import input_name
 from tests.codesys.parts import FILES, all_parts
 from tests.harness import ast
 from tests.harness.library import Library, compile_st
 from tests.harness.parse import parse
+from tests.mechanisms import catalogue
 from tests.text.values import plain
 
 ROOT = OUTPUT.parent
@@ -272,6 +275,48 @@ def test_g_code_on_a_position_and_an_orientation_block() -> None:
     made.setPoint.dX = 900.0  # out of reach: an error, and the last target stays
     made()
     assert made.status == "SMC_AXIS_INVERSE_TRAFO_EXCEEDING_POSLIMITS" and made.target.a0 == pytest.approx(30.0)
+
+
+ALONE = {
+    "gantry/Softkin_Gantry3": (10.0, -20.0, 30.0),
+    "parallel/Kin_P2C_Type1": (35.0, 5.0),
+    "parallel/Softkin_Delta_C": (20.0, 10.0, 15.0),
+    "articulated/Softkin_Pos_RRR": (20.0, 45.0, -30.0),
+}
+"""Blocks that stand alone, and axis values of each in its default configuration."""
+
+
+@pytest.mark.parametrize("unit", ALONE)
+def test_g_code_on_a_block_that_stands_alone(unit: str) -> None:
+    """The program of the guide without its orientation block, on blocks of other kinds: the point of the axes, and from
+    it these axes again.
+    """
+    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Cnc"))
+    name = unit.split("/")[1]
+    (mechanism,) = (m for _, m in catalogue() if m.block_name == name)
+    lengths = ", ".join(f"{input_name(p)} := {p.nominal:.6f}" for p in mechanism.parameters if p.role is not Role.FLAG)
+    for old, new in (
+        ("arms : Softkin_Scara2_Z", f"arms : {name}"),
+        ("dArmLength1 := 300.0, dArmLength2 := 250.0", lengths),
+        ("  IF status = SM3_Error.SMC_ERROR.SMC_NO_ERROR THEN\n    status := tool.Initialize();\n  END_IF\n", ""),
+        (", KinOri := tool", ""),
+        ("  tool : Softkin_CAxis;\n", ""),
+    ):
+        assert old in program
+        program = program.replace(old, new)
+    needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or n == f"{unit}.st"}
+    made = compile_st({**needed, **_renamed({"cnc": CNC, "PRG_Cnc": program})}).new("PRG_Cnc")
+    axes = ALONE[unit]
+    fields = [f"a{k}" for k in range(len(axes))]
+    for field, value in zip(fields, axes, strict=True):
+        setattr(made.actual, field, value)
+        setattr(made.toAxes.Axes, field, value)
+    made()
+    assert made.xReady and not made.toPoint.ErrorOut
+    made.setPoint._assign(made.toPoint.pi)
+    made()
+    assert made.status == "SMC_NO_ERROR"
+    assert [getattr(made.target, field) for field in fields] == pytest.approx(axes)
 
 
 def test_every_choice_it_names_exists() -> None:
