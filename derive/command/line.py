@@ -95,7 +95,7 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     imported.set_defaults(run=importing.run)
 
 
-_PROFILE = "a profile of templates/st/softmotion.toml, for an older library"
+_PROFILE = "a profile of templates/st/softmotion.toml, for an older library or flat blocks; several are joined by +"
 
 
 def _catalogue_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

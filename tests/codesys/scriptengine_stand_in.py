@@ -69,8 +69,10 @@ class Container(Tree):
     def create_dut(self, name: str, type: DutType = DutType.Structure) -> Node:
         return self._add(Dut(name, type.name))
 
-    def create_interface(self, name: str, base_interfaces: str | None = None) -> Node:
-        return self._add(Interface(name, "INTERFACE"))
+    def create_interface(self, name: str, baseInterfaces: str = "__System.IQueryInterface") -> Node:
+        made = Interface(name, "INTERFACE")
+        made.textual_declaration.text = f"INTERFACE {name} EXTENDS {baseInterfaces}"
+        return self._add(made)
 
     def create_gvl(self, name: str) -> Node:
         made = GlobalVariables(name, "VAR_GLOBAL")

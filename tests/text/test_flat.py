@@ -17,6 +17,7 @@ from derive.emit.softmotion.flat import flattened
 from tests.codesys.plcopen_reader import NAMESPACE
 from tests.codesys.test_plcopen import errors
 from tests.harness import ast
+from tests.harness.blark_grammar import parse_text_with_blark
 from tests.harness.contract import header
 from tests.harness.library import Library, compile_st
 from tests.harness.parse import parse
@@ -214,6 +215,14 @@ def test_every_method_answers_exactly_the_same(name: str) -> None:
     if mechanism.joints:
         assert {status for method, status in statuses if method == "CartesianToAxes"} > {OK}
         assert len({status for method, status in statuses if method == "Diagnose"}) > 2
+
+
+@pytest.mark.slow
+def test_the_second_grammar_reads_a_flat_block() -> None:
+    """A block as it is written, with all its members."""
+    trees = parse_text_with_blark(flat_text(MECHANISMS["Kin_Gantry2"]), "Softkin_Gantry2")
+    assert any(line.startswith("METHOD PUBLIC AxisVelocities ") for line in trees)
+    assert any(line.startswith("FUNCTION_BLOCK Softkin_Gantry2 IMPLEMENTS") for line in trees)
 
 
 def test_the_profile_writes_these_texts() -> None:
