@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from functools import cache
 
@@ -18,7 +19,8 @@ def objects_in(text: str) -> tuple[Object, ...]:
     """The objects of a file, without its preamble and its rulers."""
     lines = text.split("\n")
     start = next(at for at, line in enumerate(lines) if line.startswith("// ===="))
-    return objects_of("\n".join(line for line in lines[start:] if not line.startswith("// ====")))
+    bare = (re.sub(r"  // =+$", "", line) for line in lines[start:] if not line.startswith("// ===="))
+    return objects_of("\n".join(bare))
 
 
 @cache

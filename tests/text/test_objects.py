@@ -113,7 +113,7 @@ def test_an_interface_has_declarations_alone() -> None:
         "METHOD IAsk.Run: declaration",
         "METHOD IAsk.Stop: declaration",
     ]
-    assert ruled([found]).endswith("END_METHOD\nEND_INTERFACE\n")
+    assert ruled([found]).endswith("\nEND_INTERFACE\n")
 
 
 def test_rulers_are_all_that_is_added() -> None:
