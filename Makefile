@@ -2,7 +2,8 @@
 PYTHON ?= python3
 ENVIRONMENT := .venv
 RUN := $(ENVIRONMENT)/bin/python
-# For an older SoftMotion: make generate PROFILE=before_4_11. The profiles stand in templates/st/softmotion.toml.
+# For an older SoftMotion: make generate PROFILE=before_4_11. Blocks without a base: PROFILE=flat. Both: before_4_11+flat.
+# The profiles stand in templates/st/softmotion.toml.
 PROFILE ?=
 OPTIONS := $(if $(PROFILE),--profile $(PROFILE))
 # make generate FRESH=1 derives everything; else what did not change is taken from generated.cache/.

@@ -98,7 +98,7 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     live.add_arguments(commands.add_parser("live", help=text, description=text))
 
 
-_PROFILE = "a profile of templates/st/softmotion.toml, for an older library"
+_PROFILE = "a profile of templates/st/softmotion.toml, for an older library or flat blocks; several are joined by +"
 
 
 def _catalogue_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -33,6 +34,9 @@ _TURNED = 0.7
 _SAMPLED = 80
 """Sampled poses at which a configuration is sought that the regular ones do not show."""
 
+_Pair: TypeAlias = tuple[tuple[Scene, Scene], bool]
+"""The scenes of both bytes, and whether the first is that of the pose from which the second was found."""
+
 
 @dataclass(frozen=True)
 class Choice:
@@ -42,6 +46,8 @@ class Choice:
     names: tuple[str, str]
     scenes: tuple[Scene, Scene] | None
     """None where both look alike, or no such pair was found."""
+    assemblies: tuple[str, str] | None = None
+    """The assembly mode of each pose, where in one mode no such pair was found."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +80,7 @@ def drawing_of(kinematics: Kinematics) -> Drawing:
         is_zero=pose.is_zero,
         is_home=bool(mechanism.home),
         is_planar=mechanism.task.position == "xy",
-        choices=tuple(_choices(_without_search(kinematics, machine), pose)),
+        choices=tuple(_choices(_without_search(kinematics, machine), pose, _reassembled(kinematics))),
         assembly=_assembly(kinematics, pose),
     )
 
@@ -95,18 +101,38 @@ def scene_at(machine: Machine, pose: Pose) -> Scene:
     return (loop_scene if mechanism.chain is None else chain_scene)(mechanism, values, pose.tool)
 
 
-def _choices(machine: Machine, drawn: Pose) -> Iterator[Choice]:
-    """The choice of every branch: both bytes at the same tool frame."""
-    mechanism = machine.kinematics.mechanism
-    told = [k for k, branch in enumerate(mechanism.branches) if not branch.is_crossing]
-    found: dict[int, tuple[Scene, Scene]] = {}
+def _choices(machine: Machine, drawn: Pose, other: Machine | None) -> Iterator[Choice]:
+    """The choice of every branch: both bytes at the same tool frame, of the machine in the other assembly mode where
+    one mode has one of them alone.
+    """
+    branches = machine.kinematics.mechanism.branches
+    told = [k for k, branch in enumerate(branches) if not branch.is_crossing]
+    found = _pairs(machine, drawn, told, machine)
+    missing = [k for k in told if k not in found]
+    changed = {} if other is None or not missing else _pairs(machine, drawn, missing, other)
+    for index, branch in enumerate(branches):
+        scenes, is_first = (found | changed).get(index, (None, True))
+        modes = machine.kinematics.mechanism.assembly.names if index in changed else None  # type: ignore[union-attr]
+        yield Choice(branch.name, branch.names, scenes, modes if modes is None or is_first else modes[::-1])
+
+
+def _pairs(machine: Machine, drawn: Pose, told: list[int], other: Machine) -> dict[int, _Pair]:
+    """Both bytes of these branches: a pose of the machine, and one of the other machine with the other byte."""
+    found: dict[int, _Pair] = {}
     for axes in _candidates(machine, drawn):
         missing = [k for k in told if k not in found]
         if missing and (pose := pose_at(machine, axes)) is not None:
-            pairs = {k: _pair(machine, pose, k) for k in missing if pose.configuration[k] != 3}
+            pairs = {k: _pair(machine, pose, k, other) for k in missing if pose.configuration[k] != 3}
             found |= {k: pair for k, pair in pairs.items() if pair is not None}
-    for index, branch in enumerate(mechanism.branches):
-        yield Choice(branch.name, branch.names, found.get(index))
+    return found
+
+
+def _reassembled(kinematics: Kinematics) -> Machine | None:
+    """The machine in its other assembly mode; None where there is one mode, or where the home pose tells it."""
+    assembly = kinematics.mechanism.assembly
+    if assembly is None or kinematics.mechanism.is_platform:
+        return None
+    return nominal_machine(kinematics, **{assembly.parameter: 1.0})
 
 
 def _candidates(machine: Machine, drawn: Pose) -> Iterator[Reals]:
@@ -126,18 +152,20 @@ def _candidates(machine: Machine, drawn: Pose) -> Iterator[Reals]:
         yield from (tuple(row) for row in rows.tolist())
 
 
-def _pair(machine: Machine, pose: Pose, index: int) -> tuple[Scene, Scene] | None:
+def _pair(machine: Machine, pose: Pose, index: int, into: Machine) -> _Pair | None:
     count = len(machine.kinematics.mechanism.branches)
     first = pose.configuration[index] == 1
     other = [3 - byte if k == index else byte for k, byte in enumerate(pose.configuration[:count])]
     periods = (0,) * (len(pose.configuration) - count)
-    _, solutions, statuses = branches(machine, pose.frame, (*other, *periods), pose.axes)
-    flipped = pose_at(machine, solutions[0]) if statuses[0] is Status.OK else None
+    _, solutions, statuses = branches(into, pose.frame, (*other, *periods), pose.axes)
+    flipped = pose_at(into, solutions[0]) if statuses[0] is Status.OK else None
     if machine.kinematics.mechanism.is_platform and statuses[0] is Status.OK:  # which forward may not find from home
         flipped = Pose(solutions[0], pose.frame, (*other, *periods))
     if flipped is None:
         return None
-    return _different(*(scene_at(machine, p) for p in ((pose, flipped) if first else (flipped, pose))))
+    one, two = scene_at(machine, pose), scene_at(into, flipped)
+    scenes = _different(*((one, two) if first else (two, one)))
+    return scenes and (scenes, first)
 
 
 def _assembly(kinematics: Kinematics, drawn: Pose) -> Choice | None:

@@ -74,7 +74,7 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
         1.0,
         1.0,
     )
-    meaning = "a pose counts as singular where a margin (a number without a unit) is less than this in size"
+    meaning = "poses count as singular where a margin (a number without a unit) is smaller than this"
     near = float(SINGULAR)
     warning = Parameter(real(WARNING_DISTANCE), WARNING_DISTANCE, Role.RATIO, meaning, "1", 0.0, 1.0, False, near, near)
     return (*parameters, check, warning)

@@ -29,7 +29,7 @@ from derive.plate.plate import home_flag, platform_size, pose_at_home
 
 Samples = dict[str, NDArray[np.float64]]
 
-_REACHED = "a home pose that the legs reach"
+_REACHED = "a home pose within reach"
 _AROUND, _TURNED = 0.1, 0.2
 """The largest distance of sampled poses from home, in characteristic lengths and radians."""
 _SAMPLES = 256

@@ -88,6 +88,8 @@ def create(kind, name, declaration, parent):
         return parent.create_dut(name, DutType.Structure if is_structure else DutType.Enumeration)
     if kind == "VAR_GLOBAL":
         return parent.create_gvl(name)
+    if kind == "INTERFACE":
+        return parent.create_interface(name)  # what it extends stands in its declaration
     if kind == "FUNCTION":
         return parent.create_pou(name=name, type=PouType.Function, return_type=returned(declaration))
     if kind == "FUNCTION_BLOCK":

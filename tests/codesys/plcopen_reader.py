@@ -30,6 +30,11 @@ def wholes(root: Element) -> dict[str, Whole]:
     for constants in _lists(root):
         name = str(constants.attrib["name"])
         found[name] = Whole(Part("VAR_GLOBAL", name, declaration=_plain(constants, _OBJECT_TEXT)))
+    for interface in _interfaces(root):
+        name = str(interface.attrib["name"])
+        methods = interface.iterfind("p:Methods/p:Method", _IN)
+        members = [Part("METHOD", f"{name}.{one.attrib['name']}", _plain(one)) for one in methods]
+        found[name] = Whole(Part("INTERFACE", name, _plain(interface)), members)
     for pou in root.iterfind("p:types/p:pous/p:pou", _IN):
         name = pou.attrib["name"]
         own = _part(pou, _KINDS[pou.attrib["pouType"]], name, _OBJECT_TEXT)
@@ -40,6 +45,11 @@ def wholes(root: Element) -> dict[str, Whole]:
 def _lists(root: Element) -> list[Element]:
     """The lists of global variables, which are entries of the project."""
     return list(root.iterfind(f"p:addData/{_extension('globalvars')}/p:globalVars", _IN))
+
+
+def _interfaces(root: Element) -> list[Element]:
+    """The interfaces, which are entries of the project, too."""
+    return list(root.iterfind(f"p:addData/{_extension('interface')}/p:Interface", _IN))
 
 
 def folders(root: Element) -> dict[str, list[str]]:
@@ -56,6 +66,11 @@ def identifiers(root: Element) -> dict[str, str]:
     for one in (inner for holder in holders for inner in holder.iterfind(".//p:ObjectId", _IN)):
         owner = one.getparent().getparent().getparent()  # type: ignore[union-attr]
         found[owner.attrib["name"]] = one.text or ""  # type: ignore[union-attr]
+    for interface in _interfaces(root):
+        own = str(interface.attrib["name"])
+        found[own] = str(interface.attrib["ObjectId"])
+        for one in interface.iterfind("p:Methods/p:Method", _IN):
+            found[f"{own}.{one.attrib['name']}"] = str(one.attrib["ObjectId"])
     for member in root.iterfind("p:types//*[@ObjectId]", _IN):
         owner = next(a for a in member.iterancestors(f"{{{NAMESPACE}}}pou"))
         found[f"{owner.attrib['name']}.{member.attrib['name']}"] = str(member.attrib["ObjectId"])

@@ -11,7 +11,7 @@ import types
 from collections.abc import Iterator
 from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 from tests.harness.faults import StError
 from tests.harness.library import compile_st
@@ -69,6 +69,11 @@ class Container(Tree):
     def create_dut(self, name: str, type: DutType = DutType.Structure) -> Node:
         return self._add(Dut(name, type.name))
 
+    def create_interface(self, name: str, baseInterfaces: str = "__System.IQueryInterface") -> Node:
+        made = Interface(name, "INTERFACE")
+        made.textual_declaration.text = f"INTERFACE {name} EXTENDS {baseInterfaces}"
+        return self._add(made)
+
     def create_gvl(self, name: str) -> Node:
         made = GlobalVariables(name, "VAR_GLOBAL")
         made.textual_declaration.text = "VAR_GLOBAL\nEND_VAR"
@@ -107,6 +112,13 @@ class Dut(Node):
 
 class GlobalVariables(Dut):
     """A list of global variables: the name of the object is the name of the list."""
+
+
+class Interface(Dut):
+    """An interface: its methods are declarations alone."""
+
+    def create_method(self, name: str, return_type: str | None = None) -> Node:
+        return self._add(Dut(name, "METHOD"))
 
 
 class Code(Dut):
@@ -200,7 +212,8 @@ class Project(Container):
         self.is_saved = True
 
     def _compiled(self) -> Iterator[Message]:
-        nodes = [one for one in self.get_children(True) if isinstance(one, Pou) or type(one) in (Dut, GlobalVariables)]
+        wholes = (Pou, Interface, GlobalVariables)
+        nodes = [one for one in self.get_children(True) if isinstance(one, wholes) or _is_type(one)]
         try:
             compile_st({one.get_name(): composed(one) for one in nodes})
         except StError as problem:
@@ -211,9 +224,16 @@ class Project(Container):
         return Path(self.path).stem
 
 
+def _is_type(node: Node) -> TypeGuard[Dut]:
+    return type(node) is Dut and node.kind != "METHOD"
+
+
 def composed(node: Dut) -> str:
     """An object with its members as one text."""
     declared = node.textual_declaration.text
+    if isinstance(node, Interface):
+        methods = (f"{one.textual_declaration.text}\nEND_METHOD" for one in node.get_children() if isinstance(one, Dut))
+        return "\n".join((declared, *methods, "END_INTERFACE"))
     if isinstance(node, Property):
         (getter,) = (one for one in node.get_children() if one.get_name() == "Get")
         assert isinstance(getter, Code)

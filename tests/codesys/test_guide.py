@@ -12,11 +12,15 @@ import pytest
 from softkin import ArticulatedRobot6DOF, Scara2Z
 
 from derive.__main__ import OUTPUT
+from derive.description.mechanism import Role
 from derive.emit.st.contract import load
+from derive.emit.st.names import input_name
 from tests.codesys.parts import FILES, all_parts
 from tests.harness import ast
-from tests.harness.library import compile_st
+from tests.harness.library import Library, compile_st
 from tests.harness.parse import parse
+from tests.mechanisms import catalogue
+from tests.text.values import plain
 
 ROOT = OUTPUT.parent
 GUIDE = (ROOT / "docs" / "CODESYS.md").read_text(encoding="utf-8")
@@ -28,6 +32,7 @@ LENGTHS = {
     "Scara2Z": {"arm_length_1": 300.0, "arm_length_2": 250.0},
     "ArticulatedRobot6DOF": {"a2": 300.0, "d4": 250.0, "d6": 80.0},
 }
+COUPLED = (Path(__file__).parent / "coupled.st").read_text(encoding="utf-8")
 CNC = (Path(__file__).parent / "cnc.st").read_text(encoding="utf-8")
 BLOCKS = {part.path: part for part in all_parts(FILES).values() if "." not in part.path}
 
@@ -100,20 +105,70 @@ def _demo() -> tuple[Any, Any]:
 def test_every_program_of_the_guide_is_executed() -> None:
     """A new listing needs a test that runs it: these are the ones that have one."""
     heads = [program.split("\n")[0].split()[1] for program in PROGRAMS]
-    assert heads == ["PRG_Demo", "ScaraWithTool", "PRG_Check", "PRG_Cnc"]
+    assert heads == ["PRG_Demo", "ScaraWithTool", "PRG_Check", "PRG_Ask", "PRG_Cnc"]
 
 
-def test_the_line_that_asks_why() -> None:
-    """The call of `Diagnose` in the guide, behind its program, at a point that the arms miss by 50."""
-    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Check"))
-    (line,) = re.findall(r"^    (sWhy := scara\.Diagnose.*;)$", GUIDE, re.MULTILINE)
-    declared = "  sWhy : STRING(255);\n  dMissing : LREAL;\n  iTurn : INT;\n  status :"
-    text = program.replace("  status :", declared, 1)
-    far = f"frame.vT.dX := 600.0;\nframe.vT.dY := 0.0;\n{line}\nEND_PROGRAM"
-    needed = {name: t for name, t in FILES.items() if name.startswith("softkin/") or "/Softkin_Scara2_Z." in name}
-    made = compile_st({**needed, "PRG_Check": text.replace("END_PROGRAM", far)}).new("PRG_Check")
-    made()
-    assert made.sWhy == "A2: out of reach [u]" and made.dMissing == pytest.approx(50.0) and made.iTurn == 0
+def _asking(*blocks: str, **texts: str) -> tuple[Library, Any, Any]:
+    """The program that asks a group, its library, and the group, which has these blocks and is enabled."""
+    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Ask"))
+    wanted = tuple(f"/{name}." for name in blocks)
+    needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or any(name in n for name in wanted)}
+    group = "VAR_GLOBAL\n  Scara : AXIS_GROUP_REF_SM3;\nEND_VAR\n"
+    own = {"robotics": ROBOTICS, "Groups": group, "PRG_Ask": program, **texts}
+    library = compile_st({**needed, **_renamed(own)})
+    found = library.constant("Scara")
+    found.isEnabled = True
+    return library, library.new("PRG_Ask"), found
+
+
+def test_a_program_asks_the_instance_of_the_group() -> None:
+    """The program of the guide, at a point that the arms miss by 50: of the instance that the group has, with its
+    dimensions; and nothing is found in a group that has none, or whose block is replaced.
+    """
+    library, ask, group = _asking("Softkin_Scara2_Z")
+    ask()
+    assert ask.xFound is False and ask.sWhy == ""
+    arms = library.new("Softkin_Scara2_Z")
+    arms.dArmLength1, arms.dArmLength2 = 300.0, 250.0
+    assert arms.call("Initialize") == "SMC_NO_ERROR"
+    group.kinematics = arms
+    ask.frame.vT.dX, ask.axes.a1, ask.axes.a0 = 600.0, 30.0, 10.0
+    ask.data.abyData[0] = 1
+    ask()
+    assert ask.xFound and ask.sWhy == "A2: out of reach [u]" and ask.dMissing == pytest.approx(50.0) and ask.iTurn == 0
+    in_python = Scara2Z(arm_length_1=300.0, arm_length_2=250.0).singularity((10.0, 30.0, 0.0))
+    margins = list(in_python.margins.values())
+    assert ask.status == "SMC_NO_ERROR" and ask.aMargins[: ask.iMargins] == pytest.approx(margins)
+    group.isEnabled = False
+    ask.sWhy = "old"
+    ask()
+    assert ask.xFound is False and ask.sWhy == "old"
+
+
+def test_what_it_asks_changes_nothing() -> None:
+    """The instance of the group is the same after it as before."""
+    library, ask, group = _asking("Softkin_Scara2_Z")
+    arms = group.kinematics = library.new("Softkin_Scara2_Z")
+    arms.dArmLength1, arms.dArmLength2 = 300.0, 250.0
+    arms.call("Initialize")
+    names = [name for made in type(arms).__mro__ for name in getattr(made, "__slots__", ())]
+    state = [plain(getattr(arms, name)) for name in names]
+    ask()
+    assert ask.xFound and len(names) > 10 and [plain(getattr(arms, name)) for name in names] == state
+
+
+def test_a_coupled_group_is_asked_by_its_parts() -> None:
+    """The query fails in a group whose kinematics is a coupling; the block of the guide gives out its parts."""
+    (coupled,) = (p for p in PROGRAMS if p.startswith("FUNCTION_BLOCK ScaraWithTool"))
+    texts = {"coupled": COUPLED, "ScaraWithTool": coupled.replace("TRAFO.Kin_Coupled", "Kin_Coupled")}
+    library, ask, group = _asking("Softkin_Scara2_Z", "Softkin_CAxis", **texts)
+    machine = group.kinematics = library.new("ScaraWithTool")
+    machine.dArmLength1, machine.dArmLength2 = 300.0, 250.0
+    assert machine.call("Initialize") == "SMC_NO_ERROR"
+    ask()
+    assert ask.xFound is False and ask.robot is None
+    assert machine.itfArms is machine.arms and machine.itfTool is machine.tool
+    assert machine.itfArms.call("InitializeReason") == machine.itfTool.call("InitializeReason") == ""
 
 
 def test_the_demo_moves_a_group() -> None:
@@ -167,22 +222,8 @@ def test_the_demo_ends_in_its_error_step_and_begins_again(step: int) -> None:
 
 
 def test_a_coupled_block_initialises_its_parts() -> None:
-    """The block of the guide, executed on a stand-in of its base; the two lines that assign interfaces are left out."""
+    """The block of the guide, executed on a stand-in of its base, which wants both parts."""
     (program,) = (p for p in PROGRAMS if p.startswith("FUNCTION_BLOCK ScaraWithTool"))
-    assigned = re.findall(r"^itf\w+ := \w+;\n", program, re.MULTILINE)
-    assert assigned == ["itfPosKin := arms;\n", "itfOriKin := tool;\n"]
-    for line in assigned:
-        program = program.replace(line, "")
-    base = """FUNCTION_BLOCK Kin_Coupled
-VAR
-  calls : INT;
-END_VAR
-METHOD PUBLIC Initialize : SM3_Error.SMC_ERROR
-calls := calls + 1;
-Initialize := SM3_Error.SMC_ERROR.SMC_NO_ERROR;
-END_METHOD
-END_FUNCTION_BLOCK
-"""
     user = """PROGRAM User
 VAR
   machine : ScaraWithTool;
@@ -195,7 +236,7 @@ END_PROGRAM
 """
     wanted = ("/Softkin_Scara2_Z.", "/Softkin_CAxis.")
     needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or any(name in n for name in wanted)}
-    texts = {"base": base, "coupled": program.replace("TRAFO.Kin_Coupled", "Kin_Coupled"), "user": user}
+    texts = {"base": COUPLED, "coupled": program.replace("TRAFO.Kin_Coupled", "Kin_Coupled"), "user": user}
     made = compile_st({**needed, **texts}).new("User")
     made()
     assert made.status == "SMC_TRAFO_NOT_INITIALIZED" and made.machine.calls == 0
@@ -234,6 +275,48 @@ def test_g_code_on_a_position_and_an_orientation_block() -> None:
     made.setPoint.dX = 900.0  # out of reach: an error, and the last target stays
     made()
     assert made.status == "SMC_AXIS_INVERSE_TRAFO_EXCEEDING_POSLIMITS" and made.target.a0 == pytest.approx(30.0)
+
+
+ALONE = {
+    "gantry/Softkin_Gantry3": (10.0, -20.0, 30.0),
+    "parallel/Kin_P2C_Type1": (35.0, 5.0),
+    "parallel/Softkin_Delta_C": (20.0, 10.0, 15.0),
+    "articulated/Softkin_Pos_RRR": (20.0, 45.0, -30.0),
+}
+"""Blocks that stand alone, and axis values of each in its default configuration."""
+
+
+@pytest.mark.parametrize("unit", ALONE)
+def test_g_code_on_a_block_that_stands_alone(unit: str) -> None:
+    """The program of the guide without its orientation block, on blocks of other kinds: the point of the axes, and from
+    it these axes again.
+    """
+    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Cnc"))
+    name = unit.split("/")[1]
+    (mechanism,) = (m for _, m in catalogue() if m.block_name == name)
+    lengths = ", ".join(f"{input_name(p)} := {p.nominal:.6f}" for p in mechanism.parameters if p.role is not Role.FLAG)
+    for old, new in (
+        ("arms : Softkin_Scara2_Z", f"arms : {name}"),
+        ("dArmLength1 := 300.0, dArmLength2 := 250.0", lengths),
+        ("  IF status = SM3_Error.SMC_ERROR.SMC_NO_ERROR THEN\n    status := tool.Initialize();\n  END_IF\n", ""),
+        (", KinOri := tool", ""),
+        ("  tool : Softkin_CAxis;\n", ""),
+    ):
+        assert old in program
+        program = program.replace(old, new)
+    needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or n == f"{unit}.st"}
+    made = compile_st({**needed, **_renamed({"cnc": CNC, "PRG_Cnc": program})}).new("PRG_Cnc")
+    axes = ALONE[unit]
+    fields = [f"a{k}" for k in range(len(axes))]
+    for field, value in zip(fields, axes, strict=True):
+        setattr(made.actual, field, value)
+        setattr(made.toAxes.Axes, field, value)
+    made()
+    assert made.xReady and not made.toPoint.ErrorOut
+    made.setPoint._assign(made.toPoint.pi)
+    made()
+    assert made.status == "SMC_NO_ERROR"
+    assert [getattr(made.target, field) for field in fields] == pytest.approx(axes)
 
 
 def test_every_choice_it_names_exists() -> None:

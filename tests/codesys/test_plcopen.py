@@ -178,7 +178,8 @@ def test_what_the_standard_has_no_element_for() -> None:
     root = parse(ROOT / "scara/Softkin_Scara2_Z.xml")
     pou = _only(root, ".//p:pou[@name='Softkin_Scara2_Z']")
     implemented = [e.text for e in _only(pou, "p:interface//p:Inheritance")]
-    assert "TRAFO.ISMPositionKinematics_Offset2" in implemented and len(implemented) == 7
+    assert "TRAFO.ISMPositionKinematics_Offset2" in implemented and len(implemented) == 8
+    assert implemented[-1] == "ISoftkin"
     pragmas = {e.attrib["Name"]: e.attrib["Value"] for e in _only(pou, "p:interface/p:addData/p:data/p:Attributes")}
     assert pragmas == {"sm_kin_libdoc": "", "sm_kin_axes": "A1, A2, Z"}
     given = _only(pou, "p:interface/p:inputVars/p:variable[@name='dArmLength1']")
@@ -194,6 +195,24 @@ def test_what_the_standard_has_no_element_for() -> None:
     assert protected == ["Describe", "ReadInputs", "TestLimits", "FindMargins", "FindJacobian"]
     assert [e.text for e in pou.iter("{*}Extends")] == ["Softkin_Kinematics"]
     assert private == ["SolveBranch", "SolveOffsetBranch"]
+
+
+def test_an_interface_is_an_entry_of_the_project() -> None:
+    """It stands beside the types, as CODESYS writes it: methods with their typed headers and without bodies; what it
+    extends is in its text.
+    """
+    root = parse(ROOT / "scara/Softkin_Scara2_Z.xml")
+    interface = _only(root, "p:addData/p:data[@name='http://www.3s-software.com/plcopenxml/interface']/p:Interface")
+    methods = {m.attrib["name"]: m for m in interface.iterfind("{*}Methods/{*}Method")}
+    assert list(methods) == ["Diagnose", "Jacobian", "AxisVelocities", "Margins", "InitializeReason"]
+    assert not list(interface.iter("{*}body"))
+    sections = {name: [_local(e) for e in _only(m, "p:interface")] for name, m in methods.items()}
+    assert sections["Margins"] == ["returnType", "inOutVars", "inOutVars", "outputVars"]
+    assert wholes(root)["ISoftkin"].own.declaration.endswith("INTERFACE ISoftkin EXTENDS __SYSTEM.IQueryInterface")
+
+
+def _local(element: Element) -> str:
+    return etree.QName(element).localname
 
 
 def test_an_independent_class_model_reads_it() -> None:

@@ -23,6 +23,9 @@ def typed_variables(root: Element) -> dict[str, Variables]:
         found[name] = list(_interface(pou))
         for member in (*pou.iter(f"{_P}Method"), *pou.iter(f"{_P}Property")):
             found[f"{name}.{member.attrib['name']}"] = list(_interface(member))
+    for interface in root.iter(f"{_P}Interface"):
+        for method in interface.iter(f"{_P}Method"):
+            found[f"{interface.attrib['name']}.{method.attrib['name']}"] = list(_interface(method))
     for constants in root.iter(f"{_P}globalVars"):
         found[str(constants.attrib["name"])] = list(_variables(constants, "VAR_GLOBAL"))
     return found
@@ -36,6 +39,9 @@ def declared_variables(declared: ast.Declaration) -> Iterator[tuple[str, Variabl
             yield f"{declared.name}.{method.name}", [*_returned(method.returns), *_sections(method.sections)]
         for prop in declared.properties:
             yield f"{declared.name}.{prop.name}", list(_returned(prop.type))
+    elif isinstance(declared, ast.Interface):
+        for method in declared.methods:
+            yield f"{declared.name}.{method.name}", [*_returned(method.returns), *_sections(method.sections)]
     elif isinstance(declared, ast.Routine):
         yield declared.name, [*_returned(declared.returns), *_sections(declared.sections)]
     elif isinstance(declared, ast.Globals):

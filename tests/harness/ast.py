@@ -308,6 +308,19 @@ class Block(HasSections):
 
 
 @node
+class Interface:
+    """An INTERFACE: its methods have no statements."""
+
+    kind: str
+    name: str
+    extends: tuple[str, ...]
+    methods: tuple[Routine, ...]
+    pragmas: tuple[str, ...]
+    comment: str
+    at: Place
+
+
+@node
 class Structure:
     kind: str
     name: str
@@ -340,4 +353,4 @@ class Globals:
     at: Place
 
 
-Declaration = Routine | Block | Structure | Enumeration | Globals
+Declaration = Routine | Block | Interface | Structure | Enumeration | Globals

@@ -20,6 +20,7 @@ _RULES = {
     "PROGRAM": "program_declaration",
     "TYPE": "data_type_declaration",
     "VAR_GLOBAL": "global_var_declarations",
+    "INTERFACE": "interface_declaration",
     "METHOD": "function_block_method_declaration",
     "PROPERTY": "function_block_property_declaration",
 }

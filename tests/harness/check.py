@@ -3,7 +3,7 @@
 from . import ast, constants
 from . import st_types as types
 from .check_statements import Statements
-from .contract import check_contract
+from .contract import INTERFACES, check_contract
 from .conversions import fits
 from .facts import Facts, Scope
 from .faults import StError
@@ -21,6 +21,8 @@ def check(universe: Universe, declarations: list[ast.Declaration]) -> Facts:
             _check_block(universe, declaration, facts)
         elif isinstance(declaration, ast.Routine):
             check_routine(universe, declaration, None, facts)
+        elif isinstance(declaration, ast.Interface):
+            _check_interface(universe, declaration)
         elif isinstance(declaration, ast.Enumeration):
             for name, _value in declaration.members:
                 check_name(name, declaration.at)
@@ -46,6 +48,22 @@ def _check_block(universe: Universe, declaration: ast.Block, facts: Facts) -> No
         check_routine(universe, prop.getter, block, facts)
     Statements(scope, facts).check(declaration.body)
     check_contract(block)
+
+
+def _check_interface(universe: Universe, declaration: ast.Interface) -> None:
+    """An interface extends the one that a query needs, and its methods have distinct names."""
+    found = universe.find(declaration.name)
+    assert isinstance(found, types.Interface)
+    if not found.is_queryable and declaration.name not in INTERFACES:
+        raise StError(declaration.at, f"the INTERFACE {declaration.name} extends nothing that a query finds")
+    seen = {declaration.name.lower()}
+    for method in declaration.methods:
+        check_name(method.name, method.at)
+        if method.name.lower() in seen:
+            raise StError(method.at, f"duplicate name {method.name}")
+        seen.add(method.name.lower())
+        for part in (v for section in method.sections for v in section.variables):
+            check_name(part.name, part.at)
 
 
 def _check_members(block: types.Block) -> None:

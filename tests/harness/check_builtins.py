@@ -6,6 +6,7 @@ from . import ast
 from . import st_types as types
 from .conversions import common, conversion, fits
 from .faults import StError
+from .lexical import QUERY
 
 REAL_FUNCTIONS = {"SQRT", "SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "EXP", "LN"}
 _COUNTS = {"ABS": (1, 1), "TRUNC": (1, 1), "MIN": (2, 9), "MAX": (2, 9), "SEL": (3, 3), "LIMIT": (3, 3)}
@@ -13,7 +14,7 @@ _COUNTS = {"ABS": (1, 1), "TRUNC": (1, 1), "MIN": (2, 9), "MAX": (2, 9), "SEL": 
 
 def is_builtin(name: str) -> bool:
     upper = name.upper()
-    return upper in REAL_FUNCTIONS or upper in _COUNTS or upper == "SIZEOF" or conversion(upper) is not None
+    return upper in REAL_FUNCTIONS or upper in _COUNTS or upper in ("SIZEOF", QUERY) or conversion(upper) is not None
 
 
 def result_type(node: ast.Call, name: str, type_of: Callable[[ast.Expression], types.Type]) -> types.Type:

@@ -7,7 +7,8 @@ from .check_calls import bind
 from .conversions import common, fits
 from .facts import BoundCall, Facts, Scope
 from .faults import StError
-from .writes import check_write, is_place
+from .lexical import QUERY
+from .writes import check_write, is_place, root
 
 _ARITHMETIC = ("+", "-", "*", "/", "MOD")
 _LOGIC = ("AND", "OR", "XOR")
@@ -151,6 +152,8 @@ class Expressions:
             self.facts.calls[node] = BoundCall(callee, [])
             if callee.name.upper() == "SIZEOF":
                 return self._size(node)
+            if callee.name.upper() == QUERY:
+                return self._query(node)
             return result_type(node, callee.name, self.type_of)
         if isinstance(callee, types.Routine):
             bind(self, node, callee, callee.name, callee.parameters)
@@ -182,6 +185,10 @@ class Expressions:
             owner: types.Type | None = self._own_block(node).base
         else:
             owner = self.type_of(node.object)
+        if isinstance(owner, types.Interface):
+            if (offered := owner.method(node.name.lower())) is None:
+                raise StError(node.at, f"{owner.name} has no method {node.name}")
+            return offered
         if isinstance(owner, types.Block):
             found = owner.method(node.name.lower())
             own = isinstance(node.object, (ast.This, ast.Super))
@@ -193,6 +200,23 @@ class Expressions:
         if isinstance(node.object, ast.Super):
             raise StError(node.at, "SUPER needs a base block")
         return None
+
+    def _query(self, node: ast.Call) -> types.Type:
+        if len(node.arguments) != 2 or any(argument.name is not None for argument in node.arguments):
+            raise StError(node.at, f"{QUERY} takes two arguments")
+        source, target = (argument.value for argument in node.arguments)
+        given, wanted = self.type_of(source), self.type_of(target)
+        if not isinstance(given, (types.Interface, types.Block)):
+            raise StError(source.at, f"{given.name} is no reference to an interface and no block")
+        if not isinstance(wanted, types.Interface):
+            raise StError(target.at, f"{wanted.name} is no reference to an interface")
+        for interface in (given, wanted):
+            if isinstance(interface, types.Interface) and not interface.is_queryable:
+                raise StError(node.at, f"{interface.name} does not extend __SYSTEM.IQueryInterface")
+        check_write(target, self.scope, self.facts)
+        if (variable := root(target, self.facts)) is not None:
+            self.facts.boxed.add(variable)
+        return types.BOOL
 
     def _size(self, node: ast.Call) -> types.Type:
         if len(node.arguments) != 1 or node.arguments[0].name is not None:

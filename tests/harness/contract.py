@@ -36,11 +36,35 @@ def plain(type_text: str | None) -> str | None:
 
 
 def check_contract(block: types.Block) -> None:
+    own = {interface.name: interface for interface in block.interfaces if interface.name.lower() not in _BY_KEY}
     for written in block.declaration.implements:
+        if written in own:
+            _check_own(block, own[written])
+            continue
         *space, name = written.split(".")
         if name.lower() not in _BY_KEY or [part.upper() for part in space] not in ([], ["TRAFO"]):
             raise StError(block.declaration.at, f"unknown interface {written}")
         _check_interface(block, _BY_KEY[name.lower()])
+
+
+def _check_own(block: types.Block, interface: types.Interface) -> None:
+    """Every method of an interface that a text declares stands in the block or its base, with the identical header."""
+    for base in interface.bases:
+        _check_own(block, base)
+    for key, wanted in interface.methods.items():
+        found = block.method(key)
+        if found is None:
+            raise StError(block.declaration.at, f"{block.name} lacks the method {wanted.name} of {interface.name}")
+        if found.declaration.access != "PUBLIC":
+            raise StError(found.declaration.at, f"{interface.name}.{wanted.name} must be public")
+        if header(found.declaration) != header(wanted.declaration):
+            raise StError(found.declaration.at, f"the header of {wanted.name} is not that of {interface.name}")
+
+
+def header(method: ast.Routine) -> tuple[object, ...]:
+    """What is the same in every block: the name, what it returns, and its parameters in their order."""
+    returns = None if method.returns is None else method.returns.text
+    return method.name, returns, *((p.scope, p.name, p.type) for p in method.params)
 
 
 def _check_interface(block: types.Block, name: str) -> None:

@@ -11,6 +11,8 @@ def fits(given: types.Type, wanted: types.Type) -> bool:
     """Whether a value of the given type may be assigned to the wanted type."""
     if given == wanted:
         return not isinstance(given, types.NoResult)
+    if isinstance(wanted, types.Interface):
+        return _refers(given, wanted)
     if isinstance(given, types.IntegerLiteral):
         if isinstance(wanted, types.Integer):
             return wanted.low <= given.value <= wanted.high
@@ -22,6 +24,13 @@ def fits(given: types.Type, wanted: types.Type) -> bool:
     if isinstance(given, types.Address) and isinstance(wanted, types.Pointer):
         return _memory_of_reals(given.of) and _memory_of_reals(wanted.target)
     return False
+
+
+def _refers(given: types.Type, wanted: types.Interface) -> bool:
+    """Whether a value can be a reference to that interface."""
+    if isinstance(given, types.Block):
+        return wanted in given.implemented()
+    return isinstance(given, types.Interface) and wanted in given.all()
 
 
 def _memory_of_reals(of: types.Type) -> bool:

@@ -95,6 +95,7 @@ class Instance:
     origin: Origin
     routines: dict[str, Entry]
     cells: frozenset[str] = frozenset()  # the scalar in-outs
+    implemented: frozenset[str] = frozenset()  # the interfaces, in small letters
 
     def call(self, name: str, /, **given: Any) -> Any:
         """Call a method; in-outs are changed in place, outputs are dropped."""

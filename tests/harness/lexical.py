@@ -30,12 +30,15 @@ REFUSED_WORDS = {
     "JMP",
     "REPEAT",
     "GOTO",
-    "INTERFACE",
     "UNION",
     "VAR_STAT",
     "VAR_INST",
     "VAR_TEMP",
 }
+QUERY = "__QUERYINTERFACE"
+"""The operator that finds an interface of an object: for programs of a user, beyond the portable subset."""
+SYSTEM = "__SYSTEM"
+"""The namespace of the interface that a query needs: the head of an interface alone names it."""
 
 
 class Token(NamedTuple):
@@ -64,7 +67,9 @@ def tokens(text: str) -> tuple[Token, ...]:
 
 def refuse_words(text: str, file: str) -> None:
     """Raise StError for what the dialect excludes whatever its place."""
+    head = 0
     for token in tokens(text):
+        head = token.line if token.word == "INTERFACE" else head
         at = Place(file, token.line)
         if token.kind == "comment" and "(*" in token.text[2:] and token.text[0] == "(":
             raise StError(at, "nested comment")
@@ -72,5 +77,6 @@ def refuse_words(text: str, file: str) -> None:
             raise StError(at, "the operator ** is not part of the dialect")
         if token.word in REFUSED_WORDS:
             raise StError(at, f"{token.text} is not part of the dialect")
-        if token.word and "__" in token.word:
+        is_known = token.word == QUERY or (token.word == SYSTEM and token.line == head)
+        if token.word and "__" in token.word and not is_known:
             raise StError(at, f"double underscore in the name {token.text}")

@@ -11,7 +11,7 @@ from itertools import count
 from types import CodeType
 from typing import Any
 
-from . import ast, python_names, stubs
+from . import ast, library_interfaces, python_names, stubs
 from . import st_types as types
 from .check import check
 from .check_expressions import block_parameters
@@ -94,7 +94,8 @@ def _declarations(text: str, file: str) -> tuple[ast.Declaration, ...]:
 
 @lru_cache
 def _stub_declarations(max_config_data: int) -> dict[str, tuple[ast.Declaration, ...]]:
-    return {space: tuple(parse(text, space)) for space, text in stubs.texts(max_config_data).items()}
+    found = {space: tuple(parse(text, space)) for space, text in stubs.texts(max_config_data).items()}
+    return found | {"TRAFO": (*found["TRAFO"], *library_interfaces.declared())}
 
 
 class Library:

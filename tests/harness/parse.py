@@ -31,6 +31,8 @@ def _object(piece: Piece, file: str) -> list[ast.Declaration]:
         ]
     if piece.kind == "FUNCTION":
         return [_routine(tree, node, piece, "FUNCTION")]
+    if piece.kind == "INTERFACE":
+        return [_interface(tree, node, piece, file)]
     return [_block(tree, node, piece, file)]
 
 
@@ -88,12 +90,35 @@ def _property(tree: Tree, node: Node, piece: Piece) -> ast.PropertyDeclaration:
     return ast.PropertyDeclaration(name, access, returns, getter, piece.pragmas, piece.comment, tree.at(node))
 
 
+def _interface(tree: Tree, node: Node, piece: Piece, file: str) -> ast.Interface:
+    methods = []
+    for member in piece.members:
+        method = _routine(*_wrapped(member, file), member, "METHOD")
+        if member.kind != "METHOD" or method.body or method.access:
+            raise tree.refuse(node, f"{method.name} must be a method without a body and without an access")
+        methods.append(method)
+    return ast.Interface(
+        piece.kind,
+        tree.text(field(node, "name")),
+        tuple(tree.text(child) for child in fields(node, "extends")),
+        tuple(methods),
+        piece.pragmas,
+        piece.comment,
+        tree.at(node),
+    )
+
+
+def _wrapped(member: Piece, file: str) -> tuple[Tree, Node]:
+    """The tree of a member, and its node: that after the name of the wrapping block."""
+    tree = grow(member, file)
+    return tree, named(named(tree.root)[0])[1]
+
+
 def _block(tree: Tree, node: Node, piece: Piece, file: str) -> ast.Block:
     methods: list[ast.Routine] = []
     properties: list[ast.PropertyDeclaration] = []
     for member in piece.members:
-        member_tree = grow(member, file)
-        member_node = named(named(member_tree.root)[0])[1]  # after the name of the wrapping block
+        member_tree, member_node = _wrapped(member, file)
         if member.kind == "METHOD":
             methods.append(_routine(member_tree, member_node, member, "METHOD"))
         else:

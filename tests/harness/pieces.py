@@ -13,9 +13,11 @@ _OBJECTS = {
     "FUNCTION_BLOCK": "END_FUNCTION_BLOCK",
     "FUNCTION": "END_FUNCTION",
     "PROGRAM": "END_PROGRAM",
+    "INTERFACE": "END_INTERFACE",
     "TYPE": "END_TYPE",
     "VAR_GLOBAL": "END_VAR",
 }
+_HOLDERS = ("FUNCTION_BLOCK", "INTERFACE")
 _MEMBERS = {"METHOD": "END_METHOD", "PROPERTY": "END_PROPERTY"}
 
 
@@ -83,7 +85,7 @@ class _Splitter:
         frame = ""
         kept_from = opening.start
         while (token := self._significant()) is not None and token.word != closing:
-            if opening.word == "FUNCTION_BLOCK" and token.word in _MEMBERS:
+            if opening.word in _HOLDERS and token.word in _MEMBERS:
                 lead_start = min([t.start for t in self.before], default=token.start)
                 member, end = self._member(token)
                 members.append(member)

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from .lexical import Token, tokens
+from .lexical import SYSTEM, Token, tokens
 from .names import C_MACROS, KEYWORDS
 
 # Operators, statements and sections that are of one dialect, or mean different things in two of them.
@@ -62,11 +62,13 @@ def _comments(found: Sequence[Token]) -> Iterator[Violation]:
 
 def _words(code: Sequence[Token]) -> Iterator[Violation]:
     owner = ""
+    is_interface = bool(code) and code[0].word == "INTERFACE"
     for before, token in zip([None, *code], code, strict=False):
         word = token.word
         if before is not None and before.word in ("FUNCTION", "FUNCTION_BLOCK"):
             owner = token.text
-        if (word in FORBIDDEN and (word, owner) != ("VAR_GLOBAL", "")) or token.kind == "power":
+        is_object = word == "VAR_GLOBAL" and not owner or token is code[0] and is_interface
+        if (word in FORBIDDEN and not is_object) or token.kind == "power":
             yield Violation(token.line, f"{token.text} is not portable")
         is_base = token.text == "^" and before is not None and before.word in ("SUPER", "THIS")
         if (word in _MEMORY or token.text == "^") and owner not in _HELPERS and not is_base:
@@ -74,7 +76,8 @@ def _words(code: Sequence[Token]) -> Iterator[Violation]:
         is_member = before is not None and before.text == "."
         if word in _WORDS and token.text != word and not is_member:
             yield Violation(token.line, f"{token.text}: a word of the language is written in capitals")
-        if "__" in word:
+        is_extended = is_interface and before is not None and before.word == "EXTENDS"
+        if "__" in word and (word, is_extended) != (SYSTEM, True):
             yield Violation(token.line, f"{token.text}: two underscores")
         if token.text in ("#", "%"):
             yield Violation(token.line, f"{token.text}: a typed literal or an address")

@@ -208,6 +208,21 @@ def selected(choice: bool, if_false: Any, if_true: Any) -> Any:
     return if_true if choice else if_false
 
 
+# ---- references to interfaces --------------------------------------------------------------
+def referred(instance: Any) -> Any:
+    """The instance that an interface refers to."""
+    if instance is None:
+        raise StFault("a call through an interface that refers to nothing")
+    return instance
+
+
+def query(source: Any, target: Any, name: str) -> bool:
+    """Let the target refer to the instance where it implements the interface of that name, else to nothing."""
+    is_found = source is not None and name in source.implemented
+    target.value = source if is_found else None
+    return is_found
+
+
 ENVIRONMENT: dict[str, Any] = {
     item.__name__: item
     for item in (
@@ -232,5 +247,7 @@ ENVIRONMENT: dict[str, Any] = {
         minimum,
         maximum,
         selected,
+        referred,
+        query,
     )
 } | {"math": math}

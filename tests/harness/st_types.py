@@ -116,10 +116,30 @@ class Enum:
 
 
 @dataclass(eq=False)
+class Interface:
+    """A variable of such a type refers to an instance of a block, or to nothing."""
+
+    name: str
+    is_queryable: bool
+    """Whether it extends the interface that a query needs."""
+    bases: tuple[Interface, ...] = ()
+    methods: dict[str, Routine] = field(default_factory=dict)
+
+    def method(self, name: str) -> Routine | None:
+        found = self.methods.get(name)
+        return found or next((m for m in (base.method(name) for base in self.bases) if m is not None), None)
+
+    def all(self) -> frozenset[Interface]:
+        """The interface and all it extends."""
+        return frozenset({self}).union(*(base.all() for base in self.bases))
+
+
+@dataclass(eq=False)
 class Block:
     name: str
     declaration: ast.Block
     base: Block | None = None
+    interfaces: tuple[Interface, ...] = ()
     variables: dict[str, Variable] = field(default_factory=dict)
     methods: dict[str, Routine] = field(default_factory=dict)
     properties: dict[str, Property] = field(default_factory=dict)
@@ -132,6 +152,11 @@ class Block:
 
     def property(self, name: str) -> Property | None:
         return self.properties.get(name) or (self.base.property(name) if self.base else None)
+
+    def implemented(self) -> frozenset[Interface]:
+        """The interfaces that it implements, with those that they extend and those of its base."""
+        inherited = self.base.implemented() if self.base else frozenset()
+        return inherited.union(*(interface.all() for interface in self.interfaces))
 
     def is_a(self, other: Block) -> bool:
         return self is other or (self.base is not None and self.base.is_a(other))
@@ -150,6 +175,7 @@ Type = (
     | NoResult
     | Struct
     | Enum
+    | Interface
     | Block
 )
 
@@ -229,6 +255,7 @@ class Routine:
     parameters: tuple[Variable, ...]
     block: Block | None = None
     namespace: str = ""
+    interface: Interface | None = None
 
 
 @dataclass(eq=False)

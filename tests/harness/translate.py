@@ -80,6 +80,7 @@ class _Translator:
         add(f"class {python_names.type_class(block)}({base}):", block.declaration.at)
         self.source.depth += 1
         add(f"__slots__ = {tuple(python_names.attribute(v.name) for v in block.variables.values())!r}")
+        add(f"implemented = frozenset({sorted(one.name.lower() for one in block.implemented())!r})")
         add("def __init__(self):")
         add("    super().__init__()")
         for variable in block.variables.values():

@@ -14,6 +14,7 @@ from .conversions import conversion
 from .facts import BoundCall, Facts, Scope
 from .faults import StError
 from .initial_values import initial, is_inlined, literal
+from .lexical import QUERY
 
 _COMPARISONS = {"=": "==", "<>": "!=", "<": "<", "<=": "<=", ">": ">", ">=": ">="}
 _LOGIC = {"AND": "&", "OR": "|", "XOR": "^"}  # these evaluate both sides, as Structured Text does
@@ -206,14 +207,16 @@ class Expressions:
         assert isinstance(bound.callee, types.Routine)
         arguments = self.arguments(bound)
         routine = bound.callee
-        if routine.block is None:
+        if routine.block is None and routine.interface is None:
             return f"{python_names.function(routine)}({', '.join(arguments)})"
         name = python_names.method(routine.name)
         owner = node.function.object if isinstance(node.function, ast.Member) else None
         if isinstance(owner, ast.Super):
             base = routine.block
+            assert base is not None
             return f"{python_names.type_class(base)}.{name}({', '.join(['self', *arguments])})"
         instance = "self" if owner is None else self.value(owner)
+        instance = instance if routine.interface is None else f"referred({instance})"
         return f"{instance}.{name}({', '.join(arguments)})"
 
     def arguments(self, bound: BoundCall) -> list[str]:
@@ -236,6 +239,10 @@ class Expressions:
         pair = conversion(name)
         if pair is not None:
             return self._conversion(self.value(node.arguments[0].value, pair[0]), *pair)
+        if name == QUERY:
+            source, target = (argument.value for argument in node.arguments)
+            wanted = self.facts.type_of[target].name.lower()
+            return f"query({self.value(source)}, {self.reference(target)}, {wanted!r})"
         given = ", ".join(self.value(argument.value, of) for argument in node.arguments)
         if name == "ABS":
             return f"abs({given})" if of == types.LREAL else self._in_range(f"abs({given})", of)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from . import ast, constants
 from . import st_types as types
 from .faults import Place, StError
+from .lexical import SYSTEM
 
 LIBRARIES = ("TRAFO", "SM3M", "SM3_Error")
 
@@ -14,6 +15,8 @@ class Universe:
         self.spaces: dict[str, types.Namespace] = {"": types.Namespace("", {})}
         for name in LIBRARIES:
             self.spaces[name.lower()] = types.Namespace(name, {})
+        query = types.Interface("IQueryInterface", is_queryable=True)
+        self.spaces[SYSTEM.lower()] = types.Namespace(SYSTEM, {query.name.lower(): query})
         self.globals: list[types.Variable] = []
 
     # ---- finding -----------------------------------------------------------------------
@@ -80,7 +83,7 @@ class Universe:
         """Declare a batch: first all names, then what they consist of, so order does not matter."""
         for declaration in declarations:
             self._announce(declaration, space)
-        for kind in (ast.Globals, ast.Structure, ast.Routine, ast.Block):
+        for kind in (ast.Globals, ast.Structure, ast.Interface, ast.Routine, ast.Block):
             for declaration in declarations:
                 if isinstance(declaration, kind):
                     self._complete(declaration, space)
@@ -91,6 +94,8 @@ class Universe:
             self.declare(space, name, types.Struct(name, space), at)
         elif isinstance(declaration, ast.Enumeration):
             self.declare(space, name, _enum(declaration, space), at)
+        elif isinstance(declaration, ast.Interface):
+            self.declare(space, name, types.Interface(name, is_queryable=False), at)
         elif isinstance(declaration, ast.Block):
             self.declare(space, name, types.Block(name, declaration), at)
 
@@ -106,6 +111,10 @@ class Universe:
                 struct.fields[part.name.lower()] = types.Variable(
                     part.name, self.type_of(part.type), "FIELD", initial=part.initial
                 )
+        elif isinstance(declaration, ast.Interface):
+            interface = self.spaces[space.lower()].entries[declaration.name.lower()]
+            assert isinstance(interface, types.Interface)
+            self._complete_interface(interface, declaration)
         elif isinstance(declaration, ast.Routine):
             routine = self.routine(declaration, None)
             routine.namespace = space
@@ -127,8 +136,22 @@ class Universe:
             self.globals.append(variable)
             self.declare(target, part.name, variable, part.at)
 
+    def _complete_interface(self, interface: types.Interface, written: ast.Interface) -> None:
+        for base in written.extends:
+            found = self.find_path(base)
+            if not isinstance(found, types.Interface):
+                raise StError(written.at, f"unknown interface {base}")
+            interface.bases += (found,)
+            interface.is_queryable = interface.is_queryable or found.is_queryable
+        for method in written.methods:
+            routine = self.routine(method, None)
+            routine.interface = interface
+            interface.methods.setdefault(method.name.lower(), routine)
+
     def _complete_block(self, block: types.Block) -> None:
         written = block.declaration
+        implemented = (self.find_path(name) for name in written.implements)
+        block.interfaces = tuple(one for one in implemented if isinstance(one, types.Interface))
         if written.extends is not None:
             base = self.find_path(written.extends)
             if not isinstance(base, types.Block):

@@ -73,7 +73,8 @@ def unused(declared: ast.Declaration) -> Iterator[str]:
     elif isinstance(declared, ast.Block):
         routines = [*declared.methods, *(p.getter for p in declared.properties)]
         inside = _Uses.of(declared.body, *(r.body for r in routines))
-        is_base = declared.extends is None and any(r.access == "PROTECTED" for r in routines)
+        has_supplied = any(r.access == "PROTECTED" for r in routines)
+        is_base = has_supplied and declared.extends is None and not declared.implements
         if not is_base:
             yield from _left(declared.sections, inside, declared.name, ("VAR", "VAR_INPUT", "VAR_IN_OUT"))
         for routine in routines:

@@ -12,7 +12,8 @@ import pytest
 from derive.__main__ import OUTPUT
 from derive.emit.st.contract import load
 from tests.harness import ast
-from tests.harness.contract import INTERFACES, plain
+from tests.harness.contract import INTERFACES, header, plain
+from tests.harness.faults import StError
 from tests.harness.library import Library, compile_st
 
 FILES = {
@@ -69,7 +70,8 @@ def test_the_contract_data_agrees_with_the_stand_ins(name: str) -> None:
 def test_methods_are_those_of_the_contract(file: str) -> None:
     """A block has exactly the methods of its interfaces and its own, with the documented signatures."""
     block = blocks()[file]
-    interfaces = list(CONTRACT.closure([name.removeprefix("TRAFO.") for name in block.implements]))
+    assert block.implements[-1] == "ISoftkin"
+    interfaces = list(CONTRACT.closure([name.removeprefix("TRAFO.") for name in block.implements[:-1]]))
     wanted = {m: s for i in interfaces for m, s in i.methods.items()} | dict(CONTRACT.own)
     base = library().objects["Softkin_Kinematics"]
     inherited = {m.name: m for m in base.methods if m.access == "PUBLIC"}
@@ -93,14 +95,49 @@ def test_every_block_supplies_what_the_base_calls(file: str) -> None:
     """
     block, base = blocks()[file], library().objects["Softkin_Kinematics"]
     assert block.extends == base.name
-    supplied = {m.name: _header(m) for m in base.methods if m.access == "PROTECTED"}
-    assert supplied == {m.name: _header(m) for m in block.methods if m.access == "PROTECTED"}
+    supplied = {m.name: header(m) for m in base.methods if m.access == "PROTECTED"}
+    assert supplied == {m.name: header(m) for m in block.methods if m.access == "PROTECTED"}
     assert set(supplied) == set(CONTRACT.supplied)
 
 
-def _header(method: ast.Routine) -> tuple[object, ...]:
-    returns = None if method.returns is None else method.returns.text
-    return method.name, method.access, returns, [(p.scope, p.name, p.type) for p in method.params]
+def test_the_interface_has_our_own_methods() -> None:
+    """Methods alone, those of the contract, with the headers that every block has: the check of types compares them."""
+    interface = library().objects["ISoftkin"]
+    assert isinstance(interface, ast.Interface) and interface.extends == ("__SYSTEM.IQueryInterface",)
+    assert {m.name: header(m) for m in interface.methods} == {
+        name: (name, s.returns, *((p.scope, p.name, p.type) for p in s.parameters)) for name, s in CONTRACT.own.items()
+    }
+    assert set(CONTRACT.own) == {"Diagnose", "Jacobian", "AxisVelocities", "Margins", "InitializeReason"}
+
+
+SCARA = "scara/Softkin_Scara2_Z.st"
+INTERFACE, BASE = "softkin/ISoftkin.st", "softkin/Softkin_Kinematics.st"
+WRONG_HEADERS = {
+    "a method more": (
+        INTERFACE, "METHOD InitializeReason", "METHOD Explain : BOOL\nEND_METHOD\n\nMETHOD InitializeReason",
+        "Softkin_Scara2_Z lacks the method Explain of ISoftkin",
+    ),
+    "another access": (BASE, "METHOD PUBLIC Margins", "METHOD PROTECTED Margins", "ISoftkin.Margins must be public"),
+    "another name": (INTERFACE, "  iTurn : INT;", "  iPeriod : INT;", "the header of Diagnose is not that of ISoftkin"),
+    "another type": (INTERFACE, "aMargins : ARRAY[0..7]", "aMargins : ARRAY[0..8]", "the header of Margins"),
+    "another result": (INTERFACE, "InitializeReason : STRING(255)", "InitializeReason : STRING(80)", "the header of"),
+    "another order": (
+        INTERFACE, "  aTwist : ARRAY[0..5] OF LREAL;\n  a : TRAFO.AXISPOS_REF;",
+        "  a : TRAFO.AXISPOS_REF;\n  aTwist : ARRAY[0..5] OF LREAL;", "the header of AxisVelocities",
+    ),
+    "another base": (INTERFACE, " EXTENDS __SYSTEM.IQueryInterface", "", "extends nothing that a query finds"),
+    "a base that is not there": (INTERFACE, "__SYSTEM.IQueryInterface", "__SYSTEM.IQuery", "unknown interface"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WRONG_HEADERS)
+def test_another_header_is_refused(case: str) -> None:
+    """A block whose method is not that of the interface does not compile."""
+    file, old, new, message = WRONG_HEADERS[case]
+    texts = {name: text for name, text in FILES.items() if name.startswith("softkin/") or name == SCARA}
+    assert old in texts[file]
+    with pytest.raises(StError, match=message):
+        compile_st({**texts, file: texts[file].replace(old, new)})
 
 
 def test_the_base_is_an_ordinary_block() -> None:
@@ -154,7 +191,7 @@ def test_the_kinds_of_the_vendors_parts() -> None:
 def test_two_blocks_implement_everything() -> None:
     """Two blocks together implement every interface of the contract."""
     files = ("scara/Kin_Scara4_ZCcoupled_Type1.st", "orientation/Softkin_Wrist3.st")
-    names = [name.removeprefix("TRAFO.") for file in files for name in blocks()[file].implements]
+    names = [name.removeprefix("TRAFO.") for file in files for name in blocks()[file].implements[:-1]]
     assert set(CONTRACT.interfaces) == {i.name for i in CONTRACT.closure(names)}
 
 
@@ -177,7 +214,7 @@ def test_names_of_objects_are_unique_ignoring_case() -> None:
     """No two objects have the same name in upper or lower case, and all have a prefix."""
     names = [name.lower() for name in library().objects]
     assert len(names) == len(set(names))
-    assert all(name.startswith(("softkin_", "kin_", "mc_kin_", "prg_softkin")) for name in names)
+    assert all(name.startswith(("softkin_", "kin_", "mc_kin_", "prg_softkin", "isoftkin")) for name in names)
 
 
 @pytest.mark.parametrize("file", UNITS)

@@ -97,6 +97,25 @@ def test_a_list_of_global_constants_has_the_name_that_it_is_given() -> None:
         objects_of(text)
 
 
+def test_an_interface_has_declarations_alone() -> None:
+    """Its methods have no implementation, and no ruler for one; what it extends is read from its head."""
+    head = "// What\nINTERFACE IAsk EXTENDS __SYSTEM.IQueryInterface"
+    run = "METHOD Run : BOOL\nVAR_INPUT\n  x : INT;\nEND_VAR\nEND_METHOD"
+    (found,) = objects_of(f"{head}\n\n{run}\n\nMETHOD Stop\nEND_METHOD\nEND_INTERFACE\n")
+    assert (found.kind, found.name, found.implementation) == ("INTERFACE", "IAsk", "")
+    assert declaration_of(found.declaration).extends == "__SYSTEM.IQueryInterface"
+    first, stop = found.members
+    assert first == Object("METHOD", "Run", "METHOD Run : BOOL\nVAR_INPUT\n  x : INT;\nEND_VAR", "")
+    assert declaration_of(first.declaration).returns == "BOOL" and stop.declaration == "METHOD Stop"
+    titles = [line.strip("/= ") for line in ruled([found]).split("\n") if line.startswith("// ====")]
+    assert [one for one in titles if one] == [
+        "INTERFACE IAsk: declaration",
+        "METHOD IAsk.Run: declaration",
+        "METHOD IAsk.Stop: declaration",
+    ]
+    assert ruled([found]).endswith("\nEND_INTERFACE\n")
+
+
 def test_rulers_are_all_that_is_added() -> None:
     """The rulers are the only lines that are added to a text."""
     text = ruled(objects_of(TEXT))

@@ -75,6 +75,13 @@ PLANTED = {
     "an address taken elsewhere": ("x := y;", "x := ADR(y);", "ADR outside the helpers"),
     "small letters": ("x := y;", "if x > y THEN", "capitals"),
     "two underscores": ("x := y;", "x := y__z;", "two underscores"),
+    "a query": ("x := y;", "b := __QUERYINTERFACE(x, y);", "__QUERYINTERFACE: two underscores"),
+    "the interface of the system": ("x : LREAL;", "x : __SYSTEM.IQueryInterface;", "__SYSTEM: two underscores"),
+    "an interface behind something": (
+        "END_FUNCTION\n",
+        "END_FUNCTION\nINTERFACE I EXTENDS __SYSTEM.IQueryInterface\nEND_INTERFACE\n",
+        "INTERFACE is not portable",
+    ),
     "a typed literal": ("x := y;", "x := LREAL#1.0;", "typed literal"),
     "an exponent without a point": ("x := y;", "x := 1E9;", "no point"),
     "a number in groups": ("x := y;", "x := 1_000.0;", "underscore"),
@@ -108,6 +115,14 @@ def test_the_lint_sees(case: str) -> None:
     assert old in _BODY and lint(_BODY) == []
     found = lint(_BODY.replace(old, new, 1))
     assert any(why in one.why for one in found), found
+
+
+def test_the_head_of_an_interface_alone_names_the_system() -> None:
+    """Nothing else in an interface does."""
+    text = "INTERFACE I EXTENDS __SYSTEM.IQueryInterface\nMETHOD M\nVAR_INPUT\n  x : LREAL;\nEND_VAR\nEND_METHOD\n"
+    assert lint(text) == []
+    assert [one.line for one in lint(text.replace("x : LREAL", "x : __SYSTEM.IQueryInterface"))] == [4]
+    assert [one.why for one in lint(text.replace("__SYSTEM", "__SYS"))] == ["__SYS: two underscores"]
 
 
 def test_a_violation_names_its_line() -> None:

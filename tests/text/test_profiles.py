@@ -70,7 +70,9 @@ def test_an_older_library_gets_the_predecessors() -> None:
     assert {f"TRAFO.{name}" for name in LEFT_OUT} <= set(current.implements)
     assert [name for name in older.implements if name.removeprefix("TRAFO.") in LEFT_OUT] == []
     assert "TRAFO.ISMKinematicWithConfigurations3" in older.implements
-    assert len(older.implements) == len(current.implements) - 3
+    assert current.implements[-1] == "ISoftkin" and "ISoftkin" not in older.implements
+    assert len(older.implements) == len(current.implements) - 4
+    assert "softkin/ISoftkin.st" not in rendered("before_4_11")
 
 
 def test_the_methods_of_what_is_left_out_are_left_out() -> None:
@@ -125,6 +127,15 @@ def test_plcopen_follows_the_profile() -> None:
     assert not any(name in text for name in LEFT_OUT)
 
 
+def test_profiles_are_joined() -> None:
+    """The oldest of their libraries, what any of them leaves out, and flat where one of them is."""
+    both, older, flat = contract("before_4_11+flat"), contract("before_4_11"), contract("flat")
+    assert both.is_flat and flat.is_flat and not older.is_flat and not contract(None).is_flat
+    assert both.omits == older.omits and flat.omits == frozenset() == contract("flat+current").omits
+    with pytest.raises(ValueError, match="no profile is called 'round'"):
+        contract("flat+round")
+
+
 def test_the_oldest_documented_library_has_them_all() -> None:
     """The oldest documented library has every interface."""
     assert contract("4.11").omits == contract(None).omits == frozenset()
@@ -171,7 +182,7 @@ def test_an_unknown_profile_is_refused_at_once(
     arguments = [command, "--output", str(tmp_path / "out"), "--profile", "4.99"]
     assert main(arguments) == 1
     printed = capsys.readouterr()
-    assert printed.err == "error: no profile is called '4.99'; there are current, 4.11, before_4_11\n"
+    assert printed.err == "error: no profile is called '4.99'; there are current, 4.11, before_4_11, flat\n"
     assert printed.out == "", "before anything is derived"
 
 

@@ -73,6 +73,11 @@ def _words(drawing: Drawing, shown: Sequence[Choice], names: Mapping[str, str]) 
     hidden = ", ".join(spelled(label, names) for label in drawing.scene.hidden)
     if hidden:
         yield f"Zero here: {hidden}."
+    for k, choice in enumerate(drawing.choices):
+        if choice in shown and choice.assemblies is not None:
+            pairs = zip((1, 2), choice.names, choice.assemblies, strict=True)
+            each = ", ".join(f"{byte} {name} in the assembly {mode}" for byte, name, mode in pairs)
+            yield f"Byte {k}, {choice.name}: {each}; no two in one were found."
     others = [
         f"byte {k}, {c.name}: 1 {c.names[0]}, 2 {c.names[1]}" for k, c in enumerate(drawing.choices) if c not in shown
     ]

@@ -14,7 +14,7 @@ _SECTION = re.compile(r"(VAR\w*|STRUCT)( CONSTANT)?")
 _ENDS = ("END_VAR", "END_STRUCT")
 _VARIABLE = re.compile(r"  (\w+(?:, \w+)*) : ([^:;]+?)(?: := ([^;]+))?;(?:  // (.*))?")
 _HEAD = re.compile(
-    r"(?:FUNCTION_BLOCK|FUNCTION|PROGRAM|METHOD(?: PUBLIC| PRIVATE| PROTECTED)?|PROPERTY(?: PUBLIC)?) \w+"
+    r"(?:FUNCTION_BLOCK|FUNCTION|PROGRAM|INTERFACE|METHOD(?: PUBLIC| PRIVATE| PROTECTED)?|PROPERTY(?: PUBLIC)?) \w+"
     r"(?: EXTENDS ([\w.]+))?(?: : (.+)| IMPLEMENTS)?"
 )
 _ENUMERATOR = re.compile(r"  (\w+)(?: := (\d+))?,?")

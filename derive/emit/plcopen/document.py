@@ -43,12 +43,14 @@ def document(title: str, remark: str, folders: Folders) -> str:
     for one in objects:
         if one.kind == "TYPE":
             _data_type(data_types, one)
-        elif one.kind != "VAR_GLOBAL":
+        elif one.kind in _POU_TYPES:
             _pou(pous, one)
     ET.SubElement(ET.SubElement(root, "instances"), "configurations")
     for one in objects:
         if one.kind == "VAR_GLOBAL":
             _global_constants(add_data(root, "globalvars"), one)
+        elif one.kind == "INTERFACE":
+            _interface(add_data(root, "interface"), one)
     structure = ET.SubElement(add_data(root, "projectstructure", "discard"), "ProjectStructure")
     _structure(ET.SubElement(structure, "Folder", Name=title), folders)
     _indent(root)
@@ -93,6 +95,23 @@ def _global_constants(parent: ET.Element, one: Object) -> None:
     _text_and_identifier(element, one)
 
 
+def _interface(parent: ET.Element, one: Object) -> None:
+    """An interface, which the standard does not have: what it extends stands in its text alone."""
+    element = ET.SubElement(parent, "Interface", name=one.name, ObjectId=_identifier(one.name))
+    methods = ET.SubElement(element, "Methods")
+    for member in one.members:
+        method = ET.SubElement(methods, "Method", name=member.name, ObjectId=_identifier(one.name, member.name))
+        add_interface(method, declaration_of(member.declaration))
+        _own_text(method, member)
+    _own_text(element, one)
+
+
+def _own_text(element: ET.Element, one: Object) -> None:
+    """The text of a declaration that CODESYS reads in the object itself."""
+    add_text(ET.SubElement(element, "InterfaceAsPlainText"), one.declaration)
+    ET.SubElement(element, "addData")
+
+
 def _pou(parent: ET.Element, one: Object) -> None:
     element = ET.SubElement(parent, "pou", name=one.name, pouType=_POU_TYPES[one.kind])
     add_interface(element, declaration_of(one.declaration))
@@ -113,8 +132,7 @@ def _method(parent: ET.Element, one: Object, owner: Object) -> None:
         if f"METHOD {access.upper()} {one.name}" in one.declaration:
             ET.SubElement(add_data(interface, "accessmodifiers"), "AccessModifiers", {access: "true"})
     _body(element, one)
-    add_text(ET.SubElement(element, "InterfaceAsPlainText"), one.declaration)
-    ET.SubElement(element, "addData")
+    _own_text(element, one)
 
 
 def _property(parent: ET.Element, one: Object, owner: Object) -> None:

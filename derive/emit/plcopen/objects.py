@@ -11,10 +11,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 _OPENING = re.compile(
-    r"(FUNCTION_BLOCK|FUNCTION|PROGRAM|TYPE|VAR_GLOBAL|METHOD|PROPERTY|GET)\b"
+    r"(FUNCTION_BLOCK|FUNCTION|PROGRAM|INTERFACE|TYPE|VAR_GLOBAL|METHOD|PROPERTY|GET)\b"
     r"(?: PUBLIC| PRIVATE| PROTECTED| CONSTANT)? *(\w*)"
 )
-_HOLDERS = ("FUNCTION_BLOCK", "PROGRAM", "PROPERTY")
+_HOLDERS = ("FUNCTION_BLOCK", "PROGRAM", "INTERFACE", "PROPERTY")
 _WHOLE = {"TYPE": "END_TYPE", "VAR_GLOBAL": "END_VAR"}
 """The objects that are a declaration alone, with the line that ends it."""
 _RULER_WIDTH = 110

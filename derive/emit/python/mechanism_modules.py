@@ -9,7 +9,6 @@ from typing import Any
 from derive.emit.python import entries, setup
 from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in, values_of_a_row
 from derive.emit.python.calls import every_root
-from derive.emit.python.finish import Function
 from derive.emit.python.methods import (
     branch,
     differential,
@@ -24,7 +23,8 @@ from derive.emit.python.printer import ScalarPrinter, primitives_in
 from derive.emit.python.program import Method, constants_of, has_search, scalar_body, unpacked
 from derive.emit.python.refusal import explained
 from derive.emit.python.runtime import templates
-from derive.emit.python.unrolled import (
+from derive.emit.python.straight_line.finish import Function
+from derive.emit.python.straight_line.unrolled import (
     Unrolled,
     can_be_unrolled,
     has_folds,

@@ -17,9 +17,11 @@ from derive.emit.plcopen.uses import needed
 from derive.emit.softmotion.base import base_text
 from derive.emit.softmotion.block import Block, block_of
 from derive.emit.softmotion.description import description
+from derive.emit.softmotion.flat import flattened
 from derive.emit.softmotion.inputs import inputs
 from derive.emit.softmotion.methods import methods_of
 from derive.emit.softmotion.overview import row_of
+from derive.emit.softmotion.own_interface import interface_text
 from derive.emit.softmotion.self_test import FOLDER as SELF_TESTS
 from derive.emit.softmotion.self_test import PROGRAM as SELF_TEST_PROGRAM
 from derive.emit.softmotion.self_test import TOLERANCE, test_of
@@ -91,7 +93,9 @@ class StructuredTextFiles:
         files |= {f"{path}.xml": text for path, text in _documents(objects)}
         rows = sorted((part["row"] for part in parts), key=lambda row: (row["family"], row["block"]))
         for name in ("import_softkin.py", "README.md"):
-            files[name] = templates.get_template(f"{name}.j2").render(contract.spelling, overview=rows)
+            files[name] = templates.get_template(f"{name}.j2").render(
+                contract.spelling, overview=rows, own=contract.own_interface, flat=contract.is_flat
+            )
         return dict(sorted(files.items()))
 
 
@@ -111,9 +115,14 @@ def _objects(
         )
         name = path.name.removesuffix(".st.j2")
         yield f"{_SHARED}/{name}", objects_of(text, name)
-    yield f"{_SHARED}/{contract.spelling['base']['name']}", objects_of(base_text(contract, templates))
+    if (own := contract.own_interface) is not None:
+        yield f"{_SHARED}/{own}", objects_of(interface_text(contract, templates))
+    base = objects_of(base_text(contract, templates))
+    if not contract.is_flat:
+        yield f"{_SHARED}/{contract.spelling['base']['name']}", base
     for part in parts:
-        yield part["row"]["path"], objects_of(part["text"])
+        objects = objects_of(part["text"])
+        yield part["row"]["path"], flattened(objects, base[0]) if contract.is_flat else objects
     yield from _self_tests([part["test"] for part in parts if part["test"] is not None], contract, templates)
 
 
@@ -178,6 +187,7 @@ def _unit(kinematics: Kinematics, block: Block, contract: Contract, templates: E
     return templates.get_template("block.st.j2").render(
         contract.spelling,
         block=block,
+        own=contract.own_interface,
         description=description(kinematics, block, contract.spelling["pictures"]["reference"], templates),
         methods=methods,
     )

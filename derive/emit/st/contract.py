@@ -31,11 +31,12 @@ class Signature:
     returns: str
     parameters: tuple[Parameter, ...]
     access: str = "PUBLIC"
+    """Empty in an interface, whose methods are public without a word."""
 
     def head(self) -> str:
         """The declaration of the method, without its local variables."""
         returns = f" : {self.returns}" if self.returns else ""
-        lines = [f"METHOD {self.access} {self.name}{returns}"]
+        lines = [f"{' '.join(filter(None, ('METHOD', self.access, self.name)))}{returns}"]
         for scope, parameters in groupby(self.parameters, key=lambda p: p.scope):
             lines += [scope, *(f"  {p.name} : {p.type};" for p in parameters), "END_VAR"]
         return "\n".join(lines)
@@ -82,13 +83,19 @@ class Contract:
     supplied: Mapping[str, Signature]
     """The protected methods that every geometry supplies to the base block."""
     is_flat: bool
-    """Whether every block has the methods of the base block itself, and extends none."""
+    """Whether every block has the variables and methods of the base block itself, and extends none."""
     omits: frozenset[str]
     names: tuple[Group, ...]
     """The list of global constants."""
     spelling: Mapping[str, Mapping[str, Any]]
     """The other tables of the file: types, functions and others. In those of errors and enumerators each is spelled as
     the constant of the list that stands for it."""
+
+    @property
+    def own_interface(self) -> str | None:
+        """The name of the interface of our own; None where the profile leaves it out."""
+        name: str = self.spelling["own_interface"]["name"]
+        return None if name in self.omits else name
 
     @property
     def signatures(self) -> dict[str, Signature]:
@@ -115,16 +122,16 @@ class Contract:
 def load(profile: str | None = None, file: Path = _FILE) -> Contract:
     """The contract for a profile, for that which the file names as its default if `None`.
 
+    profile: names of profiles, joined by `+`: the oldest of their libraries, and what any of them leaves out.
+
     Raises `ValueError` for a profile that the file does not have.
     """
     data = tomllib.loads(file.read_text(encoding="utf-8"))
-    name, profiles = profile or data["profile"], data["profiles"]
-    if name not in profiles:
-        raise ValueError(f"no profile is called {name!r}; there are {', '.join(profiles)}")
+    chosen = _chosen(profile or data["profile"], data["profiles"])
     interfaces = {key: _interface(key, table) for key, table in data.pop("interfaces").items()}
-    newest = _version(profiles[name]["library"])
+    newest = min(_version(one["library"]) for one in chosen)
     newer = {interface.name for interface in interfaces.values() if interface.since > newest}
-    omits = frozenset(newer) | frozenset(profiles[name]["omits"])
+    omits = frozenset(newer).union(*(one["omits"] for one in chosen))
     tables = data.pop("names")
     listed = tables.pop("list")
     groups = {key: _constants(table) for key, table in tables.items()}
@@ -134,11 +141,18 @@ def load(profile: str | None = None, file: Path = _FILE) -> Contract:
         interfaces,
         _signatures(data.pop("own")),
         _signatures(data.pop("supplied"), "PROTECTED"),
-        profiles[name].get("flat", False),
+        any(one.get("flat", False) for one in chosen),
         omits,
         names,
         data,
     )
+
+
+def _chosen(names: str, profiles: Mapping[str, Mapping[str, Any]]) -> tuple[Mapping[str, Any], ...]:
+    for name in names.split("+"):
+        if name not in profiles:
+            raise ValueError(f"no profile is called {name!r}; there are {', '.join(profiles)}")
+    return tuple(profiles[name] for name in names.split("+"))
 
 
 def _constants(table: Mapping[str, Any]) -> dict[str, Constant]:

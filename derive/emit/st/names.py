@@ -74,7 +74,9 @@ def type_name(kind: Type) -> str:
 
 @cache
 def stored_name(name: str) -> str:
-    """The instance variable for a constant: `link_length_1` → `linkLength1`."""
+    """The instance variable for a constant: `link_length_1` → `linkLength1`. No variable of the base block has that
+    name, nor one of its methods' variables: in a flat block they stand beside it.
+    """
     return spellings((name,), of_methods())[name]
 
 
@@ -89,7 +91,7 @@ def of_methods() -> frozenset[str]:
     found |= {
         parameter_name(name) for name in (*(s.name for s in settings.inputs), *(o.name for o in settings.outputs))
     }
-    for path in (TEMPLATES / "st" / "methods").glob("*.st.j2"):
+    for path in (path for folder in ("methods", "base") for path in (TEMPLATES / "st" / folder).glob("*.st.j2")):
         found |= {path.name.removesuffix(".st.j2"), *_DECLARED.findall(path.read_text(encoding="utf-8"))}
     return frozenset(name.lower() for name in (*found, "LimitsOfAxis", *_OF_THE_BLOCK)) - _OF_PLATFORMS
 

@@ -215,37 +215,37 @@ class Constants:
         # quadratic equation for a1: rod 1
         home_radicand_a1 = rod_length_1 * rod_length_1 - home_span_1_y * home_span_1_y - home_span_1_z * home_span_1_z
         if not (home_radicand_a1 >= -1e-12 * rod_length_1 * rod_length_1):
-            raise machine._refusal("a home pose that the legs reach", "rod_length_1")
+            raise machine._refusal("a home pose within reach", "rod_length_1")
         home_span_2_y = home_y + home_r21 * platform_2_x + home_r22 * platform_2_y + home_r23 * platform_2_z - rail_2_y
         home_span_2_z = home_z + home_r31 * platform_2_x + home_r32 * platform_2_y + home_r33 * platform_2_z - rail_2_z
         # quadratic equation for a2: rod 2
         home_radicand_a2 = rod_length_2 * rod_length_2 - home_span_2_y * home_span_2_y - home_span_2_z * home_span_2_z
         if not (home_radicand_a2 >= -1e-12 * rod_length_2 * rod_length_2):
-            raise machine._refusal("a home pose that the legs reach", "rod_length_2")
+            raise machine._refusal("a home pose within reach", "rod_length_2")
         home_span_3_y = home_y + home_r21 * platform_3_x + home_r22 * platform_3_y + home_r23 * platform_3_z - rail_3_y
         home_span_3_z = home_z + home_r31 * platform_3_x + home_r32 * platform_3_y + home_r33 * platform_3_z - rail_3_z
         # quadratic equation for a3: rod 3
         home_radicand_a3 = rod_length_3 * rod_length_3 - home_span_3_y * home_span_3_y - home_span_3_z * home_span_3_z
         if not (home_radicand_a3 >= -1e-12 * rod_length_3 * rod_length_3):
-            raise machine._refusal("a home pose that the legs reach", "rod_length_3")
+            raise machine._refusal("a home pose within reach", "rod_length_3")
         home_span_4_y = home_y + home_r21 * platform_4_x + home_r22 * platform_4_y + home_r23 * platform_4_z - rail_4_y
         home_span_4_z = home_z + home_r31 * platform_4_x + home_r32 * platform_4_y + home_r33 * platform_4_z - rail_4_z
         # quadratic equation for a4: rod 4
         home_radicand_a4 = rod_length_4 * rod_length_4 - home_span_4_y * home_span_4_y - home_span_4_z * home_span_4_z
         if not (home_radicand_a4 >= -1e-12 * rod_length_4 * rod_length_4):
-            raise machine._refusal("a home pose that the legs reach", "rod_length_4")
+            raise machine._refusal("a home pose within reach", "rod_length_4")
         home_span_5_y = home_y + home_r21 * platform_5_x + home_r22 * platform_5_y + home_r23 * platform_5_z - rail_5_y
         home_span_5_z = home_z + home_r31 * platform_5_x + home_r32 * platform_5_y + home_r33 * platform_5_z - rail_5_z
         # quadratic equation for a5: rod 5
         home_radicand_a5 = rod_length_5 * rod_length_5 - home_span_5_y * home_span_5_y - home_span_5_z * home_span_5_z
         if not (home_radicand_a5 >= -1e-12 * rod_length_5 * rod_length_5):
-            raise machine._refusal("a home pose that the legs reach", "rod_length_5")
+            raise machine._refusal("a home pose within reach", "rod_length_5")
         home_span_6_y = home_y + home_r21 * platform_6_x + home_r22 * platform_6_y + home_r23 * platform_6_z - rail_6_y
         home_span_6_z = home_z + home_r31 * platform_6_x + home_r32 * platform_6_y + home_r33 * platform_6_z - rail_6_z
         # quadratic equation for a6: rod 6
         home_radicand_a6 = rod_length_6 * rod_length_6 - home_span_6_y * home_span_6_y - home_span_6_z * home_span_6_z
         if not (home_radicand_a6 >= -1e-12 * rod_length_6 * rod_length_6):
-            raise machine._refusal("a home pose that the legs reach", "rod_length_6")
+            raise machine._refusal("a home pose within reach", "rod_length_6")
         # rod 1: known part of its vector
         home_span_1_x = home_x + home_r11 * platform_1_x + home_r12 * platform_1_y + home_r13 * platform_1_z
         home_a1 = home_span_1_x + (sqrt(home_radicand_a1) if home_radicand_a1 > 0.0 else 0.0) * carriage_side_1
@@ -617,7 +617,7 @@ class Hexaglide(IterativeForward):
         Parameter.of(
             "ratio",
             "warning_distance",
-            "a pose counts as singular where a margin (a number without a unit) is less than this in size",
+            "poses count as singular where a margin (a number without a unit) is smaller than this",
             default=0.001,
         ),
     )
@@ -853,7 +853,7 @@ class Hexaglide(IterativeForward):
         upper_a6: A6: upper limit of the axis, both 0: no limit [u]
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
-        warning_distance: a pose counts as singular where a margin (a number without a unit) is less than this in size [1]
+        warning_distance: poses count as singular where a margin (a number without a unit) is smaller than this [1]
         limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())

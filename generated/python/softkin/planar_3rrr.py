@@ -128,7 +128,7 @@ class Constants:
         # effective length of the arm that a1 turns
         home_effective_a1 = sqrt(home_span_1_x * home_span_1_x + home_span_1_y * home_span_1_y)
         if not (home_effective_a1 > 1e-9 * arm_length_1):
-            raise machine._refusal("a home pose that the legs reach", "arm_length_1")
+            raise machine._refusal("a home pose within reach", "arm_length_1")
         home_divisor_a1 = home_effective_a1 if home_effective_a1 > 1e-9 * arm_length_1 else 1.0
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         home_one_less_cos_a1 = (home_divisor_a1 + rod_length_1 - arm_length_1) * (
@@ -143,14 +143,14 @@ class Constants:
         home_divisor_of_cos_a1 = home_sum_a1 if home_sum_a1 > 0.0 else 1.0
         home_cos_swing_a1 = (home_one_plus_cos_a1 - home_one_less_cos_a1) / home_divisor_of_cos_a1
         if not (-1.0000000000005 <= home_cos_swing_a1 <= 1.0000000000005):
-            raise machine._refusal("a home pose that the legs reach")
+            raise machine._refusal("a home pose within reach")
         # rod 2: known part of its vector
         home_span_2_x = home_x + platform_2_x * cos_home_heading - base_2_x - platform_2_y * sin_home_heading
         home_span_2_y = home_y + platform_2_y * cos_home_heading + platform_2_x * sin_home_heading - base_2_y
         # effective length of the arm that a2 turns
         home_effective_a2 = sqrt(home_span_2_x * home_span_2_x + home_span_2_y * home_span_2_y)
         if not (home_effective_a2 > 1e-9 * arm_length_2):
-            raise machine._refusal("a home pose that the legs reach", "arm_length_2")
+            raise machine._refusal("a home pose within reach", "arm_length_2")
         home_divisor_a2 = home_effective_a2 if home_effective_a2 > 1e-9 * arm_length_2 else 1.0
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
         home_one_less_cos_a2 = (home_divisor_a2 + rod_length_2 - arm_length_2) * (
@@ -165,14 +165,14 @@ class Constants:
         home_divisor_of_cos_a2 = home_sum_a2 if home_sum_a2 > 0.0 else 1.0
         home_cos_swing_a2 = (home_one_plus_cos_a2 - home_one_less_cos_a2) / home_divisor_of_cos_a2
         if not (-1.0000000000005 <= home_cos_swing_a2 <= 1.0000000000005):
-            raise machine._refusal("a home pose that the legs reach")
+            raise machine._refusal("a home pose within reach")
         # rod 3: known part of its vector
         home_span_3_x = home_x + platform_3_x * cos_home_heading - base_3_x - platform_3_y * sin_home_heading
         home_span_3_y = home_y + platform_3_y * cos_home_heading + platform_3_x * sin_home_heading - base_3_y
         # effective length of the arm that a3 turns
         home_effective_a3 = sqrt(home_span_3_x * home_span_3_x + home_span_3_y * home_span_3_y)
         if not (home_effective_a3 > 1e-9 * arm_length_3):
-            raise machine._refusal("a home pose that the legs reach", "arm_length_3")
+            raise machine._refusal("a home pose within reach", "arm_length_3")
         home_divisor_a3 = home_effective_a3 if home_effective_a3 > 1e-9 * arm_length_3 else 1.0
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
         home_one_less_cos_a3 = (home_divisor_a3 + rod_length_3 - arm_length_3) * (
@@ -187,7 +187,7 @@ class Constants:
         home_divisor_of_cos_a3 = home_sum_a3 if home_sum_a3 > 0.0 else 1.0
         home_cos_swing_a3 = (home_one_plus_cos_a3 - home_one_less_cos_a3) / home_divisor_of_cos_a3
         if not (-1.0000000000005 <= home_cos_swing_a3 <= 1.0000000000005):
-            raise machine._refusal("a home pose that the legs reach")
+            raise machine._refusal("a home pose within reach")
         home_sign_elbow_1 = -1.0 if home_elbow_1_left else 1.0
         home_sine_square_a1 = home_one_less_cos_a1 * home_one_plus_cos_a1  # sine squared, times the squared scale
         home_sin_swing_a1 = (
@@ -373,7 +373,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         Parameter.of(
             "ratio",
             "warning_distance",
-            "a pose counts as singular where a margin (a number without a unit) is less than this in size",
+            "poses count as singular where a margin (a number without a unit) is smaller than this",
             default=0.001,
         ),
     )
@@ -511,7 +511,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         home_elbow_3_left: branch elbow_3 at the home pose: left instead of right
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
-        warning_distance: a pose counts as singular where a margin (a number without a unit) is less than this in size [1]
+        warning_distance: poses count as singular where a margin (a number without a unit) is smaller than this [1]
         limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())

@@ -112,7 +112,7 @@ def _first(name: str) -> Drawing:
     return drawn(name).drawing
 
 
-@pytest.mark.parametrize("name", [n for n, m in CATALOGUE.items() if m.branches and n != "MC_KIN_TYPE_12_XY"])
+@pytest.mark.parametrize("name", [n for n, m in CATALOGUE.items() if m.branches])
 def test_byte_0_has_a_picture(name: str) -> None:
     """Both of its ways differ, in where bodies are or in where the axis of a joint points."""
     scenes = _first(name).choices[0].scenes
@@ -120,3 +120,19 @@ def test_byte_0_has_a_picture(name: str) -> None:
     one, other = scenes
     turned = [a for a, b in zip(one.turns, other.turns, strict=True) if is_turned_round(a, b)]
     assert turned or not looks_alike(one, other)
+    assert (_first(name).choices[0].assemblies is None) == (name != "MC_KIN_TYPE_12_XY")
+
+
+def test_ways_that_no_assembly_has_both_of() -> None:
+    """Of type 12 with its dimensions the upper arm is on the left in one assembly, on the right in the other; each pose
+    is on the side that its name says, with a closed loop.
+    """
+    choice = _first("MC_KIN_TYPE_12_XY").choices[0]
+    assert choice.names == choice.assemblies == ("left", "right") and choice.scenes is not None
+    for scene, side in zip(choice.scenes, (1.0, -1.0), strict=True):
+        tcp = np.array(scene.tool.position[:2])
+        ends = np.array([[s.start[:2], s.end[:2]] for s in scene.segments]).reshape(-1, 2)
+        shoulder = next(p for p in ends if np.linalg.norm(p - tcp) == pytest.approx(350.0, abs=1e-6))
+        assert np.linalg.norm(shoulder) == pytest.approx(300.0, abs=1e-6)
+        to_origin, to_shoulder = -tcp, shoulder - tcp
+        assert side * (to_origin[0] * to_shoulder[1] - to_origin[1] * to_shoulder[0]) > 0.0

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.emit.python.finish import Function, finish
 from derive.emit.python.layout import assigned, repeated, tuple_of
 from derive.emit.python.methods import POSITION, ROTATION, branch
 from derive.emit.python.printer import ScalarPrinter, primitives_in, spelled
@@ -22,6 +21,7 @@ from derive.emit.python.program import (
     without_conversions,
 )
 from derive.emit.python.refusal import Refusals, status_of
+from derive.emit.python.straight_line.finish import Function, finish
 from derive.ir.passes import untold
 from derive.ir.program import (
     Let,
