@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from derive.ir.interpret import Repeats, repeats_counted
+from derive.ir.interpret import Repeats
 from derive.kinematics.reference_cases import Called, Case
 from derive.report.cost import Cost, cost_of, costs_of
-from derive.report.reference_calls import Machine, forward, inverse
+from derive.report.reference_calls import Machine, forward_counted, inverse_counted
 
 _OF_THE_TEST = 120
 """What the self-test itself does in a cycle: it finds the order of a matrix, and compares numbers."""
@@ -45,11 +45,10 @@ def _loops(case: Case, machine: Machine) -> tuple[Cost, Cost]:
     """What the loops of a call repeat: at most, and as the reference interpreter runs them for it, and a fifth more."""
     is_forward = case.called is Called.FORWARD
     program = machine.kinematics.forward if is_forward else machine.kinematics.branch
-    with repeats_counted() as repeats:
-        if is_forward:
-            forward(machine, case.axes)
-        else:
-            inverse(machine, case.frame, case.configuration, case.reference)
+    if is_forward:
+        repeats = forward_counted(machine, case.axes)[1]
+    else:
+        repeats = inverse_counted(machine, case.frame, case.configuration, case.reference)[1]
     ran = Repeats(*(int(_MORE * n) for n in (repeats.trials, repeats.finished, repeats.passes)))
     once = cost_of(program, repeats=Repeats()) * -1
     return cost_of(program) + once, cost_of(program, repeats=ran) + once
