@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import math
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -23,16 +23,16 @@ _PREFIXES = "function_", "method_"
 class Counts:
     """What has run so far."""
 
-    operations: dict[str, Counter[str]] = field(default_factory=dict)
+    operations: dict[str, Counter[str]] = field(default_factory=lambda: defaultdict(Counter))
     """By function or method, the operations of each kind that its own text did."""
     calls: Counter[str] = field(default_factory=Counter)
     """How often each was called; SIN, COS, SQRT, ATAN, conversions and SEL are part of the language."""
-    running: list[str] = field(default_factory=lambda: [""])
-    """The functions that are running, the innermost last."""
+    running: list[Counter[str]] = field(default_factory=lambda: [Counter()])
+    """The operations of the functions that are running, those of the innermost last."""
 
     def add(self, kind: str) -> None:
         """Count an operation of the function that is running."""
-        self.operations.setdefault(self.running[-1], Counter())[kind] += 1
+        self.running[-1][kind] += 1
 
     def floating(self, *without: str) -> int:
         """All floating operations, but those of some functions."""
@@ -48,9 +48,10 @@ COUNTS = Counts()
 
 def counted(call: Callable[..., Any], *arguments: Any, **named: Any) -> tuple[Any, Counts]:
     """What a call returns, and what it did."""
-    COUNTS.operations, COUNTS.calls, COUNTS.running = {}, Counter(), [""]
+    COUNTS.operations, COUNTS.calls = defaultdict(Counter), Counter()
+    COUNTS.running = [COUNTS.operations[""]]
     result = call(*arguments, **named)
-    return result, Counts(COUNTS.operations, COUNTS.calls)
+    return result, Counts({name: found for name, found in COUNTS.operations.items() if found}, COUNTS.calls)
 
 
 def counting_library(texts: Mapping[str, str]) -> Library:
@@ -68,7 +69,7 @@ def binary(kind: str, left: Any, right: Any, result: Any) -> Any:
 def enter(name: str) -> None:
     """A function begins."""
     COUNTS.calls[name] += 1
-    COUNTS.running.append(name)
+    COUNTS.running.append(COUNTS.operations[name])
 
 
 def leave() -> None:

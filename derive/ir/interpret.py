@@ -265,14 +265,15 @@ def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]
     shape = status.shape
     looked = np.broadcast_to(evaluate(search.wanted, known), shape) & (status == Status.OK)
     rows = {k: np.broadcast_to(v, shape)[looked] for k, v in known.items()}
-
+    places = [s.name for s in PLACE]
+    read = {p.name: [s.name for s in p.inputs if s.name not in places] for p in (search.trial, search.finish)}
     counted = _REPEATS.get() or Repeats()
 
     def at(program: Program, place: At) -> list[Array]:
         if not len(place.rows):
             return [np.zeros(0, dtype=bool if is_condition(o.value) else float) for o in program.outputs]
-        there = {s.name: rows[s.name][place.rows] for s in program.inputs if s not in PLACE}
-        outputs, _ = run(program, there | {s.name: v for s, v in zip(PLACE, place[1:], strict=True)})
+        there = {name: rows[name][place.rows] for name in read[program.name]}
+        outputs, _ = run(program, there | dict(zip(places, place[1:], strict=True)))
         return [np.broadcast_to(outputs[o.name], place.joint.shape) for o in program.outputs]
 
     def tried(place: At) -> Array:

@@ -261,7 +261,7 @@ def reads(statement: Statement) -> set[sp.Symbol]:
     if isinstance(statement, Call):
         return found | set(statement.constants)
     if isinstance(statement, FindRoot):
-        return found | {s for p in (statement.trial, statement.finish) for s in p.inputs if s not in PLACE}
+        return found | {s for p in (statement.trial, statement.finish) for s in p.inputs}.difference(PLACE)
     return found - set(binds(statement)) if isinstance(statement, Iterate) else found
 
 

@@ -14,34 +14,35 @@ def check_types(program: Program) -> None:
     """Raise `IllTypedError` for a statement or an output that mixes types."""
     known: dict[sp.Symbol, Type] = {}
     for statement in program.body:
-        check_statement(statement, known)
-        known |= angles_of(statement, known)
+        known |= check_statement(statement, known)
     for output in program.outputs:
         type_of(output.value, known)
 
 
-def check_statement(statement: Statement, known: Known) -> None:
-    """Raise `IllTypedError` for a statement that mixes types, where some names are angles."""
+def check_statement(statement: Statement, known: Known) -> dict[sp.Symbol, Type]:
+    """The names that a statement binds to angles, where some names are; raises `IllTypedError` if it mixes types."""
+    bound = angles_of(statement, known)
     if isinstance(statement, Iterate):
-        _check_loop(statement, known)
-        return
-    for value, wanted in _wanted(statement, known):
+        _check_loop(statement, known, {**known, **bound})
+        return bound
+    for value, wanted in _wanted(statement, bound):
         _check(value, type_of(value, known), wanted)
     if isinstance(statement, Call):
         types = output_types(statement.program)
         for name in statement.names:
-            _check(name, types[name.name], type_of(name, angles_of(statement, known)))
+            _check(name, types[name.name], type_of(name, bound))
     if isinstance(statement, FindRoot):
-        found, bound = list(output_types(statement.finish).values()), angles_of(statement, known)
+        found = list(output_types(statement.finish).values())
         for name, kind in zip(statement.names, found, strict=True):
             _check(name, kind, type_of(name, bound))
         _check(statement.names[0], found[0], Type.BOOL)
+    return bound
 
 
-def _wanted(statement: Statement, known: Known) -> Iterator[tuple[sp.Basic, Type]]:
-    """The values of a statement, with the types that they must have."""
+def _wanted(statement: Statement, bound: Known) -> Iterator[tuple[sp.Basic, Type]]:
+    """The values of a statement, with the types that they must have. bound: the names that it binds to angles."""
     if isinstance(statement, Let):
-        yield statement.value, type_of(statement.name, angles_of(statement, known))
+        yield statement.value, type_of(statement.name, bound)
     elif isinstance(statement, Require):
         yield statement.condition, Type.BOOL
     elif isinstance(statement, Solve):
@@ -52,8 +53,8 @@ def _wanted(statement: Statement, known: Known) -> Iterator[tuple[sp.Basic, Type
         yield from ((statement.start, Type.REAL), (statement.wanted, Type.BOOL))
 
 
-def _check_loop(loop: Iterate, known: Known) -> None:
-    inside = {**known, **angles_of(loop, known)}
+def _check_loop(loop: Iterate, known: Known, inside: Known) -> None:
+    """known, inside: the names that are angles in front of the loop, and in it."""
     for inner in loop.step:
         check_statement(inner, inside)
     for name, start, following in zip(loop.state, loop.start, loop.following, strict=True):

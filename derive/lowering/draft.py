@@ -190,12 +190,12 @@ class Rewriting:
         pending = [value.node]
         while pending:
             node = pending[-1]
-            missing = [n for n in node.read if n not in self._done]
-            if node in self._done or not missing:
+            missing = () if node in self._done else [n for n in node.read if n not in self._done]
+            pending += missing
+            if not missing:
                 pending.pop()
                 if node not in self._done:
                     self._done[node] = self.rewritten(node, tuple(self._read(p) for p in node.parts))
-            pending += missing if node not in self._done else []
         return self._read(value)
 
     def _read(self, value: Value) -> Value:
@@ -208,14 +208,13 @@ class Rewriting:
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
         """What becomes of a node, given its changed parts."""
-        if node.is_leaf:
+        divisors = self.divisors(node)
+        if parts == node.parts and all(d == (n, 1) for d, n in zip(divisors, node.divisors, strict=True)):
             return Value(node, 1)
         if node.head is sp.Add:
-            return Value(node, 1) if parts == node.parts else self.graph.sum(parts)
+            return self.graph.sum(parts)
         if node.head is PRODUCT:
-            divisors = self.divisors(node)
-            is_same = parts == node.parts and all(d == (n, 1) for d, n in zip(divisors, node.divisors, strict=True))
-            return Value(node, 1) if is_same else self.graph.product(parts, divisors)
+            return self.graph.product(parts, divisors)
         assert isinstance(node.head, type)
         return self.graph.apply(node.head, parts)
 

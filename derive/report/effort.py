@@ -8,11 +8,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from derive.ir.interpret import Repeats, repeats_counted
-from derive.ir.program import Program
+from derive.ir.interpret import Repeats
 from derive.kinematics.reference_cases import Called, Case
 from derive.report.cost import Cost, cost_of, costs_of
-from derive.report.reference_calls import Machine, forward, inverse
+from derive.report.reference_calls import Machine, forward_counted, inverse_counted
 
 _OF_THE_TEST = 120
 """What the self-test itself does in a cycle: it finds the order of a matrix, and compares numbers."""
@@ -33,30 +32,23 @@ def _cost(case: Case, machine: Machine) -> Cost:
     if case.called is Called.SINGULARITY:
         return cost_of(kinematics.singularity)
     costs = costs_of(kinematics)
-    with repeats_counted() as repeats:
-        if case.called is Called.FORWARD:
-            forward(machine, case.axes)
-        else:
-            inverse(machine, case.frame, case.configuration, case.reference)
-    program = kinematics.forward if case.called is Called.FORWARD else kinematics.branch
+    most, ran = _loops(case, machine) if costs.bounds else (Cost(), Cost())
     if case.called is Called.FORWARD:
-        return costs.forward + _loops(program, _more(repeats)) + cost_of(program) * -1 + _once(program)
+        return costs.forward + most * -1 + ran
     slots = 1 << sum(byte in _OPEN for byte in case.configuration[: len(kinematics.branches)])
     one = costs.inverse if slots == 1 else costs.tried
-    unlooped = one + costs.corners + cost_of(program) * -1 + _once(program)
-    whole: Cost = unlooped * slots + _loops(program, _more(repeats)) + costs.repair + costs.limits
+    whole: Cost = (one + costs.corners + most * -1) * slots + ran + costs.repair + costs.limits
     return whole
 
 
-def _once(program: Program) -> Cost:
-    """The program without what its loops repeat."""
-    return cost_of(program, repeats=Repeats())
-
-
-def _loops(program: Program, repeats: Repeats) -> Cost:
-    """What the loops repeat."""
-    return cost_of(program, repeats=repeats) + _once(program) * -1
-
-
-def _more(found: Repeats) -> Repeats:
-    return Repeats(*(int(_MORE * n) for n in (found.trials, found.finished, found.passes)))
+def _loops(case: Case, machine: Machine) -> tuple[Cost, Cost]:
+    """What the loops of a call repeat: at most, and as the reference interpreter runs them for it, and a fifth more."""
+    is_forward = case.called is Called.FORWARD
+    program = machine.kinematics.forward if is_forward else machine.kinematics.branch
+    if is_forward:
+        repeats = forward_counted(machine, case.axes)[1]
+    else:
+        repeats = inverse_counted(machine, case.frame, case.configuration, case.reference)[1]
+    ran = Repeats(*(int(_MORE * n) for n in (repeats.trials, repeats.finished, repeats.passes)))
+    once = cost_of(program, repeats=Repeats()) * -1
+    return cost_of(program) + once, cost_of(program, repeats=ran) + once

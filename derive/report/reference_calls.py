@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import product
 
 import numpy as np
@@ -17,7 +17,7 @@ from derive.ir.constants import (
     FREE_ANGLE,
     TIE,
 )
-from derive.ir.interpret import Array, evaluate, run
+from derive.ir.interpret import Array, Repeats, evaluate, repeats_counted, run
 from derive.ir.program import (
     Program,
     Status,
@@ -39,7 +39,11 @@ _SMALL, _MILLIMETRES = 10.0, 100.0
 """A machine smaller than ten of its units is in metres; one in millimetres is at least a hundred large."""
 
 
-@dataclass(frozen=True)
+_KEPT = 1000
+"""So many answers are kept: the self-test asks for an answer, and then what it took."""
+
+
+@dataclass(frozen=True, eq=False)
 class Machine:
     """A machine: its parameters, the answer of Initialize, and the values that programs then read, by name."""
 
@@ -82,6 +86,17 @@ def machine_with(kinematics: Kinematics, given: Mapping[str, float]) -> Machine:
 
 def forward(machine: Machine, axes: Reals) -> tuple[Status, Reals, Bytes]:
     """AxesToCartesian: position and rotation by rows, configuration."""
+    return forward_counted(machine, axes)[0]
+
+
+@lru_cache(_KEPT)
+def forward_counted(machine: Machine, axes: Reals) -> tuple[tuple[Status, Reals, Bytes], Repeats]:
+    """The same, and how often loops ran for it."""
+    with repeats_counted() as repeats:
+        return _forward(machine, axes), repeats
+
+
+def _forward(machine: Machine, axes: Reals) -> tuple[Status, Reals, Bytes]:
     kinematics = machine.kinematics
     found, status = _run(kinematics.forward, machine, _axes(machine, [axes]))
     if status[0] is not Status.OK:
@@ -97,6 +112,19 @@ def forward(machine: Machine, axes: Reals) -> tuple[Status, Reals, Bytes]:
 
 def inverse(machine: Machine, frame: Reals, configuration: Bytes, reference: Reals) -> tuple[Status, Reals]:
     """CartesianToAxes: the solution nearest to the reference, of the branches that the configuration admits."""
+    return inverse_counted(machine, frame, configuration, reference)[0]
+
+
+@lru_cache(_KEPT)
+def inverse_counted(
+    machine: Machine, frame: Reals, configuration: Bytes, reference: Reals
+) -> tuple[tuple[Status, Reals], Repeats]:
+    """The same, and how often loops ran for it."""
+    with repeats_counted() as repeats:
+        return _inverse(machine, frame, configuration, reference), repeats
+
+
+def _inverse(machine: Machine, frame: Reals, configuration: Bytes, reference: Reals) -> tuple[Status, Reals]:
     kinematics = machine.kinematics
     nothing = (0.0,) * len(reference)
     if any(byte > _HIGHEST_BYTE for byte in configuration[: len(kinematics.branches)]):

@@ -16,9 +16,9 @@ from tests.mechanisms import catalogue
 PACKAGE = Path(softkin.__file__).resolve().parents[1]
 IMPORT = """
 import sys, time
-start = time.perf_counter()
+start = time.process_time()
 import softkin
-seconds = time.perf_counter() - start
+seconds = time.process_time() - start
 assert "numpy" not in sys.modules, "numpy"
 robot = softkin.Gantry2()
 assert robot.inverse(robot.forward((1.0, 2.0))[0]) == (1.0, 2.0)
@@ -35,8 +35,11 @@ print(seconds)
 
 
 def test_import_is_cheap_and_needs_no_numpy() -> None:
-    """Scalar calls run on the standard library; NumPy comes with the first batch. The best of three, on a shared
-    machine."""
+    """Scalar calls run on the standard library; NumPy comes with the first batch.
+
+    What counts is the processor time of `import softkin` alone, in a process whose interpreter has started: the best of
+    three, since the first may still have to compile the modules.
+    """
     seconds = []
     for _ in range(3):
         done = subprocess.run(
@@ -48,7 +51,7 @@ def test_import_is_cheap_and_needs_no_numpy() -> None:
         )
         assert done.returncode == 0, done.stderr
         seconds.append(float(done.stdout))
-    assert min(seconds) < 0.2
+    assert min(seconds) < 0.1
 
 
 def test_the_catalogue_is_the_descriptions() -> None:

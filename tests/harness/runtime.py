@@ -145,9 +145,7 @@ def unbounded() -> NoReturn:
     raise StFault(f"loop runs more than {LOOP_CAP} times")
 
 
-def at(index: int, low: int, high: int) -> int:
-    if low <= index <= high:
-        return index - low
+def outside(index: int, low: int, high: int) -> NoReturn:
     raise StFault(f"array index {index} outside {low}..{high}")
 
 
@@ -238,7 +236,7 @@ ENVIRONMENT: dict[str, Any] = {
         not_finite,
         overflow,
         unbounded,
-        at,
+        outside,
         quotient,
         remainder,
         rounded,

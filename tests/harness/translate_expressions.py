@@ -130,7 +130,8 @@ class Expressions:
             if isinstance(known, int):
                 part = str(known - low)
             else:
-                part = f"at({self.value(index)}, {low}, {high})"
+                place = f"_i if {low} <= (_i := {self.value(index)}) <= {high} else outside(_i, {low}, {high})"
+                part = f"({place})" if low == 0 else f"(({place}) - {low})"
             code = f"({code}) * {high - low + 1} + {part}" if code else part
         return code
 

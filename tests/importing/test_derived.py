@@ -11,10 +11,10 @@ import pytest
 import softkin
 
 from derive.importing.importing import Imported
-from derive.pipeline import Built, derive_one
+from derive.pipeline import Built
 from tests.importing.kinematics import by_yourdfpy, described, facing, imported
 from tests.importing.robots import COLLECTION, File, written
-from tests.machines.made import imported_class
+from tests.machines.made import built_of, imported_class
 
 SOLUTIONS = {
     "KR 16": 8,
@@ -46,7 +46,7 @@ def derived(name: str) -> tuple[File, Imported, Built, type[softkin.Mechanism]]:
     file = COLLECTION.get(name) or written(name, FEWEST_DIGITS, folder)
     found = imported(file.path, file.base, file.tip)
     mechanism = described(found, folder)
-    built = derive_one(mechanism)
+    built = built_of(mechanism)
     return file, found, built, imported_class(mechanism, built)
 
 

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from derive.pipeline import derive_one
 from tests.importing.kinematics import by_yourdfpy, described, differences, imported
 from tests.importing.test_mjcf import by_mujoco
+from tests.machines.made import built_of
 
 FILES = Path(__file__).parent / "files"
 SOLUTIONS = {
@@ -59,6 +59,6 @@ def test_it_is_what_the_other_reader_says(name: str, snap: float, tmp_path: Path
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n in SLOW else n for n in SOLUTIONS])
 def test_it_is_derived(name: str, tmp_path: Path) -> None:
-    evidence = derive_one(described(imported(FILES / name, tip=TIPS.get(name)), tmp_path)).evidence
+    evidence = built_of(described(imported(FILES / name, tip=TIPS.get(name)), tmp_path)).evidence
     assert evidence is not None and evidence.inverted is not None
     assert evidence.inverted.solutions == SOLUTIONS[name]

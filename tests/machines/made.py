@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from derive.description.mechanism import Mechanism, Role
 from derive.description.validate import validate
 from derive.geometry.frames import Motion
-from derive.pipeline import Built, derive_one, files_of, languages
+from derive.pipeline import Built, derive_and_measure, files_of, languages
 from tests.catalogue.closure import Closure
 from tests.catalogue.loop_machines import LoopClosure
 from tests.machines.angle_machines import MEANT
@@ -68,7 +68,7 @@ class Made:
 def made(name: str) -> Made:
     """Derive and load a machine; its offsets are not zero."""
     mechanism = validate({**MACHINES, **CARRIED}[name])
-    built = derive_one(mechanism)
+    built = built_of(mechanism)
     robot_class = imported_class(mechanism, built)
     offsets = {j.offset.name: 7.0 * k - 20.0 for k, j in enumerate(mechanism.joints)}
     robot = robot_class(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
@@ -82,10 +82,20 @@ def made(name: str) -> Made:
     return Made(mechanism, built, robot, closure, reach)
 
 
+def built_of(mechanism: Mechanism) -> Built:
+    """What `derive_one` makes of a mechanism, with every check but without pictures: they prove nothing, and
+    `tests/unit/drawing` looks at them.
+    """
+    whole = derive_and_measure(mechanism)
+    parts = {language.name: language.part(whole) for language in languages()}
+    written = {name: part for name, part in parts.items() if part is not None}
+    return Built("", "", None, written, {}, whole.evidence)
+
+
 def imported_class(mechanism: Mechanism, built: Built) -> type[softkin.Mechanism]:
     """The class of the generated package: its modules are read beside those of the catalogue."""
     folder = Path(mkdtemp(prefix="machine-"))
-    for path, data in files_of([built], languages()).items():
+    for path, data in files_of([built], [language for language in languages() if language.name == "python"]).items():
         if path.startswith("python/softkin/"):
             target = folder / path.removeprefix("python/")
             target.parent.mkdir(parents=True, exist_ok=True)

@@ -18,9 +18,9 @@ from derive.description.validate import validate
 from derive.ir.interpret import evaluate
 from derive.ir.symbols import ROTATION_ENTRIES
 from derive.kinematics.build import build
-from derive.pipeline import Built, derive_one
+from derive.pipeline import Built
 from tests.machines.guided import GUIDED
-from tests.machines.made import Array, imported_class
+from tests.machines.made import Array, built_of, imported_class
 from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.units import compiled_text
 
@@ -51,7 +51,7 @@ class Guided:
 @cache
 def guided(name: str) -> Guided:
     mechanism = validate(GUIDED[name])
-    built = derive_one(mechanism)
+    built = built_of(mechanism)
     size = max(abs(p.nominal) for p in mechanism.parameters)
     offsets = {j.offset.name: (7.0 if j.is_angle else 0.01 * size) * k for k, j in enumerate(mechanism.joints, 1)}
     robot = imported_class(mechanism, built)(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)

@@ -10,8 +10,7 @@ from derive.description.validate import validate
 from derive.frames import Rz, Tx
 from derive.mechanism import Mechanism as Description
 from derive.mechanism import Task, Vendor, branch, length, rotary
-from derive.pipeline import derive_one
-from tests.machines.made import imported_class
+from tests.machines.made import built_of, imported_class
 
 A1, A2 = (rotary(name, f"turn {name}") for name in ("A1", "A2"))
 UPPER = length("upper_arm", "from the shoulder to the elbow", nominal=300.0)
@@ -35,7 +34,7 @@ def arm() -> type[Mechanism]:
         offset_interface=False,
     )
     mechanism = validate(description)
-    return imported_class(mechanism, derive_one(mechanism))
+    return imported_class(mechanism, built_of(mechanism))
 
 
 def test_lengths_are_no_limits(arm: type[Mechanism]) -> None:

@@ -9,9 +9,8 @@ from sympy import cos, sin
 
 from derive.description.validate import validate
 from derive.mechanism import Mechanism, Task, Vendor, X, Y, assembly, branch, length, linear, rod, rotary
-from derive.pipeline import derive_one
 from derive.vectors import cross, minus, vector
-from tests.machines.made import imported_class
+from tests.machines.made import built_of, imported_class
 
 GIVEN = {"arm_length_1": 400.0, "arm_length_2": 380.0, "crank": 100.0, "base_width": 300.0}
 L1, L2, CRANK, WIDTH = (length(name, name.replace("_", " "), nominal=value) for name, value in GIVEN.items())
@@ -42,7 +41,7 @@ def _made(order: int) -> softkin.Mechanism:
         assembly=assembly("tip", cross(*ROWS), margin="rods_aligned", below=-1, above=+1),
         offset_interface=False,
     )
-    return imported_class(mechanism, derive_one(validate(mechanism)))(**GIVEN, tip_above=True, min_type2_margin=0.0)
+    return imported_class(mechanism, built_of(validate(mechanism)))(**GIVEN, tip_above=True, min_type2_margin=0.0)
 
 
 @pytest.fixture(scope="module")

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from derive.emit.picture.canvas import text_width
 from derive.emit.picture.ink import Area, Line, Mark, Text, Vector, spot
@@ -31,7 +32,7 @@ class Place:
     marks: tuple[Mark, ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Label:
     """A label and its possible places; what is drawn before all labels costs each of them a fixed amount."""
 
@@ -43,6 +44,17 @@ class _Label:
 
     def at(self, place: Place) -> Text:
         return Text(self.text, spot(place.at), self.size, self.colour, is_bold=self.is_bold)
+
+    @cached_property
+    def extents(self) -> Vector:
+        """The extent of its text at every place: an array of shape (places, 4)."""
+        return np.array([_extent(self.at(place)) for place in self.places])
+
+    @cached_property
+    def ink(self) -> tuple[Vector, NDArray[np.intp]]:
+        """The points of its lines at all places, and of which place each of them is."""
+        points = [_ink_of(place) for place in self.places]
+        return np.vstack(points), np.repeat(np.arange(len(points)), [len(p) for p in points])
 
 
 @dataclass
@@ -68,7 +80,7 @@ class Sheet:
 
     def settled(self) -> list[Mark]:
         """All marks. Each label in turn takes its best place beside the others, until all of them keep theirs."""
-        fixed = [[self._own_cost(label, place) for place in label.places] for label in self._labels]
+        fixed = [self._own_costs(label) for label in self._labels]
         chosen: list[Place] = []
         for k, label in enumerate(self._labels):
             chosen.append(self._best(label, fixed[k], list(zip(self._labels, chosen, strict=False))))
@@ -83,44 +95,39 @@ class Sheet:
         texts = [label.at(place) for label, place in zip(self._labels, chosen, strict=True)]
         return [*self.marks, *lines, *texts]
 
-    def _best(self, label: _Label, fixed: Sequence[float], others: Sequence[tuple[_Label, Place]]) -> Place:
+    def _best(self, label: _Label, fixed: Vector, others: Sequence[tuple[_Label, Place]]) -> Place:
         """The place of the least cost; among equals, the first."""
         cells = frozenset().union(*(_cells_of(place) for _, place in others))
-        extents = np.array([_extent(other.at(place)) for other, place in others]).reshape(-1, 4)
-        ink = np.vstack([np.zeros((0, 2)), *(_ink_of(place) for _, place in others)])
-        costs = [
-            round(cost + _between(_extent(label.at(place)), place, extents, ink) + _ON_LINE * _met(place, cells), 3)
-            for place, cost in zip(label.places, fixed, strict=True)
-        ]
-        return label.places[costs.index(min(costs))]
+        met = np.array([len(_cells_of(place) & cells) for place in label.places])
+        costs = fixed + sum(_beside(label, other, place) for other, place in others) + _ON_LINE * met
+        return label.places[int(np.argmin(np.round(costs, 3)))]
 
-    def _own_cost(self, label: _Label, place: Place) -> float:
-        """The cost of a place without other labels."""
-        left, bottom, right, top = extent = _extent(label.at(place))
-        box = self.box
-        outside = left < box.left or right > box.right or bottom < box.bottom or top > box.top
-        return place.cost + _OUTSIDE * outside + _OVER_INK * _inside(self._ink, extent)
+    def _own_costs(self, label: _Label) -> Vector:
+        """The cost of every place without other labels."""
+        box, (left, bottom, right, top) = self.box, label.extents.T
+        outside = (left < box.left) | (right > box.right) | (bottom < box.bottom) | (top > box.top)
+        covered = np.count_nonzero(_inside(self._ink, label.extents), axis=1)
+        return np.asarray([place.cost for place in label.places] + _OUTSIDE * outside + _OVER_INK * covered)
 
 
-def _between(extent: Extent, place: Place, extents: Vector, ink: Vector) -> float:
-    """The cost of a label beside others: of texts on texts, and of lines of the one through the text of another."""
-    wide = np.minimum(extent[2], extents[:, 2]) - np.maximum(extent[0], extents[:, 0])
-    high = np.minimum(extent[3], extents[:, 3]) - np.maximum(extent[1], extents[:, 1])
+@cache
+def _beside(label: _Label, other: _Label, place: Place) -> Vector:
+    """The cost of every place of a label beside another label at a place: of text on text, and of lines of the one
+    through the text of the other.
+    """
+    extent = np.array([_extent(other.at(place))])
+    wide = np.minimum(label.extents[:, 2], extent[:, 2]) - np.maximum(label.extents[:, 0], extent[:, 0])
+    high = np.minimum(label.extents[:, 3], extent[:, 3]) - np.maximum(label.extents[:, 1], extent[:, 1])
     covered = np.where((wide > 0) & (high > 0), wide * high, 0.0)
-    cost = float(np.sum(_OVER_TEXT * covered + _ANY_TEXT * (covered > 0)))
-    own = _ink_of(place)
-    through = sum(_inside(own, (e[0], e[1], e[2], e[3])) for e in extents)
-    return cost + _THROUGH * (through + _inside(ink, extent))
-
-
-def _met(place: Place, cells: frozenset[tuple[int, int]]) -> int:
-    """How many small squares of the page the lines of a label share with those of others."""
-    return len(_cells_of(place) & cells)
+    points, owners = label.ink
+    through = np.bincount(owners[_inside(points, extent)[0]], minlength=len(label.places))
+    through += np.count_nonzero(_inside(_ink_of(place), label.extents), axis=1)
+    return np.asarray(_OVER_TEXT * covered + _ANY_TEXT * (covered > 0) + _THROUGH * through)
 
 
 @cache
 def _cells_of(place: Place) -> frozenset[tuple[int, int]]:
-    return frozenset((int(x), int(y)) for x, y in _ink_of(place) // _STEP)
+    return frozenset((x, y) for x, y in (_ink_of(place) // _STEP).astype(int).tolist())
 
 
 @cache
@@ -146,11 +153,11 @@ def _extent(text: Text) -> Extent:
     return left, y - high / 2, left + wide, y + high / 2
 
 
-def _inside(points: Vector, extent: Extent) -> int:
-    """How many points are inside a rectangle."""
-    left, bottom, right, top = extent
-    x, y = points[:, 0], points[:, 1]
-    return int(np.count_nonzero((x > left) & (x < right) & (y > bottom) & (y < top)))
+def _inside(points: Vector, extents: Vector) -> NDArray[np.bool_]:
+    """Which points are inside which rectangles: an array of shape (rectangles, points)."""
+    left, bottom, right, top = extents.T[:, :, None]
+    x, y = points.T
+    return np.asarray((x > left) & (x < right) & (y > bottom) & (y < top))
 
 
 @cache
@@ -162,10 +169,10 @@ def _sampled(mark: Mark) -> Vector:
     if isinstance(mark, Area):
         points.append(points[0])
     weight = 2 if isinstance(mark, Line) and mark.width > 4.0 else 1
-    found = [points[0]]
+    found = [points[0][None]]
     for a, b in zip(points, points[1:], strict=False):
         count = max(1, int(np.linalg.norm(b - a) / _STEP))
-        found += [a + (b - a) * k / count for k in range(1, count + 1)]
-    samples = np.array(found * weight)
+        found.append(a + (b - a) * np.arange(1, count + 1)[:, None] / count)
+    samples = np.vstack(found * weight)
     samples.setflags(write=False)
     return samples
