@@ -7,8 +7,8 @@ with the same signs that has what it reads: a program is total.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -20,6 +20,8 @@ from derive.ir.types import Type, type_of
 from derive.kept import kept_by_identity
 from derive.lowering.scheduling import structured
 
+MOST_SIDES, MOST_KEPT = 16, 80
+"""What branches can share at most: stretches, one for every side of their signs, and values."""
 _SIGN = "sigma_"
 
 
@@ -57,7 +59,19 @@ def stretches_of(program: Program) -> tuple[Stretch, ...]:
             is_shared, kept = False, ()
         found.insert(0, Stretch(tuple(group), tuple(s for s in signs if s in supported), kept, is_shared))
         wanted |= read_in(group).union(*map(_told, group))
-    return tuple(found)
+    return tuple(_with_room(found))
+
+
+def _with_room(stretches: Iterable[Stretch]) -> Iterator[Stretch]:
+    """The stretches, of which those are shared for whose values there is room."""
+    sides = kept = 0
+    for stretch in stretches:
+        more = sides + stretch.sides, kept + stretch.sides * len(stretch.kept)
+        if stretch.is_shared and more[0] <= MOST_SIDES and more[1] <= MOST_KEPT:
+            sides, kept = more
+            yield stretch
+        else:
+            yield replace(stretch, kept=(), is_shared=False)
 
 
 def _groups(items: Sequence[Item], signs: Sequence[sp.Symbol]) -> list[tuple[frozenset[sp.Symbol], list[Item]]]:

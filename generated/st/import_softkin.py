@@ -38,7 +38,7 @@ COMPILER = {
 }
 SCRIPT_MESSAGES = "194B48A9-AB51-43AE-B9A9-51D3EDAADDF3"
 
-RULER = re.compile(r"// ====(?: (\w+) ([\w.]+): (declaration|implementation) )?=+$")
+RULER = re.compile(r"(?:(?:GET|END_\w+)  )?// ====(?: (\w+) ([\w.]+): (declaration|implementation) )?=*$")
 RETURNS = re.compile(r"^(?:FUNCTION|METHOD|PROPERTY)\b[^:\n]*:[ ]*([^\n]+)$", re.MULTILINE)
 
 

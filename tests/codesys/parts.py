@@ -12,7 +12,7 @@ FILES = {
     str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))
 }
 _RULER = re.compile(r"// ==== ([A-Z_]+) (\w+(?:\.\w+)?): (declaration|implementation) =+")
-_END = re.compile(r"// =+")
+_END = re.compile(r"(?:(?:GET|END_\w+)  )?// =+")
 
 
 @dataclass
@@ -49,7 +49,7 @@ def _member(one: Part, members: Iterable[Part]) -> str:
 def parts_of(text: str) -> list[Part]:
     """The parts below the rulers of a file: what a user would paste."""
     found: dict[tuple[str, str], Part] = {}
-    blocks = re.split(r"^(// ====.*)$", text, flags=re.MULTILINE)
+    blocks = re.split(r"^((?:(?:GET|END_\w+)  )?// ====.*)$", text, flags=re.MULTILINE)
     for ruler, below in zip(blocks[1::2], blocks[2::2], strict=True):
         if _END.fullmatch(ruler):
             continue

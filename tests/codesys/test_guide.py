@@ -369,10 +369,9 @@ def _tools(block: str, path: str, declaration: str) -> str:
     """By SoftMotion's rules: an image of dof zero takes any offset, of dof one those along vU, of dof three none."""
     if "ISMOrientationKinematics3" in declaration:
         return "with a position block"
-    members = all_parts({path: FILES[f"{path}.st"]})
+    code = all_parts({path: FILES[f"{path}.st"]})["METHOD", f"{block}.Describe"].implementation
     if "ISMKinematicsWithOrientationImage2" in declaration:
-        code = members["METHOD", f"{block}.GetFlangeOrientationImageWithOri"].implementation
+        image = "Turning" if "layout.isDirection := TRUE;" in code else "Fixed"
     else:
-        code = members["METHOD", f"{block}.GetOrientationImage"].implementation
-    image = re.findall(r"^oriInfo\.dof := Softkin_Names\.(\w+)Orientation;", code, re.MULTILINE)
-    return {"Fixed": "any", "Turning": "along the axis it turns about", "Free": "none"}[image[-1]]
+        (image,) = re.findall(r"^layout\.eFreedom := Softkin_Names\.(\w+)Orientation;", code, re.MULTILINE)
+    return {"Fixed": "any", "Turning": "along the axis it turns about", "Free": "none"}[image]

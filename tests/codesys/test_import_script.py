@@ -124,7 +124,7 @@ def _copy(tmp_path: Path, old: str = "", new: str = "") -> Path:
 
 def test_what_does_not_compile_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Errors of the compiler are printed, and the script returns 1."""
-    script = _copy(tmp_path, "IF NOT initialized THEN", "IF NOT initialised THEN")
+    script = _copy(tmp_path, "refusal := '';", "initialised := '';")
     engine = Engine(TITLES)
     assert execute(engine, str(tmp_path / "a.library"), script=script) == 1
     printed = capsys.readouterr().out

@@ -192,9 +192,24 @@ def test_what_the_standard_has_no_element_for() -> None:
         ]
         for word in ("Private", "Protected")
     )
-    assert protected == ["Describe", "ReadInputs", "TestLimits", "FindMargins", "FindJacobian"]
+    assert protected == [
+        "Describe",
+        "ReadInputs",
+        "FindPose",
+        "SolveBranch",
+        "ReasonOf",
+        "FindJacobian",
+        "FindMargins",
+        "FindOrientation",
+        "FindImage",
+        "FindOffsetBranches",
+        "SolveOffsetBranch",
+    ]
     assert [e.text for e in pou.iter("{*}Extends")] == ["Softkin_Kinematics"]
-    assert private == ["SolveBranch", "SolveOffsetBranch"]
+    assert private == []
+    base = _only(root, ".//p:pou[@name='Softkin_Kinematics']")
+    hidden = [e for e in base.iter("{*}Method") if e.find(".//{*}AccessModifiers[@Private='true']") is not None]
+    assert [e.attrib["name"] for e in hidden] == ["FindAxes", "Configure"]
 
 
 def test_an_interface_is_an_entry_of_the_project() -> None:

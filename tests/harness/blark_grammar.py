@@ -25,7 +25,7 @@ _RULES = {
     "PROPERTY": "function_block_property_declaration",
 }
 Parsed = lark.Tree[lark.Token]
-_GETTER_WORDS = re.compile(r"^(\s*)(?:GET|END_GET)\s*$", re.IGNORECASE | re.MULTILINE)
+_GETTER_WORDS = re.compile(r"^(\s*)(?:GET|END_GET)[ ]*(?://.*)?$", re.IGNORECASE | re.MULTILINE)
 
 
 @lru_cache

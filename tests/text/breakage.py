@@ -46,12 +46,13 @@ def declared(text: str) -> str:
 
 
 _BLOCK = f"FUNCTION_BLOCK {MECHANISM.block_name}"
-_INITIALIZE, _FORWARD = "METHOD PROTECTED ReadInputs", "METHOD PUBLIC AxesToCartesian"
+_INITIALIZE, _FORWARD = "METHOD PROTECTED ReadInputs", "METHOD PROTECTED FindPose"
 _INVERSE, _BRANCH, _LIMITS = (
-    "METHOD PUBLIC CartesianToAxes",
-    "METHOD PRIVATE SolveBranch",
+    "METHOD PRIVATE FindAxes",
+    "METHOD PROTECTED SolveBranch",
     "METHOD PROTECTED TestLimits",
 )
+_WRITTEN, _BYTES = "METHOD PUBLIC AxesToCartesian", "METHOD PRIVATE Configure"
 _SINGULAR, _JACOBIAN = "METHOD PUBLIC IsSingularity", "METHOD PROTECTED FindJacobian"
 _DESCRIBE, _MARGINS = "METHOD PROTECTED Describe", "METHOD PROTECTED FindMargins"
 
@@ -61,20 +62,22 @@ REFUSED = {
     "an undeclared name": Break(_BRANCH, "reach := ", "reached := ", "undeclared name reached"),
     "an undeclared function": Break(_BRANCH, "Softkin_Root", "Softkin_Sqrt", "undeclared function Softkin_Sqrt"),
     "a wrong type": Break(_INITIALIZE, ":= xCheckLimits;", ":= dLinkLength1;", "LREAL does not fit BOOL"),
-    "a wrong type of a number": Break(_INVERSE, "slot MOD 2 + 1", "1.0", "LREAL does not fit INT"),
-    "a wrong argument": Break(_FORWARD, "aElements := rot", "aElements := f", "not a SMC_Frame"),
-    "a write to a constant input": Break(_FORWARD, "f.vT.dX := x;", "a.a0 := x;", "VAR_IN_OUT CONSTANT a"),
+    "a wrong type of a number": Break(_INVERSE, "1 - 2*(rest MOD 2)", "1.0", "LREAL does not fit INT"),
+    "a wrong argument": Break(_WRITTEN, "aElements := rot", "aElements := f", "not a SMC_Frame"),
+    "a write to a constant input": Break(_FORWARD, "v.dX := ", "a.a0 := ", "VAR_IN_OUT CONSTANT a"),
     "a constant input that is handed on": Break(
         _BRANCH,
         "a.a0 := axisA1;",
-        "Softkin_ReadMatrix(m := f.mR, aElements := rot, eOrder := matrixOrder);",
+        "Softkin_MakeRotation(aElements := rot);",
         "VAR_IN_OUT CONSTANT rot",
     ),
     "a write outside Initialize": Break(_MARGINS, "sinA2 := ", "linkLength2 := ", "Initialize"),
     "a write to an input of the block": Break(
-        _FORWARD, "f.vT.dX := x;", "dLinkLength1 := x;", "writes the input dLinkLength1"
+        _FORWARD, "v.dX := ", "dLinkLength1 := ", "writes the input dLinkLength1"
     ),
-    "a missing method": Break(_BLOCK, "PUBLIC AxesToOrientation", "PUBLIC Other", "AxesToOrientation"),
+    "a missing method": Break(
+        "FUNCTION_BLOCK Softkin_Kinematics", "PUBLIC AxesToOrientation", "PUBLIC Other", "AxesToOrientation"
+    ),
     "a missing property": Break("PROPERTY PUBLIC NumAxes", "NumAxes", "Count", "NumAxes"),
     "parameters in another order": Break(
         "METHOD PUBLIC CPConnectible", "  cd1 : TRAFO.CONFIGDATA;\n  cd2", "  cd2 : TRAFO.CONFIGDATA;\n  cd1", "cd1"
@@ -86,11 +89,11 @@ REFUSED = {
     "a result that is never given": Break(
         "METHOD PUBLIC GetKinematicsName", "GetKinematicsName := ", "// ", "never assigns"
     ),
-    "the same name twice": Break(_FORWARD, "sinA12, y,", "sinA12, y, X,", "duplicate name"),
+    "the same name twice": Break(_FORWARD, "sinA12, a3,", "sinA12, a3, A3,", "duplicate name"),
     "a name of a method": Break(_BRANCH, "headingAcross, reach,", "headingAcross, jacobian,", "hides a member"),
-    "an error that does not exist": Break(_FORWARD, "Softkin_Names.NotInitialized", "Softkin_Names.Fine", "no member"),
-    "an axis that does not exist": Break(_BRANCH, "a.a5 := 0.0;", "a.a6 := 0.0;", "no field a6"),
-    "a byte that does not exist": Break(_FORWARD, "abyData[3]", "abyData[32]", "outside"),
+    "an error that does not exist": Break(_FORWARD, "Softkin_Names.NoError", "Softkin_Names.Fine", "no member"),
+    "an axis that does not exist": Break(_BRANCH, "a.a3 := axisA4;", "a.a6 := axisA4;", "no field a6"),
+    "a byte that does not exist": Break(f"{_BLOCK}_Config", "abyData[3]", "abyData[32]", "outside"),
     "a division of integers": Break(_BRANCH, "headingAlong := ", "headingAlong := 1/2 + ", "not allowed"),
 }
 
@@ -99,50 +102,54 @@ FAULTS = {
     "a root of a negative": Break(_BRANCH, "reach := SQRT(", "reach := SQRT(-1.0E12 + ", "SQRT of a negative"),
     "a product that overflows": Break(_FORWARD, "cosA1 := COS(a1)", "cosA1 := 1.0E200*COS(a1)*1.0E200", "not finite"),
     "an unused axis that is read": Break(_FORWARD, "a.a2 - axes[2].offset", "a.a2 - a.a4", "not finite"),
-    "an integer that overflows": Break(_INVERSE, ":= slot MOD 2 + 1", ":= slot + 32767", "overflow"),
-    "numbers that are not checked": Break(_FORWARD, "(a.a0 >= -1.0E9) AND (a.a0 <= 1.0E9) AND ", "", "not finite"),
+    "an integer that overflows": Break(_INVERSE, ":= 1 - 2*(rest MOD 2)", ":= rest + 32767 + slots", "overflow"),
+    "numbers that are not checked": Break(
+        "FUNCTION Softkin_AreNumbers", "IF index < udiAxes THEN", "IF index < 0 THEN", "not finite"
+    ),
 }
 
 WRONG = {
-    "CartesianToAxes: a sign": Break(_BRANCH, "f.vT.dY - armAcrossA1*f.vT.dX", "f.vT.dY + armAcrossA1*f.vT.dX"),
-    "AxesToCartesian: a sign": Break(_FORWARD, "z := a3 - ", "z := a3 + "),
+    "CartesianToAxes: a sign": Break(_BRANCH, "v.dY - armAcrossA1*v.dX", "v.dY + armAcrossA1*v.dX"),
+    "AxesToCartesian: a sign": Break(_FORWARD, "v.dZ := a3 - ", "v.dZ := a3 + "),
     "CartesianToAxes: an offset": Break(_BRANCH, "axisA3 := a3 + axes[2].offset;", "axisA3 := a3;"),
     "CartesianToAxes: two axes exchanged": Break(
         _BRANCH, "a.a0 := axisA1;\na.a1 := axisA2;", "a.a0 := axisA2;\na.a1 := axisA1;"
     ),
-    "CartesianToAxes: an unused axis": Break(_BRANCH, "a.a5 := 0.0;", "a.a5 := 1.0;"),
-    "AxesToCartesian: two bytes exchanged": Break(_FORWARD, "Softkin_PeriodNumber(a.a3)", "Softkin_PeriodNumber(a.a1)"),
-    "AxesToCartesian: a byte without a meaning": Break(_FORWARD, "cd := ", "configBytes.abyData[30] := 7;\ncd := "),
-    "CartesianToAxes: a tie": Break(_INVERSE, "least - 1.0E-6", "least + 1.0E6"),
+    "CartesianToAxes: an unused axis": Break(_BRANCH, "a.a3 := axisA4;", "a.a3 := axisA4;\na.a5 := 1.0;"),
+    "AxesToCartesian: two bytes exchanged": Break(
+        _BYTES, "Softkin_PeriodNumber(values[index])", "Softkin_PeriodNumber(values[0])"
+    ),
+    "AxesToCartesian: a byte without a meaning": Break(_BYTES, "cd := ", "bytes.abyData[30] := 7;\ncd := "),
+    "CartesianToAxes: a tie": Break(_INVERSE, "least - tie", "least + 1.0E6"),
     "CartesianToAxes: a tolerance": Break(_BRANCH, "ABS(cosA2) <= 1.0000000000005", "ABS(cosA2) <= 0.9"),
     "CartesianToAxes: an error": Break(
         _BRANCH,
         "iReason := 2;\n    SolveBranch := Softkin_Names.Unreachable",
         "iReason := 2;\n    SolveBranch := Softkin_Names.InvalidCoupling",
     ),
-    "CartesianToAxes: a limit": Break(_LIMITS, "(a.a3 <= axes[3].highest)", "(a.a3 <= 2.0*axes[3].highest)"),
+    "CartesianToAxes: a limit": Break(_LIMITS, "(values[index] <= axes", "(values[index] <= 2.0*axes"),
     "CartesianToAxes: an output before a refusal": Break(
-        _INVERSE, "status := TestLimits(", "a := solution;\nstatus := TestLimits("
+        "METHOD PUBLIC CartesianToAxes",
+        "IF status = Softkin_Names.NoError THEN",
+        "IF status <> Softkin_Names.NotInitialized THEN",
     ),
-    "CartesianToAxes: a turn": Break(_BRANCH, "SEL(turnA4 > 0, turnA4, turnA4 - 1)", "SEL(turnA4 > 0, turnA4, turnA4)"),
-    "CartesianToAxes: byte 3": Break("FUNCTION Softkin_AdmitsBranch", "(byConfigured = 3)", "(byConfigured = 7)"),
+    "CartesianToAxes: a turn": Break(_INVERSE, "number, number - 1)", "number, number)"),
+    "CartesianToAxes: byte 3": Break(_INVERSE, "(number = 3)", "(number = 7)"),
     "Jacobian: a column": Break(_JACOBIAN, "J[3, 3] := 1.0;", "J[3, 3] := 0.0;"),
     "Jacobian: an element outside": Break("METHOD PUBLIC Jacobian", "J := found;", "J := found;\n  J[5, 5] := 1.0;"),
     "AxesToOrientation: an element": Break(
-        "METHOD PUBLIC AxesToOrientation", "rot[2, 1] := sinA124", "rot[2, 1] := cosA124"
+        "METHOD PROTECTED FindOrientation", "rot[2, 1] := sinA124", "rot[2, 1] := cosA124"
     ),
     "IsSingularity: a threshold": Break(_SINGULAR, "< warningDistance", "< 900.0*warningDistance"),
-    "GetAxisProperties: a type": Break(_DESCRIBE, "aRotary[0] := TRUE", "aRotary[2] := TRUE"),
+    "GetAxisProperties: a type": Break(_DESCRIBE, "xRotary := FALSE", "xRotary := TRUE"),
     "GetOrientationImage: a freedom": Break(
-        "METHOD PUBLIC GetOrientationImage", "Softkin_Names.TurningOrientation", "Softkin_Names.FixedOrientation"
+        _DESCRIBE, "Softkin_Names.TurningOrientation", "Softkin_Names.FixedOrientation"
     ),
     "GetFlangeOrientationImageWithOri: an axis": Break(
         "METHOD PUBLIC GetFlangeOrientationImageWithOri", "vRot.dZ := projected[3, 3]", "vRot.dZ := projected[1, 1]"
     ),
-    "AxesToConfiguration_Offset: a sign": Break(
-        "METHOD PUBLIC AxesToConfiguration_Offset", "toolX*sinA2", "toolY*sinA2"
-    ),
-    "CartesianToAxes_Offset: a sign": Break("METHOD PRIVATE SolveOffsetBranch", "v_MCS.dZ - toolZ", "v_MCS.dZ + toolZ"),
+    "AxesToConfiguration_Offset: a sign": Break("METHOD PROTECTED FindOffsetBranches", "toolX*sinA2", "toolY*sinA2"),
+    "CartesianToAxes_Offset: a sign": Break("METHOD PROTECTED SolveOffsetBranch", "v.dZ - toolZ", "v.dZ + toolZ"),
     "GetKinematicsName: a name": Break(_DESCRIBE, "'Kin_Scara4_ZCcoupled'", "'Kin_Scara4'"),
     "GetPeriods: an axis": Break(_DESCRIBE, "aAxisOfTurn[0] := 3", "aAxisOfTurn[0] := 2"),
     "CPConnectible: anything": Break("METHOD PUBLIC CPConnectible", "CPConnectible := FALSE", "CPConnectible := TRUE"),

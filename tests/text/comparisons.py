@@ -243,7 +243,7 @@ def why_initialize(pair: SerialPair, sample: Sample) -> None:
 def image(pair: SerialPair, sample: Sample) -> None:
     """The methods without a commanded rotation write the orientations that Python gives."""
     for method in ("GetOrientationImage", "GetFlangeOrientationImageTotal"):
-        if method.lower() in pair.controller.block.routines:
+        if method.lower() in pair.controller.methods:
             expected = pair.robot.orientation_image()
             assert_same(pair.controller.image(method), (OK, tuple(expected)), pair)
 

@@ -11,6 +11,7 @@ from derive.kinematics.parameters import machine_parameters
 from tests.harness.library import Library
 from tests.text import values
 from tests.text.settings import Range, settings
+from tests.text.units import public_methods
 from tests.text.values import Numbers
 
 OK = "SMC_NO_ERROR"
@@ -33,6 +34,11 @@ class Controller:
         self.library = library
         self.mechanism = mechanism
         self.block = library.new(mechanism.block_name)
+
+    @property
+    def methods(self) -> frozenset[str]:
+        """The public methods that its interfaces have, in small letters; others that it inherits answer nothing."""
+        return frozenset(name.lower() for name in public_methods(self.mechanism))
 
     def set_inputs(self, given: Mapping[str, float]) -> None:
         """Set the inputs that parameters name."""

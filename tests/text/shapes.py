@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from tests.text.phrases import Keys, shortened
 
 _WORDS = re.compile(r"//[^\n]*|'[^'\n]*'|\b\d[\d.]*(?:E-?\d+)?\b|\b[A-Za-z_]\w*\b")
-_ALONE = re.compile(r"VAR|METHOD|FUNCTION|PROPERTY|TYPE|GET|END_|\{|TRAFO\.")
+_ALONE = re.compile(r"VAR|STRUCT|METHOD|FUNCTION|PROPERTY|TYPE|GET|END_|\{|TRAFO\.")
 """How lines begin that are no part of a statement."""
 _ENDS = (";", "THEN", "ELSE", "DO", "OF", ":")
 _VARIABLE = re.compile(r"\w+ : [^;]*;")

@@ -7,11 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from derive.description.mechanism import Turning
+from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.references import held_at
-from tests.text.controller import OK, UNREACHABLE
+from tests.harness.library import Library
+from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.limits import EXACTLY_A_TURN, has_limits, is_inside
-from tests.text.serial_pairs import SerialPair
+from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
+from tests.text.units import compiled_text, file_of, text_of
 
 ROUND_TRIP = 1e-9
 """Away from singular poses: relative to a turn, or to the size of the machine."""
@@ -75,7 +77,7 @@ def test_calling_the_block_itself_does_nothing(serial_pairs: tuple[SerialPair, .
 def test_the_orientation_is_that_of_the_frame_and_in_the_image(serial_pairs: tuple[SerialPair, ...]) -> None:
     """A flange with one degree of freedom turns about its axis; one with none does not turn."""
     for one in serial_pairs:
-        whole = "GetOrientationImage".lower() not in one.controller.block.routines
+        whole = "GetOrientationImage".lower() not in one.controller.methods
         method = "GetFlangeOrientationImageTotal" if whole else "GetOrientationImage"
         _, (freedom, zero, base, flange) = one.controller.image(method)
         assert freedom == one.robot.FREEDOM
@@ -93,7 +95,7 @@ def test_the_orientation_is_that_of_the_frame_and_in_the_image(serial_pairs: tup
 def test_the_projected_orientation_is_the_one_that_the_axes_reach(serial_pairs: tuple[SerialPair, ...]) -> None:
     """For tilted commands: GetFlangeOrientationImageWithOri, and forward kinematics of inverse kinematics."""
     for one in unlimited(serial_pairs):
-        if "getflangeorientationimagewithori" not in one.controller.block.routines:
+        if "getflangeorientationimagewithori" not in one.controller.methods:
             continue
         for sample in one.regular:
             position = one.controller.forward(sample.axes)[1][0]
@@ -113,7 +115,7 @@ def test_the_projected_orientation_is_the_one_that_the_axes_reach(serial_pairs: 
 def test_a_point_off_the_flange_comes_to_its_place(serial_pairs: tuple[SerialPair, ...]) -> None:
     """Round trip of the offset interface, with the configuration that it gives itself."""
     for one in unlimited(serial_pairs):
-        if "cartesiantoaxes_offset" not in one.controller.block.routines:
+        if "cartesiantoaxes_offset" not in one.controller.methods:
             continue
         for sample in one.regular:
             for offset in ((0.0, 0.0, 0.0), sample.offset):
@@ -133,3 +135,23 @@ def place(one: SerialPair, axes: tuple[float, ...], offset: tuple[float, ...]) -
     position, rotation, _ = one.controller.forward(axes)[1]
     turned = [sum(r * o for r, o in zip(row, offset, strict=True)) for row in rotation]
     return [p + t for p, t in zip(position, turned, strict=True)]
+
+
+def geared(mechanism: Mechanism) -> Library:
+    """A unit whose first axis has a gear, of one turn per turn."""
+    text, place = text_of(mechanism), "layout.iRows :="
+    assert place in text
+    return compiled_text(file_of(mechanism), text.replace(place, f"layout.aGeared[0] := TRUE;\n{place}", 1))
+
+
+def test_a_gear_of_one_turn_changes_nothing() -> None:
+    """The turns of a joint behind a gear are counted by the base block; with one turn per turn they are those of the
+    axis.
+    """
+    mechanism = next(m for m in MECHANISMS if m.name == "Kin_Scara4_ZCcoupled_Type1")
+    one = serial_pairs_of(mechanism)[0]
+    other = Controller(geared(mechanism), mechanism)
+    assert other.initialise(one.robot.parameters) == OK
+    for sample in one.regular[:10]:
+        axes = [value + 360.0 * k for k, value in enumerate(sample.axes)]
+        assert other.forward(axes) == one.controller.forward(axes)

@@ -21,7 +21,7 @@ FILES = {
 }
 UNITS = [name for name in FILES if not name.startswith(("softkin/", "selftest/"))]
 CONTRACT = load()
-PRIVATE = {"SolveBranch", "SolveOffsetBranch", "FindPlatform", "EndPointOnFlange"}
+PRIVATE = {"FindPlatform", "EndPointOnFlange"}
 PRIVATE |= {"FindRoot", "TryAt", "TryJoint", "FinishRoot"}
 ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2")
 
@@ -90,14 +90,52 @@ def test_methods_are_those_of_the_contract(file: str) -> None:
 
 @pytest.mark.parametrize("file", UNITS)
 def test_every_block_supplies_what_the_base_calls(file: str) -> None:
-    """A block overrides each protected method of the base with the identical header; what it declares besides is
-    public or private.
+    """A block overrides each protected method of the base that its interfaces need, with the identical header; what it
+    declares besides is public or private.
     """
     block, base = blocks()[file], library().objects["Softkin_Kinematics"]
     assert block.extends == base.name
-    supplied = {m.name: header(m) for m in base.methods if m.access == "PROTECTED"}
-    assert supplied == {m.name: header(m) for m in block.methods if m.access == "PROTECTED"}
-    assert set(supplied) == set(CONTRACT.supplied)
+    offered = {m.name: header(m) for m in base.methods if m.access == "PROTECTED"}
+    supplied = {m.name: header(m) for m in block.methods if m.access == "PROTECTED"}
+    assert supplied == {name: offered[name] for name in supplied}
+    names = [name.removeprefix("TRAFO.") for name in block.implements]
+    interfaces = CONTRACT.closure([name for name in names if name in CONTRACT.interfaces])
+    public = {m for i in interfaces for m in i.methods}
+    needed = {n for n in CONTRACT.supplied if n not in CONTRACT.supplied_for or CONTRACT.supplied_for[n] & public}
+    assert needed <= set(supplied) <= needed | set(CONTRACT.overridable)
+    assert set(offered) == set(CONTRACT.supplied) | set(CONTRACT.overridable)
+
+
+def test_what_a_block_need_not_supply() -> None:
+    """Whatever only some blocks supply some do and some do not, and the method that needs it is the base's own."""
+    base = {m.name for m in library().objects["Softkin_Kinematics"].methods if m.access == "PUBLIC"}
+    for name, methods in CONTRACT.supplied_for.items():
+        assert methods <= base
+        assert {name in {m.name for m in block.methods} for block in blocks().values()} == {True, False}
+    with_more = [file for file, block in blocks().items() if "TestLimits" in {m.name for m in block.methods}]
+    assert 3 <= len(with_more) <= 10 and "planar/Kin_PCC.st" in with_more
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_the_base_tests_the_limits_that_the_reasons_name(file: str) -> None:
+    """Where the base tests the limits of the axes, the numbers that Describe gives are those of their reasons."""
+    block, text = blocks()[file], FILES[file]
+    axes = _axes_of(block)
+    first = [int(number) for number in re.findall(r"Softkin_AddAxis\(.* iLow := (\d+)\);", text)]
+    assert len(first) == len(axes)
+    if "TestLimits" in {m.name for m in block.methods}:
+        assert set(first) == {0}
+        return
+    reasons = dict(re.findall(r"^  (\d+): ReasonOf := '(.*)';$", text, re.MULTILINE))
+    for axis, number in zip(axes, first, strict=True):
+        assert reasons[str(number)].startswith(f"{axis}: below its lower limit")
+        has_turns = re.search(rf"layout\.aAxisOfTurn\[\d\] := {axes.index(axis)};", text) is not None
+        assert ("name one inside" in reasons[str(number + 1)]) == has_turns
+        assert reasons[str(number + 1 + has_turns)].startswith(f"{axis}: above its upper limit")
+
+
+def _axes_of(block: ast.Block) -> list[str]:
+    return [name for p in block.pragmas if "'sm_kin_axes'" in p for name in p.split("'")[3].split(", ")]
 
 
 def test_the_interface_has_our_own_methods() -> None:
@@ -149,9 +187,12 @@ def test_the_base_is_an_ordinary_block() -> None:
     assert not re.search(r"\b(ABSTRACT|FINAL)\b", FILES["softkin/Softkin_Kinematics.st"])
     made = library().new("Softkin_Kinematics")
     assert made.call("Initialize") == "SMC_TRAFO_NOT_INITIALIZED" and made.call("IsInitialized") is False
-    for method in (m for m in base.methods if m.access == "PROTECTED"):
+    for method in (m for m in base.methods if m.name in CONTRACT.supplied):
         (answer,) = (s for s in method.body if isinstance(s, ast.Assign))
-        assert isinstance(answer.value, ast.Member) and answer.value.name == "NotInitialized"
+        if method.name == "ReasonOf":
+            assert made.call("ReasonOf", iReason=1) == "not initialized"
+        else:
+            assert isinstance(answer.value, ast.Member) and answer.value.name == "NotInitialized"
 
 
 @pytest.mark.parametrize("file", UNITS)
@@ -164,7 +205,7 @@ def test_the_newest_interfaces_that_fit(file: str) -> None:
     assert ("ISMKinematicWithConfigurations4" in names) == has_configuration
     assert f"{block.name}_ReadConfig" in library().objects or not has_configuration
     is_orientation = file.startswith("orientation/")
-    is_position = "GetOrientationImage" in {m.name for m in block.methods}
+    is_position = "FindOrientation" in {m.name for m in block.methods}
     offset = "ISMPositionKinematics_Offset2" if has_configuration else "ISMPositionKinematics_Offset"
     assert sum(name in ("ISMPositionKinematics2", offset) for name in names) == is_position
     assert sum(name in ORIENTATION for name in names) == (3 if is_orientation else 0)

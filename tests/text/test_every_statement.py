@@ -35,7 +35,8 @@ from tests.text.units import compiled, compiled_shared, file_of, shared_texts, t
 
 MACHINES = ("plain", "equal", "limited", "limited to a turn")
 OF_THE_BASE = ("Kin_Scara4_ZCcoupled_Type1", "Softkin_Pos_RRR")
-"""The blocks whose calls reach every statement of the base block."""
+OF_A_DIRECTION = "Softkin_5Axes"
+"""The blocks whose calls, together, reach every statement of the base block."""
 FEW, A_FEW = 3, 25
 """The numbers of samples: a watched call takes its time."""
 POSED = COMPARISONS.keys() - POSELESS
@@ -84,6 +85,9 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
     scara, arm = (next(m for m in MECHANISMS if m.block_name == name) for name in OF_THE_BASE)
     for mechanism in (scara, arm):
         libraries += [compiled(mechanism), compiled(mechanism, matrix_size=36)]
+        libraries.append(test_initialise.without_index_checks(mechanism))
+    five_axes = next(m for m in MECHANISMS if m.block_name == OF_A_DIRECTION)
+    libraries += [test_blocks_alone.geared(scara), compiled(five_axes)]
     libraries.append(test_self_test.with_faults(scara))
     statements = Statements(shared_texts(), libraries)
     with statements.watched():
@@ -93,12 +97,15 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
             test_axis_settings.test_what_is_refused_changes_nothing(mechanism)
             test_initialise.test_limits_are_in_order(mechanism, 10.0, 10.0)
             test_initialise.test_a_matrix_of_another_size_is_refused(mechanism, 36)
+            test_initialise.test_a_configuration_that_is_too_small_is_refused(mechanism)
             test_garbage.test_garbage_in_one_number(pairs)
             test_garbage.test_what_is_no_rotation(pairs)
             test_not_initialised.test_no_method_works(pairs, test_not_initialised.fresh)
             for one in pairs[:4]:
                 for sample in (*few(one.regular, FEW), *few(one.grid, A_FEW)):
                     compare_all(one, sample)
+        test_blocks_alone.test_a_gear_of_one_turn_changes_nothing()
+        compare_all(serial_pairs_of(five_axes)[0], serial_pairs_of(five_axes)[0].regular[0])
         test_self_test.every_statement_of_the_base(libraries[-1], scara)
         for size in range(1, 7):
             test_shared_functions.test_solve(size)
@@ -153,7 +160,7 @@ def libraries(mechanism: Mechanism) -> list[Library]:
 def compare_all(one: SerialPair, sample: Sample, methods: Collection[str] = COMPARISONS.keys()) -> None:
     """Every one of these methods that the block has answers as Python at a sample."""
     for method, compare in COMPARISONS.items():
-        if method in methods and method.lower() in one.controller.block.routines:
+        if method in methods and method.lower() in one.controller.methods:
             compare(one, sample)
 
 
@@ -183,15 +190,14 @@ def run_the_tests(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) ->
 
 
 def unreachable(mechanism: Mechanism, lines: list[str]) -> set[int]:
-    """The lines that no input reaches: an axis whose closure allows only an interval always has limits, a CONFIGDATA
-    without bytes does not exist, and a divisor that has been refused is not replaced."""
+    """The lines that no input reaches: an axis whose closure allows only an interval always has limits, and a divisor
+    that has been refused is not replaced."""
     keys = [capitalized(joint.key) for joint in mechanism.joints if joint.domain is not None]
     dead = {
         f"{word}{key} := {value};" for key in keys for word, value in (("lowest", "-1.0E12"), ("highest", "1.0E12"))
     }
     found = {number for number, line in enumerate(lines, 1) if line.strip() in dead}
-    empty = [number for number, line in enumerate(lines, 1) if line == "IF SIZEOF(bytes) < 1 THEN"]
-    return found.union(replaced_after_a_refusal(lines), *({number + 1, number + 2} for number in empty))
+    return found | replaced_after_a_refusal(lines)
 
 
 def replaced_after_a_refusal(lines: list[str]) -> set[int]:

@@ -115,7 +115,7 @@ def test_garbage_in_axes_as_in_python(pairs: tuple[Pair, ...]) -> None:
         axes = (*sample.axes[:index], garbage, *sample.axes[index + 1 :])
         assert one.controller.forward(axes)[0] == BAD_INPUT
         for method in FORWARD_METHODS:
-            if method.lower() in one.controller.block.routines:
+            if method.lower() in one.controller.methods:
                 COMPARISONS[method](one, replace(sample, axes=axes))
 
 
@@ -149,7 +149,7 @@ def test_what_is_no_rotation(pairs: tuple[Pair, ...]) -> None:
                 assert found[0] == (BAD_INPUT if one.robot.READS_ROTATION else OK), f"{one} {rows}"
                 status, axes = asked(one.robot.inverse, (position, rows), own, sample.axes)
                 assert_same(found, (status, axes and axes + (0.0,) * (6 - len(axes))), one, rows)
-                if "getflangeorientationimagewithori" in one.controller.block.routines:
+                if "getflangeorientationimagewithori" in one.controller.methods:
                     assert one.controller.image_with_orientation(rows)[0] == BAD_INPUT
 
 
@@ -165,7 +165,7 @@ def test_a_pose_that_cannot_be_assembled(serial_pairs: tuple[SerialPair, ...]) -
             assert one.controller.forward(axes)[0] == IMPOSSIBLE
             assert one.controller.is_singular(axes)
             for method in FORWARD_METHODS:
-                if method.lower() in one.controller.block.routines:
+                if method.lower() in one.controller.methods:
                     COMPARISONS[method](one, replace(sample, axes=axes))
 
 

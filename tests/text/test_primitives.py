@@ -111,12 +111,6 @@ def test_branch_byte(margin: float, byte: int) -> None:
     assert call("BranchByte", margin) == byte
 
 
-@pytest.mark.parametrize(("byte", "admitted"), [(0, {1, 2}), (1, {1}), (2, {2}), (3, {1, 2}), (4, set())])
-def test_admitted_branches(byte: int, admitted: set[int]) -> None:
-    """A branch byte of 0 or 3 admits both branches, 1 and 2 admit their own."""
-    assert {branch for branch in (1, 2) if call("AdmitsBranch", byte, branch)} == admitted
-
-
 @pytest.mark.parametrize("order", ["rows", "columns"])
 def test_the_storage_order_is_found(order: str) -> None:
     """Whatever the order, a rotation arrives as it is meant."""

@@ -68,7 +68,7 @@ def test_nothing_is_left_out() -> None:
 def test_a_unit_parses_as_it_is_written() -> None:
     """The independent grammar reads a unit as a whole."""
     trees = parse_text_with_blark(TEXTS[WHOLE], WHOLE)
-    assert any(line.startswith("METHOD PUBLIC CartesianToAxes ") for line in trees)
+    assert any(line.startswith("METHOD PROTECTED SolveBranch ") for line in trees)
 
 
 @pytest.mark.slow

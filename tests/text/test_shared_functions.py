@@ -209,11 +209,21 @@ def test_branch_byte(margin: float) -> None:
     assert LIBRARY.function("Softkin_BranchByte")(margin) == expected
 
 
-def test_which_bytes_admit_a_branch() -> None:
-    """Of all bytes, 0 and 3 admit both branches, 1 and 2 one each, and the others none."""
-    admits = LIBRARY.function("Softkin_AdmitsBranch")
-    for byte in range(256):
-        assert [admits(byte, branch) for branch in (1, 2)] == [byte in (0, 3, 1), byte in (0, 3, 2)]
+def test_the_distance_from_a_reference() -> None:
+    """The sum of squares over the axes that are compared; 0 where the reference of one of them is no number."""
+    found = LIBRARY.new("TRAFO.AXISPOS_REF")
+    near = LIBRARY.new("TRAFO.AXISPOS_REF")
+    for k in range(6):
+        setattr(found, f"a{k}", 10.0 * k)
+        setattr(near, f"a{k}", float(k))
+    distance = LIBRARY.function("Softkin_Distance")
+    every = [True] * 6
+    assert distance(a=found, aRef=near, aCompared=every) == sum((9.0 * k) ** 2 for k in range(6))
+    assert distance(a=found, aRef=near, aCompared=[False, True, False, False, False, True]) == 81.0 + 45.0**2
+    for wrong in NO_NUMBERS:
+        near.a4 = wrong
+        assert distance(a=found, aRef=near, aCompared=every) == 0.0
+        assert distance(a=found, aRef=near, aCompared=[True, True, False, False, False, False]) == 81.0
 
 
 def test_the_harness_would_notice_a_bad_operation() -> None:
@@ -386,16 +396,23 @@ def test_the_byte_of_a_choice() -> None:
     assert found == [1, 2, 0, 0]
 
 
+def test_the_reasons_of_bytes() -> None:
+    """One for each byte of a branch, and none for what is no byte."""
+    reason = compiled_shared().function("Softkin_ByteReason")
+    assert len({reason(iByte=k) for k in range(8)}) == 8 and reason(iByte=8) == ""
+
+
 def test_the_base_alone_supplies_nothing() -> None:
     """Every protected method of the base answers that nothing is initialised, and writes nothing."""
     made = compiled_shared().new("Softkin_Kinematics")
     for name, entry in made.routines.items():
-        if entry.routine.declaration.access == "PROTECTED":
+        if entry.routine.declaration.access == "PROTECTED" and name != "testlimits":
             given = {
                 p.name: make()
                 for p, make in zip(entry.routine.parameters, entry.defaults, strict=True)
                 if p.scope != "VAR_OUTPUT"
             }
-            assert made.call(name, **given) == "SMC_TRAFO_NOT_INITIALIZED", name
+            refused = "not initialized" if name == "reasonof" else "SMC_TRAFO_NOT_INITIALIZED"
+            assert made.call(name, **given) == refused, name
     assert made.call("Initialize") == "SMC_TRAFO_NOT_INITIALIZED"
     assert made.call("InitializeReason") == "not initialized"

@@ -23,7 +23,7 @@ def rows(matrix: np.ndarray) -> Rows:
 
 def offered(one: SerialPair) -> bool:
     """Whether the block has the method that reads a commanded rotation."""
-    return "getflangeorientationimagewithori" in one.controller.block.routines
+    return "getflangeorientationimagewithori" in one.controller.methods
 
 
 def test_a_frame_from_real_is_answered_as_in_python(serial_pairs: tuple[SerialPair, ...]) -> None:

@@ -69,13 +69,13 @@ def test_singularities_that_coincide(serial_pairs: tuple[SerialPair, ...]) -> No
 
 def offered(one: SerialPair, methods: tuple[str, ...]) -> list[str]:
     """Those that the block has."""
-    return [method for method in methods if method.lower() in one.controller.block.routines]
+    return [method for method in methods if method.lower() in one.controller.methods]
 
 
 def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs: tuple[SerialPair, ...]) -> None:
     """The effective link of the offset interface is then too short to have a direction."""
     for one in serial_pairs:
-        if "cartesiantoaxes_offset" not in one.controller.block.routines:
+        if "cartesiantoaxes_offset" not in one.controller.methods:
             continue
         for sample in one.regular[:5]:
             for offset in fixed_points(one, sample):
@@ -85,7 +85,7 @@ def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs: tuple[Seria
 def test_a_point_beside_the_first_axis_of_a_stretched_arm(serial_pairs: tuple[SerialPair, ...]) -> None:
     """Branches meet at two edges of the workspace at once."""
     for one in serial_pairs:
-        if "cartesiantoaxes_offset" not in one.controller.block.routines:
+        if "cartesiantoaxes_offset" not in one.controller.methods:
             continue
         sample = one.regular[0]
         for axes, offsets in beside_the_first_axis(one.machine):
@@ -96,7 +96,7 @@ def test_a_point_beside_the_first_axis_of_a_stretched_arm(serial_pairs: tuple[Se
 def test_a_point_far_off_the_flange_is_out_of_reach(serial_pairs: tuple[SerialPair, ...]) -> None:
     """In one direction or another: then the place is nearer to an axis than the arm passes it."""
     for one in serial_pairs:
-        if "cartesiantoaxes_offset" not in one.controller.block.routines:
+        if "cartesiantoaxes_offset" not in one.controller.methods:
             continue
         sample, refused = one.regular[0], 0
         place, default = point_at(one, sample, (0.0, 0.0, 0.0)), one.robot.DEFAULT_CONFIGURATION
@@ -133,7 +133,7 @@ def test_a_tie_goes_to_the_first_branch(serial_pairs: tuple[SerialPair, ...]) ->
     point, nothing = (0.8 * one.machine.reach, 0.0, 0.0), (0.0,) * count
     first, opened = (1,) + (0,) * (size - 1), (0,) * size
     solvers = [partial(one.controller.inverse, point, NO_TURN)]
-    if "cartesiantoaxes_offset" in one.controller.block.routines:
+    if "cartesiantoaxes_offset" in one.controller.methods:
         solvers.append(partial(one.controller.inverse_offset, point, (0.0, 0.0, 0.0)))
     for solve in solvers:
         assert solve(first, nothing)[0] == OK

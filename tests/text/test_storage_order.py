@@ -20,7 +20,7 @@ def test_every_method_answers_the_same_by_columns(mechanism: Mechanism) -> None:
         for sample in by_rows.regular[:FEW]:
             assert by_columns.controller.forward(sample.axes) == by_rows.controller.forward(sample.axes)
             for method in COMPARISONS.keys() - POSELESS:
-                if method.lower() in by_columns.controller.block.routines:
+                if method.lower() in by_columns.controller.methods:
                     COMPARISONS[method](by_columns, sample)
 
 

@@ -18,6 +18,8 @@ _HOLDERS = ("FUNCTION_BLOCK", "PROGRAM", "INTERFACE", "PROPERTY")
 _WHOLE = {"TYPE": "END_TYPE", "VAR_GLOBAL": "END_VAR"}
 """The objects that are a declaration alone, with the line that ends it."""
 _RULER_WIDTH = 110
+_BESIDE = "  // ===="
+"""The ruler beside a line that one does not paste."""
 
 
 @dataclass(frozen=True)
@@ -109,25 +111,31 @@ def _made(kind: str, name: str, lines: Sequence[str], members: Sequence[Object])
 
 
 def _lines(one: Object, path: str) -> Iterator[str]:
-    """Rulers and parts. A ruler without a name precedes what one does not paste: GET and the closing lines."""
-    if one.kind == "GET":
-        yield "GET"
+    """Rulers and parts. A ruler without a name stands beside what one does not paste: GET and the closing lines."""
     if one.declaration:
         yield _ruler(f" {one.kind} {path}: declaration ")
         yield one.declaration
-    if one.kind == "PROPERTY":
-        yield _ruler()
     for member in one.members:
         # The ruler of a getter has the name of the property.
-        yield from _lines(member, path) if member.kind == "GET" else ("", *_lines(member, f"{path}.{member.name}"))
+        yield from (
+            ("GET" + _BESIDE, *_lines(member, path))
+            if member.kind == "GET"
+            else (
+                "",
+                *_lines(member, f"{path}.{member.name}"),
+            )
+        )
     if one.implementation:
-        yield from () if one.kind == "GET" else ("",)
         yield _ruler(f" {one.kind} {path}: implementation ")
         yield one.implementation
-    if one.implementation or not one.members:
-        yield _ruler()
-    if one.kind not in _WHOLE:
-        yield f"END_{one.kind}"
+    closing = "" if one.kind in _WHOLE else f"END_{one.kind}"
+    is_part = bool(one.implementation) or not one.members
+    yield from () if not closing and not is_part else (_closed(closing, is_part),)
+
+
+def _closed(closing: str, is_part: bool) -> str:
+    """A closing line, with the ruler that ends the part above it."""
+    return closing + _BESIDE if closing and is_part else closing or _ruler()
 
 
 def _ruler(title: str = "") -> str:

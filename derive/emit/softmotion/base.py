@@ -8,12 +8,20 @@ from dataclasses import dataclass
 from jinja2 import Environment
 
 from derive.emit.softmotion.layout import tidy
-from derive.emit.st.contract import Contract, Signature
+from derive.emit.st.contract import Contract, Parameter, Signature
 from derive.emit.st.layout import with_gathered
 
-_OWN = ("InitializeReason", "Jacobian", "Margins", "AxisVelocities")
+_OWN = ("InitializeReason", "Jacobian", "Margins", "AxisVelocities", "Diagnose")
 _OF_INTERFACES = (
     "Initialize",
+    "AxesToCartesian",
+    "CartesianToAxes",
+    "AxesToOrientation",
+    "GetOrientationImage",
+    "GetFlangeOrientationImageTotal",
+    "GetFlangeOrientationImageWithOri",
+    "AxesToConfiguration_Offset",
+    "CartesianToAxes_Offset",
     "IsInitialized",
     "GetKinematicsName",
     "GetAxisProperties",
@@ -30,8 +38,22 @@ INHERITED = frozenset((*_OWN, *_OF_INTERFACES))
 """The public methods that no geometry changes."""
 
 
-BASE_VARIABLES = ("DEGREE", "RADIAN", "initialized", "refusal", "matrixOrder", "checkLimits", "warningDistance", "axes")
+BASE_VARIABLES = (
+    "DEGREE",
+    "RADIAN",
+    "initialized",
+    "refusal",
+    "matrixOrder",
+    "kind",
+    "checkLimits",
+    "warningDistance",
+    "tie",
+    "axes",
+)
 """The instance variables of the base block."""
+PRIVATE = ("FindAxes", "Configure")
+"""The private methods of the base block: what CartesianToAxes, its offset variant and Diagnose have in common, and how
+a configuration is written."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +79,45 @@ def _signatures(contract: Contract) -> Iterator[Signature]:
             yield contract.signatures[name]
     for name in _OWN:
         yield contract.own[name]
+    yield _find_axes(contract)
+    yield _configure(contract)
+    yield from contract.overridable.values()
     yield from contract.supplied.values()
+
+
+def _find_axes(contract: Contract) -> Signature:
+    """The signature of the private method: a frame in its parts, the point of the offset, and whether it is given."""
+    types = contract.spelling["types"]
+    constant = {
+        "v": types["vector"],
+        "m": types["matrix"],
+        "vOffset": types["vector"],
+        "aRef": types["axes"],
+        "cd": types["configuration"],
+    }
+    outputs = {"iReason": "INT", "dMissing": "LREAL", "iTurn": "INT"}
+    return Signature(
+        PRIVATE[0],
+        types["error"],
+        (
+            Parameter("VAR_IN_OUT", "a", types["axes"]),
+            *(Parameter("VAR_IN_OUT CONSTANT", name, kind) for name, kind in constant.items()),
+            Parameter("VAR_INPUT", "xOffset", "BOOL"),
+            *(Parameter("VAR_OUTPUT", name, kind) for name, kind in outputs.items()),
+        ),
+        "PRIVATE",
+    )
+
+
+def _configure(contract: Contract) -> Signature:
+    """The signature of the private method: numbers with the signs of the branches, and the axis values."""
+    types = contract.spelling["types"]
+    parameters = (
+        Parameter("VAR_IN_OUT", "cd", types["configuration"]),
+        Parameter("VAR_IN_OUT CONSTANT", "aBranches", "ARRAY[0..7] OF LREAL"),
+        Parameter("VAR_IN_OUT CONSTANT", "a", types["axes"]),
+    )
+    return Signature(PRIVATE[1], "", parameters, "PRIVATE")
 
 
 def _template(signature: Signature, contract: Contract) -> str:
@@ -65,5 +125,7 @@ def _template(signature: Signature, contract: Contract) -> str:
 
 
 def _method(signature: Signature, template: str, contract: Contract, templates: Environment) -> Method:
-    text = templates.get_template(f"base/{template}.st.j2").render(contract.spelling, method=signature.name)
+    text = templates.get_template(f"base/{template}.st.j2").render(
+        contract.spelling, method=signature.name, returns=signature.returns
+    )
     return Method(signature.head(), with_gathered(tidy(text)))

@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from derive.description.mechanism import Joint, Kind
+from derive.emit.softmotion.axis_limits import limit_reasons
+from derive.emit.softmotion.calls import Command, branch_of, command_of, offset_branch_of
 from derive.emit.softmotion.inputs import Input, inputs, parameter_input
 from derive.emit.st.contract import Contract
 from derive.emit.st.expression import literal
 from derive.emit.st.names import capitalized, free, stored_name, type_name
 from derive.emit.st.program import Printed
+from derive.ir.constants import TIE
 from derive.ir.passes import needed_for
 from derive.ir.program import (
     Program,
@@ -64,8 +67,6 @@ class BranchByte:
     second: str
     inputs: tuple[str, str, str]
     """Of the configuration block: whether the first branch is chosen, or none; whether both coincide."""
-    choice: str
-    of_slot: str
     output: str
 
     @property
@@ -120,6 +121,11 @@ class Block:
     """The instance variables that ReadInputs assigns at its end, each with the output of `setup` that it holds."""
     has_settings: bool
     """Whether drives pass their limits to the block."""
+    command: Command
+    """What the inverse reads of a command."""
+    limit_reasons: tuple[int, ...]
+    """The number of the reason that an axis is below its lower limit, for every axis; empty where the block tests more
+    limits than those of its axes."""
 
     def stored(self, program: Printed) -> list[tuple[str, str]]:
         """The instance variables and their values, given the text of `setup`."""
@@ -129,6 +135,11 @@ class Block:
     def slots(self) -> int:
         """The number of solutions that the branches distinguish."""
         return int(2 ** len(self.branches))
+
+    @property
+    def tie(self) -> str:
+        """The difference up to which two squared distances count as equal; empty where it is computed, or not read."""
+        return literal(float(TIE)) if self.branches and all(field != "tie" for field, _ in self.computed) else ""
 
 
 def block_of(kinematics: Kinematics, contract: Contract) -> Block:
@@ -170,28 +181,30 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         margins=tuple(m.name for m in kinematics.margins),
         computed=_computed(kinematics),
         has_settings=SETTINGS in interfaces,
+        command=command_of(kinematics),
+        limit_reasons=limit_reasons(kinematics),
     )
 
 
 def _fields(kinematics: Kinematics) -> tuple[tuple[str, str], ...]:
     types = {o.name: type_name(type_of(o.value)) for o in kinematics.setup.outputs}
-    own = stored_in_axes(kinematics)
+    own = stored_in_base(kinematics)
     return tuple((stored_name(name), types[name]) for name in constants(kinematics) if name not in own)
 
 
 @kept_by_identity(10)
-def stored_in_axes(kinematics: Kinematics) -> dict[str, str]:
-    """The constants that a structure of an axis holds, with the spelling of each."""
+def stored_in_base(kinematics: Kinematics) -> dict[str, str]:
+    """The constants that the base block holds, most of them in the structure of an axis, with the spelling of each."""
     return {
         f"{word}_{joint.key}": f"axes[{index}].{member}"
         for index, joint in enumerate(kinematics.mechanism.joints)
         for word, member in _OF_AXIS.items()
-    }
+    } | {TIE_OF_LENGTHS.name: "tie"}
 
 
 def stored_as(kinematics: Kinematics, name: str) -> str:
     """The spelling of a constant: an instance variable, or a member of the structure of an axis."""
-    return stored_in_axes(kinematics).get(name) or stored_name(name)
+    return stored_in_base(kinematics).get(name) or stored_name(name)
 
 
 def _computed(kinematics: Kinematics) -> tuple[tuple[str, str], ...]:
@@ -205,13 +218,13 @@ def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
     found: Sequence[Program | None] = (
         kinematics.forward,
         kinematics.orientation,
-        kinematics.branch,
+        branch_of(kinematics),
         kinematics.limits,
         kinematics.singularity,
         kinematics.jacobian,
         kinematics.image,
         kinematics.projection,
-        kinematics.offset_branch,
+        offset_branch_of(kinematics),
         kinematics.offset_configuration,
         kinematics.compatible,
         kinematics.end_point_shift,
@@ -283,9 +296,7 @@ def _chosen(kinematics: Kinematics) -> list[tuple[str, str, str]]:
 
 
 def _branch_byte(byte: int, name: str, names: tuple[str, str], inputs: tuple[str, str, str]) -> BranchByte:
-    stem = capitalized(name)
-    of_slot = f"slot/{2**byte} MOD 2 + 1" if byte else "slot MOD 2 + 1"
-    return BranchByte(byte, name, stem, names[0], names[1], inputs, f"branch{stem}", of_slot, f"branch_{name}")
+    return BranchByte(byte, name, capitalized(name), names[0], names[1], inputs, f"branch_{name}")
 
 
 def _interfaces(kinematics: Kinematics, contract: Contract) -> tuple[str, ...]:

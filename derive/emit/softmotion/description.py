@@ -10,7 +10,7 @@ from jinja2 import Environment
 
 from derive.description.mechanism import Kind, Role
 from derive.emit.softmotion.block import Block
-from derive.emit.softmotion.inputs import inputs
+from derive.emit.softmotion.inputs import Input, inputs
 from derive.emit.st.layout import WIDTH
 from derive.emit.st.names import respelled
 from derive.ir.constants import (
@@ -40,16 +40,14 @@ _NOT_READ = "The commanded rotation is not read."
 _COST_HEAD = ("Method", "Additions", "Multiplications", "Divisions", "Square roots", "Sines")
 _OPEN_TURN = (
     f"Without a commanded turn, an axis whose limits in the block are at most {ONE_TURN} degrees apart takes its one "
-    f"value inside them, wherever the reference is. Any other axis takes the value nearest to the reference, and its "
-    f"limits refuse but never choose another turn. So enter the limits of a range of up to {ONE_TURN} degrees in the "
-    "block, too. For an axis with a wider range command the turn of a point-to-point movement. Where another turn "
-    "would be inside the limits, Diagnose says so, and iTurn is its number."
+    "value inside them, any other axis the value nearest to the reference. Limits refuse and never choose another "
+    "turn; Diagnose gives the number of one that is inside (iTurn)."
 )
 _BOUNDED = "Every method is bounded: no loop runs without an end, and none waits. "
-_REENTRANT = "All other methods are re-entrant: the planning task and the bus task may call them at the same time."
+_REENTRANT = "others are re-entrant: several tasks may call them at once."
 _TASKS = {
-    True: f"{_BOUNDED}Initialize and AxisSettings write variables of the block. {_REENTRANT}",
-    False: f"{_BOUNDED}Initialize alone writes variables of the block. {_REENTRANT}",
+    True: f"{_BOUNDED}Initialize and AxisSettings write variables of the block; all {_REENTRANT}",
+    False: f"{_BOUNDED}Initialize alone writes variables of the block; all {_REENTRANT}",
 }
 """What holds for all methods, by whether drives pass their limits to the block."""
 _KINDS = {
@@ -68,9 +66,8 @@ _AUTOMATIC = (
     "Limits refuse a solution and never choose another one."
 )
 _DRIVES = (
-    "The limits that SoftMotion passes (AxisSettings) narrow those of the block: the range inside both decides which "
-    "turn of an axis is taken, and which poses are refused. Where SoftMotion passes none, the limits of the block "
-    "alone decide."
+    " The limits that SoftMotion passes (AxisSettings) narrow those of the block, for the turn that is taken and for "
+    "the poses that are refused."
 )
 
 
@@ -90,7 +87,6 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
         parameters=_table(("Parameter", "Unit", "Range", "Meaning"), _parameters(block)),
         refused=wrap(f"{_refused(kinematics)}The parameters are read by Initialize alone.", _WIDTH),
         configuration=list(_configuration(block)),
-        drives=wrap(_DRIVES, _WIDTH) if block.has_settings else [],
         singularities=list(_singularities(kinematics)),
         workspace=list(_workspace(kinematics)),
         costs=[*_costs(costs_of(kinematics), block), *_looped(kinematics, costs_of(kinematics))],
@@ -108,8 +104,20 @@ def _axes(kinematics: Kinematics) -> Iterator[Sequence[str]]:
 
 
 def _parameters(block: Block) -> Iterator[Sequence[str]]:
-    for given in block.inputs:
-        yield given.name, given.unit or "-", given.range or given.type, given.meaning
+    """A row for every input, and one for both limits of an axis."""
+    inputs = list(block.inputs)
+    while inputs:
+        given = inputs.pop(0)
+        name, meaning = given.name, given.meaning
+        if inputs and _are_limits(given, inputs[0]):
+            name, meaning = f"{name}, {inputs.pop(0).name}", meaning.replace("lower limit", "limits")
+        yield name, given.unit or "-", given.range or given.type, meaning
+
+
+def _are_limits(lower: Input, upper: Input) -> bool:
+    """Whether two inputs are both limits of one axis, in one range."""
+    meaning = lower.meaning.replace("lower limit", "upper limit")
+    return meaning == upper.meaning != lower.meaning and (lower.range, lower.unit) == (upper.range, upper.unit)
 
 
 def _refused(kinematics: Kinematics) -> str:
@@ -125,16 +133,20 @@ def _configuration(block: Block) -> Iterator[str]:
         return
     for branch in block.branches:
         yield from _item(f"Byte {branch.byte}, {branch.name}: 1 {branch.first}, 2 {branch.second}, {_BRANCH}.")
-    for period in block.periods:
-        turns = _GEARED if period.turns else _PERIOD
-        yield from _item(f"Byte {period.byte}, turn of {period.axis} (signed): {turns}.")
+    for turns in (_PERIOD, _GEARED):
+        periods = [p for p in block.periods if bool(p.turns) == (turns is _GEARED)]
+        if len(periods) == 1:
+            yield from _item(f"Byte {periods[0].byte}, turn of {periods[0].axis} (signed): {turns}.")
+        elif periods:
+            numbers, axes = ", ".join(str(p.byte) for p in periods), ", ".join(p.axis for p in periods)
+            yield from _item(f"Bytes {numbers}, turns of {axes} (signed): {turns}.")
     yield ""
     yield from wrap(
         f"{block.name}_Config sets a configuration, {block.name}_ReadConfig reads one. {_AUTOMATIC}", _WIDTH
     )
     if block.periods:
         yield ""
-        yield from wrap(_OPEN_TURN, _WIDTH)
+        yield from wrap(_OPEN_TURN + (_DRIVES if block.has_settings else ""), _WIDTH)
 
 
 def _singularities(kinematics: Kinematics) -> Iterator[str]:

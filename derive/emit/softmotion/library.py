@@ -42,6 +42,7 @@ from derive.ir.constants import (
 )
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
+from derive.report.branch_stretches import MOST_KEPT, MOST_SIDES
 from derive.report.reasons import NO_MEANING, NOT_INITIALIZED
 
 _FOLDER = "st"
@@ -49,8 +50,8 @@ _SHARED = "softkin"
 """The folder of the objects that all blocks share."""
 _PREAMBLE = f"""\
 // {GENERATED}
-// To paste: the text between two rulers is the declaration or implementation of the object that the upper
-// ruler names.
+// To paste: the text below a ruler, up to the next line with a ruler or the end of one, is the declaration or
+// implementation of the object that the ruler names.
 """
 
 
@@ -178,6 +179,8 @@ def _templates() -> Environment:
         statuses=[status.name for status in Status],
         not_initialized=NOT_INITIALIZED,
         no_meaning=NO_MEANING,
+        most_sides=MOST_SIDES,
+        most_kept=MOST_KEPT,
     )
     return templates
 

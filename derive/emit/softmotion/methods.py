@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from jinja2 import Environment
 
-from derive.emit.softmotion.base import BASE_VARIABLES, INHERITED, Method
+from derive.emit.softmotion.base import BASE_VARIABLES, INHERITED, PRIVATE, Method
 from derive.emit.softmotion.block import Block, constants, direct, setup_of, stored_as
-from derive.emit.softmotion.calls import BranchCall, branch_call, checks, without_checks
+from derive.emit.softmotion.calls import branch_of, commanded, offset_branch_of, without_axes
 from derive.emit.softmotion.inputs import inputs
 from derive.emit.softmotion.layout import tidy
 from derive.emit.softmotion.refused import refused_texts
 from derive.emit.st.contract import Contract, Parameter, Signature
-from derive.emit.st.expression import StructuredText
-from derive.emit.st.layout import commented, with_gathered
-from derive.emit.st.names import parameter_name
+from derive.emit.st.layout import with_gathered
 from derive.emit.st.program import Printed, printed
-from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal, Tested, Told
+from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal, Tested
 from derive.emit.st.refused_inputs import OfInputs, chained, conditions_first
 from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st.shared import method_name, own_names, signature_of
-from derive.emit.st.stretches import shares_of
 from derive.ir.program import FindRoot, Program, shared
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
@@ -33,18 +30,17 @@ _BRANCHES = ("SolveBranch", "SolveOffsetBranch")
 _FIRST = (
     "Describe",
     "ReadInputs",
-    "AxesToCartesian",
-    "CartesianToAxes",
+    "FindPose",
+    "SolveBranch",
     "TestLimits",
-    "AxesToOrientation",
-    "FindMargins",
+    "ReasonOf",
     "FindJacobian",
-    "Diagnose",
-    "GetOrientationImage",
-    "GetFlangeOrientationImageTotal",
-    "GetFlangeOrientationImageWithOri",
-    "AxesToConfiguration_Offset",
-    "CartesianToAxes_Offset",
+    "FindMargins",
+    "FindOrientation",
+    "FindImage",
+    "FindProjection",
+    "FindOffsetBranches",
+    "SolveOffsetBranch",
     "IsCompatibleWithPosKin",
     "GetPositionFromOrientation3",
     "GetPositionFromOrientation2",
@@ -56,11 +52,10 @@ _FIRST = (
 
 @dataclass(frozen=True)
 class _Source:
-    """A method before it is written: its signature, its program, and its call of a branch."""
+    """A method before it is written: its signature and its program."""
 
     signature: Signature
     program: Program | None = None
-    call: BranchCall | None = None
     is_shared: bool = False
     search: FindRoot | None = None
     """The search, for the methods that search for a root."""
@@ -80,86 +75,60 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
     for index, joint in enumerate(kinematics.mechanism.joints):
         spelled[joint.axis.name] = f"a.a{index}"
         spelled[joint.reference.name] = f"aRef.a{index}"
-        spelled[joint.turn.name] = parameter_name(joint.turn.name)
     for axis in "xyz":
         spelled[f"flange_axis_{axis}"], spelled[f"base_axis_{axis}"] = (
             f"flangeAxis.d{axis.upper()}",
             f"baseAxis.d{axis.upper()}",
         )
-    spelled |= {f"sigma_{b.name}": parameter_name(f"sigma_{b.name}") for b in kinematics.branches}
+    spelled |= {f"sigma_{b.name}": f"choice.aSigns[{k}]" for k, b in enumerate(kinematics.branches)}
+    for number, joint in enumerate(kinematics.period_joints):
+        spelled[joint.turn.name] = f"choice.aTurns[{number}]"
+        index = kinematics.mechanism.joints.index(joint)
+        spelled[commanded(joint.key).name] = f"choice.aNear[{index}]"
     return spelled | {f"r{r}{c}": f"rot[{r}, {c}]" for r in (1, 2, 3) for c in (1, 2, 3)}
 
 
 def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterator[_Source]:
     known = contract.signatures
     names = _names(block, contract)
-    programs = _programs(kinematics, block, names)
-    solved = {"CartesianToAxes": kinematics.branch, "CartesianToAxes_Offset": kinematics.offset_branch}
+    programs = _programs(kinematics)
     ready: set[str] = set()
     for name in names:
-        program = solved.get(name)
-        if program is None:
-            call = _call(name, kinematics.branch, kinematics, block, contract) if name == "Diagnose" else None
-            yield _Source(known[name], programs.get(name), call)
-            yield from _shared(programs.get(name), kinematics, contract, ready)
-            if name == "GetPositionFromOrientation3":
-                yield _Source(_end_point(known[name], block, contract))
-            continue
-        call = _call(name, program, kinematics, block, contract)
-        yield _Source(known[name], call=call)
-        is_plain = name == "CartesianToAxes"
-        solving = without_checks(program)
-        yield _Source(_explained(call.signature, block) if is_plain else call.signature, solving)
+        program = programs.get(name)
+        yield _Source(known[name], program)
         yield from _shared(program, kinematics, contract, ready)
+        if name == "GetPositionFromOrientation3":
+            yield _Source(_end_point(known[name], block, contract))
 
 
-def _call(name: str, program: Program, kinematics: Kinematics, block: Block, contract: Contract) -> BranchCall:
-    """The call of a branch in a public method, which checks the inputs first."""
-    public = contract.signatures["CartesianToAxes" if name == "Diagnose" else name]
-    errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
-    refusal = Refusal(public, errors, error)
-    if name == "Diagnose":
-        refusal = Told(contract.signatures[name], errors, error, reasons_of(kinematics))
-    printer = StructuredText(_positions(public) | spelled_inputs(kinematics))
-    found = checks(program)
-    lines = commented(refusal.lines(found, printer), found[0].comment) if found else []
-    return branch_call(public, program, kinematics, block, tuple(lines))
+def _programs(kinematics: Kinematics) -> dict[str, Program | None]:
+    """The programs of the methods that compute one, by the name of the method."""
 
+    def of_axes(program: Program | None) -> Program | None:
+        return without_axes(program, kinematics)
 
-def _programs(kinematics: Kinematics, block: Block, names: Sequence[str]) -> dict[str, Program | None]:
-    """The programs of the methods that compute one, by the name of the method; those of a branch have their own
-    method.
-    """
-    programs = {
+    return {
         "ReadInputs": setup_of(kinematics),
-        "AxesToCartesian": kinematics.forward,
-        "AxesToOrientation": kinematics.orientation,
+        "FindPose": of_axes(kinematics.forward),
+        "SolveBranch": branch_of(kinematics),
+        "SolveOffsetBranch": offset_branch_of(kinematics),
+        "FindOrientation": of_axes(kinematics.orientation),
         "TestLimits": kinematics.limits,
-        "FindMargins": kinematics.singularity,
-        "GetOrientationImage": kinematics.image,
-        "GetFlangeOrientationImageWithOri": kinematics.projection,
-        "AxesToConfiguration_Offset": kinematics.offset_configuration,
-        "FindJacobian": kinematics.jacobian,
+        "FindMargins": of_axes(kinematics.singularity),
+        "FindImage": kinematics.image,
+        "FindProjection": kinematics.projection,
+        "FindOffsetBranches": of_axes(kinematics.offset_configuration),
+        "FindJacobian": of_axes(kinematics.jacobian),
         "IsCompatibleWithPosKin": kinematics.compatible,
         "GetPositionFromOrientation3": kinematics.end_point_shift,
         "GetOrientationImageTotal": kinematics.total_image,
         "GetOrientationImageWithOri": kinematics.image if kinematics.total_image else kinematics.projection,
     }
-    total = {} if "GetOrientationImage" in names else {"GetFlangeOrientationImageTotal": kinematics.image}
-    return {**programs, **total}
 
 
 def _quotable(text: str) -> str:
     """The text as it is written between the quotes of a string."""
     return text.replace("$", "$$").replace("'", "$'")
-
-
-def _explained(signature: Signature, block: Block) -> Signature:
-    """The signature with the further outputs that Diagnose reads. A block without axes never refuses."""
-    if not block.axes:
-        return signature
-    outputs = (Parameter("VAR_OUTPUT", REASON, "INT"), Parameter("VAR_OUTPUT", MISSING, "LREAL"))
-    return replace(signature, parameters=(*signature.parameters, *outputs))
 
 
 def _shared(program: Program | None, kinematics: Kinematics, contract: Contract, ready: set[str]) -> Iterator[_Source]:
@@ -169,13 +138,20 @@ def _shared(program: Program | None, kinematics: Kinematics, contract: Contract,
         ready.add(inner.name)
         if (search := search_in(inner)) is not None:
             yield _Source(try_at_signature(search), search=search)
-        yield _Source(signature_of(inner, spelled_inputs(kinematics), contract), inner, is_shared=True, search=search)
+        own = without_axes(inner, kinematics) if search is None else inner
+        yield _Source(signature_of(inner, spelled_inputs(kinematics), contract), own, is_shared=True, search=search)
 
 
 def _names(block: Block, contract: Contract) -> list[str]:
-    """The public methods of the implemented interfaces, and those of the block itself; the most important are first."""
-    names = [m for i in contract.closure(block.interfaces) for m in i.methods]
-    names = [n for n in dict.fromkeys([*names, *contract.own, *contract.supplied]) if n not in INHERITED]
+    """The public methods of the implemented interfaces, and those that the base block asks for; the most important are
+    first.
+    """
+    public = [m for i in contract.closure(block.interfaces) for m in i.methods]
+    asked = contract.supplied_for
+    supplied = [n for n in contract.supplied if n not in asked or asked[n] & set(public)]
+    overridden = [] if block.limit_reasons or not block.axes else contract.overridable
+    names = [*public, *contract.own, *supplied, *overridden]
+    names = [n for n in dict.fromkeys(names) if n not in INHERITED]
     return sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))
 
 
@@ -195,8 +171,8 @@ def _method(
 ) -> Method:
     name = source.signature.name
     reads = kinematics.reads_rotation
-    context: dict[str, object] = {"block": block, "method": name, "call": source.call, "reads_rotation": reads}
-    if name == "Diagnose":
+    context: dict[str, object] = {"block": block, "method": name, "reads_rotation": reads}
+    if name == "ReasonOf":
         context["reasons"] = [_quotable(text) for text in texts(kinematics)]
     if source.search is not None:
         context |= {"shared": search_text(source.search), "search": SEARCH}
@@ -217,7 +193,7 @@ def _method(
 def _printed(source: _Source, program: Program, kinematics: Kinematics, block: Block, contract: Contract) -> Printed:
     signature = source.signature
     taken = {i.name for i in block.inputs} | {name for name, _ in block.fields} | {p.name for p in signature.parameters}
-    taken |= {"NumAxes", *BASE_VARIABLES, *contract.signatures}
+    taken |= {"NumAxes", *BASE_VARIABLES, *PRIVATE, *contract.signatures}
     taken |= {method_name(inner) for inner in kinematics.shared}
     errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
     refusal = Refusal(signature, errors, error)
@@ -234,8 +210,17 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
     if source.is_shared:
         own = own_names(program, spelled)
         return printed(program, spelled | own, {o.name: own[o.name] for o in program.outputs}, taken, refusal)
-    shares = shares_of(program) if signature.name in _BRANCHES else None
-    return printed(program, _positions(signature) | spelled, {}, taken, refusal, shares)
+    is_branch = signature.name in _BRANCHES
+    stored = _coordinates(program) if signature.name == "FindPose" else {}
+    return printed(program, _positions(signature) | spelled, stored, taken, refusal, is_branch=is_branch)
+
+
+def _coordinates(program: Program) -> dict[str, str]:
+    """The values that are a coordinate of the pose and nothing else: they are written where they are found."""
+    bound = {let.name.name for let in program.lets()}
+    values = [str(o.value) for o in program.outputs]
+    named = {o.name: str(o.value) for o in program.outputs if o.name in "xyz"}
+    return {v: f"v.d{axis.upper()}" for axis, v in named.items() if v in bound and values.count(v) == 1}
 
 
 def _axes(kinematics: Kinematics, block: Block) -> dict[str, Tested]:
@@ -251,7 +236,7 @@ def _axes(kinematics: Kinematics, block: Block) -> dict[str, Tested]:
 def _positions(signature: Signature) -> dict[str, str]:
     """The spelling of the commanded position and of the tool offset, given the parameters that hold them."""
     names = {p.name for p in signature.parameters}
-    point = "v_MCS" if "v_MCS" in names else "f.vT"
+    point = "v" if "v" in names else "f.vT"
     spelled = {axis: f"{point}.d{axis.upper()}" for axis in "xyz"}
     if "vOffset_TCP" in names:
         spelled |= {f"point_{axis}": f"vOffset_TCP.d{axis.upper()}" for axis in "xyz"}

@@ -82,6 +82,10 @@ class Contract:
     """The methods of the interface of our own."""
     supplied: Mapping[str, Signature]
     """The protected methods that every geometry supplies to the base block."""
+    supplied_for: Mapping[str, frozenset[str]]
+    """Those of them that only a block with one of certain public methods needs, each with these."""
+    overridable: Mapping[str, Signature]
+    """The protected methods of the base block that a geometry overrides where it has more to do."""
     is_flat: bool
     """Whether every block has the variables and methods of the base block itself, and extends none."""
     omits: frozenset[str]
@@ -100,7 +104,7 @@ class Contract:
     @property
     def signatures(self) -> dict[str, Signature]:
         """Every method by name."""
-        found = {**self.own, **self.supplied}
+        found = {**self.own, **self.supplied, **self.overridable}
         for interface in self.interfaces.values():
             found.update(interface.methods)
         return found
@@ -136,11 +140,14 @@ def load(profile: str | None = None, file: Path = _FILE) -> Contract:
     listed = tables.pop("list")
     groups = {key: _constants(table) for key, table in tables.items()}
     data |= {key: {k: f"{listed}.{c.name}" for k, c in inside.items()} for key, inside in groups.items()}
+    supplied = data.pop("supplied")
     names = tuple(Group(tables[key]["title"], tuple(inside.values())) for key, inside in groups.items())
     return Contract(
         interfaces,
         _signatures(data.pop("own")),
-        _signatures(data.pop("supplied"), "PROTECTED"),
+        _signatures(supplied, "PROTECTED"),
+        {key: frozenset(table["of"]) for key, table in supplied.items() if "of" in table},
+        _signatures(data.pop("overridable"), "PROTECTED"),
         any(one.get("flat", False) for one in chosen),
         omits,
         names,

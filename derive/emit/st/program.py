@@ -14,7 +14,7 @@ from derive.emit.st.loops import LOCALS, declarations, kept, loop_lines, solve_l
 from derive.emit.st.names import respelled, spellings, type_name
 from derive.emit.st.refusal import Refusal
 from derive.emit.st.shared import OUTCOME, call_lines
-from derive.emit.st.stretches import KEPT, KNOWN, SIDE, Shares, stretch_lines
+from derive.emit.st.stretches import SIDE, has_sides, stretch_lines
 from derive.ir.constants import (
     DEGREE,
 )
@@ -60,9 +60,10 @@ def printed(
     stored: Mapping[str, str],
     taken: Iterable[str],
     refusal: Refusal,
-    shares: Shares | None = None,
+    *,
+    is_branch: bool = False,
 ) -> Printed:
-    """A program in Structured Text. shares: the arrays through which branches share their stretches.
+    """A program in Structured Text. is_branch: whether it is one of several branches, which share their stretches.
 
     given: the spellings of the values that it reads; stored: those of the values that it binds to instance variables.
     All other values are bound to temporary variables, whose names are not in `taken`.
@@ -70,13 +71,12 @@ def printed(
     items = structured(program)
     stored = {**stored, **kept(program.body)}
     own = {name.name: name for name in bound_in(items) if name.name not in stored}
-    temporaries = spellings(own, (*taken, *LOCALS, OUTCOME, *((KNOWN, KEPT, SIDE) if shares else ())))
+    temporaries = spellings(own, (*taken, *LOCALS, OUTCOME, *((SIDE,) if is_branch else ())))
     printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})
-    side: tuple[str, ...] = ()
-    if shares is None:
+    side = (f"{SIDE} : INT;",) if is_branch and has_sides(program) else ()
+    if not is_branch:
         body = _body(items, printer, refusal)
     else:
-        side = (f"{SIDE} : INT;",) if shares.columns > 1 else ()
         body = stretch_lines(program, printer, refusal, lambda part, width: _body(part, printer, refusal, width))
     return Printed(
         variables=tuple((temporaries[name], type_name(type_of(symbol))) for name, symbol in own.items()),

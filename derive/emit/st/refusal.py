@@ -145,22 +145,6 @@ class Explained(Refusal):
         return (f"{REASON} := {self._number(reason)};", *self.of(status))
 
 
-@dataclass(frozen=True)
-class Told(Refusal):
-    """Writes refusals for a method that returns the reason itself."""
-
-    reasons: Reasons
-
-    def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
-        """The lines that refuse, for each reason separately."""
-        found: list[str] = []
-        for check in self.reasons.checks(requires):
-            parts = [text for c in check.conditions for text in printer.parts(c)]
-            head = conjunction("IF NOT (", parts, ") THEN")
-            found += [*head, *indented([f"{self.signature.name} := '{check.reason}';", "RETURN;"]), "END_IF"]
-        return found
-
-
 def _one(word: str, ends: Sequence[sp.Expr], printer: StructuredText) -> str:
     """The largest or the smallest of one or more limits."""
     texts = [printer.print(end) for end in ends]

@@ -20,7 +20,7 @@ from tests.text.hexapod.blocks import made
 from tests.text.hexapod.test_structured_text import compare_some, in_the_other_mode
 from tests.text.units import compiled_text, file_of, text_of
 
-_SEARCH, _INVERSE, _JACOBIAN = "PRIVATE FindPlatform", "PRIVATE SolveBranch", "PROTECTED FindJacobian"
+_SEARCH, _INVERSE, _JACOBIAN = "PRIVATE FindPlatform", "PROTECTED SolveBranch", "PROTECTED FindJacobian"
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,9 @@ WRONG = {
     "a pass that changes nothing": Fault(_SEARCH, "x := x + oneByStretch*xRate", "x := x"),
     "an output that is never written": Fault(_SEARCH, "r31 := ", "startArm1X := "),
     "the other assembly mode": Fault(_SEARCH, "assemblySign*determinant > 0.0", "assemblySign*determinant < 0.0"),
-    "two outputs exchanged": Fault("PUBLIC AxesToCartesian", "x => x, y => y", "x => y, y => x"),
-    "another start": Fault("PUBLIC AxesToCartesian", "startX := homeX", "startX := homeX + 1.0E6"),
-    "a refusal that is not handed on": Fault("PUBLIC AxesToCartesian", ":= outcome;",
+    "two outputs exchanged": Fault("PROTECTED FindPose", "x => x, y => y", "x => y, y => x"),
+    "another start": Fault("PROTECTED FindPose", "startX := homeX", "startX := homeX + 1.0E6"),
+    "a refusal that is not handed on": Fault("PROTECTED FindPose", ":= outcome;",
         ":= Softkin_Names.NoError;"),
     "a column of the Jacobian": Fault(_JACOBIAN, "coefficients[2, 4] := moment2X", "coefficients[2, 4] := moment3X"),
     "a Jacobian per platform radius": Fault(_JACOBIAN, "*oneByPlatformRadius", ""),

@@ -15,9 +15,6 @@ from tests.text.samples import Sample
 from tests.text.statements import Statements
 from tests.text.units import compiled, file_of, text_of
 
-SIZE_OF_NOTHING = "IF SIZEOF(bytes) < 1 THEN"
-"""No CONFIGDATA has no bytes: what stands behind this is not reached."""
-
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_every_statement_runs(mechanism: Mechanism) -> None:
@@ -106,7 +103,8 @@ def _before_initialize(mechanism: Mechanism) -> None:
 
 
 def _unreachable(lines: list[str]) -> set[int]:
-    empty = [number for number, line in enumerate(lines, 1) if line == SIZE_OF_NOTHING]
-    if "NumAxes := 0;" in lines:  # an inverse without axes has nothing to refuse
-        empty += [number - 1 for number, line in enumerate(lines, 1) if line.strip() == "CartesianToAxes := status;"]
-    return set().union(*({number + 1, number + 2} for number in empty))
+    """An inverse without axes has nothing to refuse, and so no reason: its method is never entered."""
+    if "NumAxes := 0;" not in lines:
+        return set()
+    start = next(number for number, line in enumerate(lines, 1) if line.startswith("METHOD PROTECTED ReasonOf "))
+    return set(range(start, next(n for n, line in enumerate(lines, 1) if n > start and line.startswith("END_METHOD"))))

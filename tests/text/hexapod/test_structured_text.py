@@ -153,6 +153,7 @@ def test_every_statement_runs() -> None:
             == (IMPOSSIBLE, None)
         )
         assert controller("nominal").jacobian((1e6,) * 6)[0] == IMPOSSIBLE
+        assert controller("nominal").is_singular((1e6,) * 6)
     lines = text_of(MECHANISM).split("\n")
     missing = {place.line for place in statements.left_out()} - unreachable(MECHANISM, lines)
     assert not (

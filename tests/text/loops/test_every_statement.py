@@ -56,7 +56,7 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
 def compare_all(loop: Loop, sample: Sample) -> None:
     """Every method that the block has answers as Python at a sample."""
     for method, answer in COMPARISONS.items():
-        if method.lower() in loop.controller.block.routines:
+        if method.lower() in loop.controller.methods:
             answer(loop, sample)
 
 
@@ -103,7 +103,7 @@ def go_out(loop: Loop) -> None:
 
 def compare_offset(loop: Loop, place: tuple[float, ...], sample: Sample, data: Bytes) -> None:
     """The same for a point off the flange."""
-    if "cartesiantoaxes_offset" in loop.controller.block.routines:
+    if "cartesiantoaxes_offset" in loop.controller.methods:
         asked_for = place, sample.offset, data, sample.reference
         status, axes = asked(loop.robot.inverse_offset, *asked_for)
         expected = None if axes is None else axes + (0.0,) * (6 - len(axes))

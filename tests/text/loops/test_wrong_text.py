@@ -14,13 +14,13 @@ from tests.text.loops.answers import COMPARISONS
 from tests.text.loops.machines import LOOPS, Loop, loops_of
 from tests.text.units import compiled_text, file_of, text_of
 
-PUBLIC = {"AxesToCartesian": "AxesToCartesian", "SolveBranch": "CartesianToAxes", "FindJacobian": "Jacobian"}
+PUBLIC = {"FindPose": "AxesToCartesian", "SolveBranch": "CartesianToAxes", "FindJacobian": "Jacobian"}
 """The methods that are spoiled, and those that must answer differently."""
 SAMPLES = 6
 
 
 OUTPUTS = {
-    "AxesToCartesian": r"^(  |)(f\.vT\.dX := )(.+?);",
+    "FindPose": r"^(  |)(v\.dX := )(.+?);",
     "SolveBranch": r"^(  |)(\w+\.a0 := )(.+?);",
     "FindJacobian": r"^(  |)(J\[0, 0\] := )(.+?);",
 }
@@ -28,8 +28,7 @@ OUTPUTS = {
 
 def spoiled(text: str, method: str) -> str:
     """The text with the first output of a method made a little larger."""
-    access = {"SolveBranch": "PRIVATE", "FindJacobian": "PROTECTED"}.get(method, "PUBLIC")
-    start = text.index(f"METHOD {access} {method} ")
+    start = text.index(f"METHOD PROTECTED {method} ")
     end = text.index("END_METHOD", start)
     pattern = re.compile(OUTPUTS[method], re.MULTILINE | re.DOTALL)
     wrong, count = pattern.subn(r"\g<1>\g<2>1.0000001*(\g<3>);", text[start:end], count=1)
@@ -56,8 +55,8 @@ def compare(mechanism: Mechanism, library: Library, method: str, samples: int) -
 
 
 _BRANCH, _FORWARD, _INPUTS = (
-    "METHOD PRIVATE SolveBranch",
-    "METHOD PUBLIC AxesToCartesian",
+    "METHOD PROTECTED SolveBranch",
+    "METHOD PROTECTED FindPose",
     "METHOD PROTECTED ReadInputs",
 )
 FIVE_BAR, TRIPOD, DELTA = "Kin_P2C_Type1", "Kin_Tripod_Rotary", "Kin_Delta_P3C_Type3"
@@ -87,7 +86,7 @@ WRONG = {
         Break("METHOD PROTECTED FindMargins", "aMargins[3] := marginRodsCoplanar;", "aMargins[3] := 0.0;"),
     ),
     "AxesToCartesian: another byte for a knee": (
-        DELTA, Break(_FORWARD, "Softkin_BranchByte(branchKnee2)", "Softkin_BranchByte(branchKnee1)"),
+        DELTA, Break(_FORWARD, "aBranches[1] := branchKnee2", "aBranches[1] := branchKnee1"),
     ),
     "Jacobian: a slope of the other leg": (FIVE_BAR, Break("METHOD PROTECTED FindJacobian", "*sinA2", "*sinA1")),
 }  # fmt: skip

@@ -9,6 +9,7 @@ from derive.description.mechanism import Mechanism
 from tests.text.units import text_of
 
 _SWITCH = "iFault"
+_POSE = (*(f"v.d{axis}" for axis in "XYZ"), *(f"rot[{row}, {column}]" for row in (1, 2, 3) for column in (1, 2, 3)))
 
 
 @dataclass(frozen=True)
@@ -26,16 +27,14 @@ def planted(mechanism: Mechanism) -> Planted:
     axes = len(mechanism.joints)
     faults: list[str] = []
     for method, pattern in (
-        ("AxesToCartesian", r"^(f\.vT\.d[XYZ]|rot\[\d, \d\])() :=[^;]*;\n"),
-        ("AxesToCartesian", r"^(configBytes\.abyData)(\[\d+\]) :=[^;]*;\n"),
-        ("SolveBranch", rf"^(a\.a[0-{max(axes - 1, 0)}])() :=[^;]*;\n"),
-        ("FindMargins", r"^(FindMargins)() :=[^;]*;\n"),
-        ("TestLimits", r"^(IF NOT checkLimits)() THEN\n"),
-        ("CartesianToAxes", r"^(a := solution)();\n"),
+        ("FindPose", r"^(aBranches\[\d\]) :=[^;]*;\n"),
+        ("FindPose", r"^(FindPose) :=[^;]*;\n"),
+        ("SolveBranch", rf"^(a\.a[0-{max(axes - 1, 0)}]) :=[^;]*;\n"),
+        ("FindMargins", r"^(FindMargins) :=[^;]*;\n"),
+        ("ReadInputs", r"^(checkLimits) := xCheckLimits;\n"),
+        ("SolveBranch", r"^(SolveBranch) := Softkin_Names\.NoError;\n"),
     ):
-        if "abyData" in pattern and not (mechanism.branches or mechanism.period_joints):
-            continue
-        if axes or method not in ("SolveBranch", "TestLimits"):
+        if axes or method not in ("SolveBranch", "ReadInputs"):
             head = _in_method(head, method, pattern, faults)
     declared = head.replace("\nVAR_INPUT\n", f"\nVAR_INPUT\n  {_SWITCH} : INT := 0;\n", 1)
     return Planted(f"{declared}END_FUNCTION_BLOCK{tail}", dict(enumerate(faults, start=1)))
@@ -48,20 +47,26 @@ def _in_method(text: str, method: str, pattern: str, faults: list[str]) -> str:
     end = text.index("END_METHOD", start)
 
     def wrong(found: re.Match[str]) -> str:
-        place = "".join(found.groups())
+        place = found.group(1)
+        if place == "FindPose":
+            return "".join(larger(entry) for entry in _POSE) + found.group()
+        if place.startswith("a.a"):
+            return found.group() + larger(place)
+        chosen = fault(place)
+        if place.startswith("aBranches"):
+            return f"{found.group()}{place} := {place}*SEL({chosen}, 1.0, -1.0);\n"
+        if place == "checkLimits":
+            return f"checkLimits := xCheckLimits AND NOT ({chosen});\n"
+        error = {"FindMargins": "NotInitialized", "SolveBranch": "InvalidCoupling"}[place]
+        return f"{found.group()}IF {chosen} THEN\n  {place} := Softkin_Names.{error};\nEND_IF\n"
+
+    def fault(place: str) -> str:
         faults.append(f"{method}: {place}")
-        chosen = f"{_SWITCH} = {len(faults)}"
-        if "abyData" in place:
-            return f"{found.group()}IF {chosen} THEN\n  {place} := 9;\nEND_IF\n"
-        if place == "FindMargins":
-            return f"{found.group()}IF {chosen} THEN\n  {place} := Softkin_Names.NotInitialized;\nEND_IF\n"
-        if place.startswith("IF"):
-            return f"IF NOT checkLimits OR ({chosen}) THEN\n"
-        if place == "a := solution":
-            refusal = "CartesianToAxes := Softkin_Names.InvalidCoupling;"
-            return f"IF {chosen} THEN\n  {refusal}\n  RETURN;\nEND_IF\n{found.group()}"
-        return f"{found.group()}{place} := {place} + SEL({chosen}, 0.0, 0.0001);\n"
+        return f"{_SWITCH} = {len(faults)}"
+
+    def larger(place: str) -> str:
+        return f"{place} := {place} + SEL({fault(place)}, 0.0, 0.0001);\n"
 
     changed, count = re.subn(pattern, wrong, text[start:end], flags=re.MULTILINE)
-    assert count, f"nothing to spoil in {method}"
+    assert count or "aBranches" in pattern, f"nothing to spoil in {method}"
     return text[:start] + changed + text[end:]
