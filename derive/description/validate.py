@@ -236,20 +236,28 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
 
 def _position(mechanism: Mechanism) -> Iterator[str]:
     position = mechanism.task.position
-    if position in ("xy", "xyz") or mechanism.is_orientation:
+    if mechanism.is_orientation:
+        return
+    is_in_order = position == "".join(c for c in "xyz" if c in position)
+    if not is_in_order or not position:
+        yield (
+            f"the task commands {position!r}: it must be coordinates in the order x, y, z, or '' of a chain that only "
+            "turns"
+        )
+        return
+    if position in ("xy", "xyz") or mechanism.chain is not None:
         return
     joints = {j.symbol for j in mechanism.joints}
     is_held = any(not sp.sympify(e).free_symbols & joints for e in mechanism.equations)
-    if mechanism.is_platform and is_held and position == "".join(c for c in "xyz" if c in position):
+    if mechanism.is_platform and is_held:
         return  # the build counts what holds the others
     moved = {c.name for c in (X.symbol, Y.symbol, Z.symbol) for e in mechanism.equations if c in e.free_symbols}
     if uncommanded := [c for c in "xyz" if c in moved and c not in position]:
         yield (
             f"the task commands {position!r}, and the loop moves {', '.join(uncommanded)} as well: coordinates "
             "that are not commanded must be held by guides=, planes in which points of a platform that turns stay; "
-            "else command 'xy' or 'xyz'"
+            "else command them too"
         )
-    yield f"the task commands {position!r}: it must be 'xy', 'xyz', or '' of a chain that only turns"
 
 
 def _heading(mechanism: Mechanism) -> Iterator[str]:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.ir.interpret import Array, evaluate
 from derive.ir.program import Statement
-from derive.ir.symbols import ROTATION_ENTRIES
+from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES
 from derive.kinematics.sampling import Samples, machine_at, size_of
 from derive.plate.legs import angles, by_angles
 from derive.plate.turning import NoPoseAtHome, samples_near_home
@@ -131,7 +131,7 @@ class _Search:
         """The values of all names, a row for each row of unknowns."""
         columns = (unknowns * self._units).T
         joints = self._mechanism.joints
-        known: dict[str, Array] = {**self._machine, "z": np.asarray(0.0)}
+        known: dict[str, Array] = {**self._machine, **dict.fromkeys(COORDINATE_NAMES, np.asarray(0.0))}
         known |= {j.symbol.name: column for j, column in zip(joints, columns, strict=False)}
         pose = columns[len(joints) :] if self._pose is None else np.array(self._pose)[:, None] * np.ones(len(unknowns))
         known |= dict(zip(self._coordinates, pose, strict=False))
