@@ -239,10 +239,10 @@ def _position(mechanism: Mechanism) -> Iterator[str]:
     if mechanism.is_orientation:
         return
     is_in_order = position == "".join(c for c in "xyz" if c in position)
-    if not is_in_order or not position:
+    if not is_in_order or (not position and not mechanism.is_platform):
         yield (
-            f"the task commands {position!r}: it must be coordinates in the order x, y, z, or '' of a chain that only "
-            "turns"
+            f"the task commands {position!r}: it must be coordinates in the order x, y, z, or '' of a machine that "
+            "only turns"
         )
         return
     if position in ("xy", "xyz") or mechanism.chain is not None:

@@ -62,6 +62,7 @@ from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, marg
 from derive.kinematics.scan.programs import names_of_search
 from derive.kinematics.shared_names import refuse_names, refuse_names_of_joints, refuse_shared_names
 from derive.lowering.lower import lowered
+from derive.plate.fixed_point import with_fixed_point
 from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
 from derive.plate.stated_rods import with_stated_rods
@@ -85,7 +86,7 @@ def prepared(mechanism: Mechanism) -> Mechanism:
     """The mechanism as it is derived: its numbers named, its gears at the joints, its rods found."""
     mechanism = with_gears(with_named_numbers(mechanism))
     check_joints(mechanism)
-    return with_stated_rods(mechanism)
+    return with_stated_rods(with_fixed_point(mechanism))
 
 
 def _built(mechanism: Mechanism) -> Kinematics:

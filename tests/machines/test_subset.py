@@ -23,6 +23,7 @@ from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.units import compiled_text
 
 UPRIGHT = ("arm in an upright plane", "arm on a wall that leans", "arm in an upright plane that points its tool")
+ORDER = "it must be coordinates in the order x, y, z, or '' of a machine that only turns"
 NO_TURN = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
@@ -149,8 +150,8 @@ def test_a_machine_that_turns_out_of_its_plane_is_drawn_in_space(name: str) -> N
 @pytest.mark.parametrize(
     ("position", "message"),
     [
-        ("zx", "the task commands 'zx': it must be coordinates in the order x, y, z, or '' of a chain that only turns"),
-        ("xx", "the task commands 'xx': it must be coordinates in the order x, y, z, or '' of a chain that only turns"),
+        ("zx", "the task commands 'zx': " + ORDER),
+        ("xx", "the task commands 'xx': " + ORDER),
         ("yz", "x is not commanded but the joints move it"),
     ],
 )
