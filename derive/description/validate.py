@@ -30,6 +30,7 @@ from derive.ir.constants import (
 
 _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _PARAMETER = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+_LEG = re.compile(r"[a-z0-9]+(_[a-z0-9]+)*\Z")
 _FAMILY = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 _OF_AXES = (
@@ -110,6 +111,12 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
             f"branch {branch.name!r}: {word!r} cannot name it, or a side of it: lower-case words joined by _"
             for word in (branch.name, *branch.names)
             if not _PARAMETER.match(word)
+        )
+    for kind, legs in (("rod", mechanism.rods), ("guide", mechanism.guides)):
+        yield from (
+            f"{leg.name!r} cannot name a {kind}: lower-case letters and digits, words joined by _"
+            for leg in legs
+            if not _LEG.match(leg.name)
         )
     for joint in mechanism.joints:
         if not _AXIS.match(joint.name):

@@ -39,7 +39,7 @@ def why_no_pose(mechanism: Mechanism, *, at_home: bool = False) -> str:
         missed = search.missed(found)
         if np.abs(missed).max() > _CLOSED:
             return _open_loop(mechanism, machine, missed * search.size, at_home)
-        closed = found[np.abs(search.residual(found)).max(axis=1) <= _CLOSED]
+        closed = search.most_regular_first(found[np.abs(search.residual(found)).max(axis=1) <= _CLOSED])
         return _not_positive(mechanism, search.values(closed)) or _elsewhere(mechanism, search.values(closed[:1]))
     return _not_positive(mechanism, _anywhere(mechanism, machine)) or f"no sampled pose is possible: {_CHECK}"
 
@@ -168,6 +168,16 @@ class _Search:
             missed = np.where(better[:, None], tried, missed)
             damping = np.clip(np.where(better, damping * 0.2, damping * 5.0), 1e-12, 1e6)
         return here
+
+    def most_regular_first(self, closed: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Those that close and whose positive quantities are, the pose that the joints hold best in front."""
+        columns = range(len(self._mechanism.joints), closed.shape[1])
+        if not columns:
+            return closed
+        held = np.linalg.svd(np.stack([self._slope(closed, k) for k in columns], axis=2), compute_uv=False)[:, -1]
+        values = self.values(closed)
+        is_own = [np.broadcast_to(evaluate(q, values) > 0, (len(closed),)) for q in self._mechanism.positive]
+        return np.asarray(closed[np.argsort(-np.where(np.all(is_own, axis=0), held, -1.0), kind="stable")])
 
     def missed(self, found: NDArray[np.float64]) -> NDArray[np.float64]:
         """What the equations miss at the best of these."""
