@@ -220,8 +220,8 @@ class Turning(Enum):
 
 @dataclass(frozen=True)
 class Task:
-    """The commanded coordinates ("xyz", "xy" in a plane, "" behind a position kinematics), and the part of the
-    rotation.
+    """The commanded coordinates ("xyz", "xy" or "xz" in a plane, "z" of a lift, "" of what only turns), and the part of
+    the rotation.
     """
 
     position: str

@@ -39,7 +39,7 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"held joints need a chain", "leave out held=, or state the loop as a chain"),
     (r"periods (names|must name)", "leave out periods=: the order of the axes is taken"),
     (r"needs either a chain or closure", "state chain=Rz(A1) * Tx(L1) * …, or rods=(…) of a closed loop"),
-    (r"it must be 'xy', 'xyz', or ''", 'as in task=Task("xyz")'),
+    (r"it must be coordinates in the order", 'as in task=Task("xyz")'),
     (r"a cone of a rod's joint is about", "state home=(…)"),
     (r"occurs nowhere in the closure", "use it in the chain or in a rod, or leave it out of joints=(…)"),
     (r"which is not a joint or a parameter of this", "list it in joints=(…) or in parameters=(…)"),

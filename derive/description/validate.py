@@ -30,6 +30,7 @@ from derive.ir.constants import (
 _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _PARAMETER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _BRANCH = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+_LEG = re.compile(r"[a-z0-9]+(_[a-z0-9]+)*\Z")
 _FAMILY = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 
@@ -103,6 +104,12 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
             f"branch {branch.name!r}: {word!r} cannot name it, or a side of it: lower-case words joined by _"
             for word in (branch.name, *branch.names)
             if not _BRANCH.match(word)
+        )
+    for kind, legs in (("rod", mechanism.rods), ("guide", mechanism.guides)):
+        yield from (
+            f"{leg.name!r} cannot name a {kind}: lower-case letters and digits, words joined by _"
+            for leg in legs
+            if not _LEG.match(leg.name)
         )
     for joint in mechanism.joints:
         if not _AXIS.match(joint.name):
@@ -232,20 +239,28 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
 
 def _position(mechanism: Mechanism) -> Iterator[str]:
     position = mechanism.task.position
-    if position in ("xy", "xyz") or mechanism.is_orientation:
+    if mechanism.is_orientation:
+        return
+    is_in_order = position == "".join(c for c in "xyz" if c in position)
+    if not is_in_order or (not position and not mechanism.is_platform):
+        yield (
+            f"the task commands {position!r}: it must be coordinates in the order x, y, z, or '' of a machine that "
+            "only turns"
+        )
+        return
+    if position in ("xy", "xyz") or mechanism.chain is not None:
         return
     joints = {j.symbol for j in mechanism.joints}
     is_held = any(not sp.sympify(e).free_symbols & joints for e in mechanism.equations)
-    if mechanism.is_platform and is_held and position == "".join(c for c in "xyz" if c in position):
+    if mechanism.is_platform and is_held:
         return  # the build counts what holds the others
     moved = {c.name for c in (X.symbol, Y.symbol, Z.symbol) for e in mechanism.equations if c in e.free_symbols}
     if uncommanded := [c for c in "xyz" if c in moved and c not in position]:
         yield (
             f"the task commands {position!r}, and the loop moves {', '.join(uncommanded)} as well: coordinates "
             "that are not commanded must be held by guides=, planes in which points of a platform that turns stay; "
-            "else command 'xy' or 'xyz'"
+            "else command them too"
         )
-    yield f"the task commands {position!r}: it must be 'xy', 'xyz', or '' of a chain that only turns"
 
 
 def _heading(mechanism: Mechanism) -> Iterator[str]:

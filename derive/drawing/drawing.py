@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from derive.description.mechanism import Joint
+from derive.description.mechanism import COORDINATE_NAMES, COORDINATE_NAMES_OF_A_PLANE, Joint, Task, Turning
 from derive.drawing.chain import chain_scene
 from derive.drawing.labels import plain
 from derive.drawing.loop import loop_scene
@@ -58,7 +58,8 @@ class Drawing:
     axes: tuple[tuple[Joint, float], ...]
     is_zero: bool
     is_home: bool
-    is_planar: bool
+    plane: tuple[int, int] | None
+    """The two coordinates of a machine that moves in their plane."""
     choices: tuple[Choice, ...]
     assembly: Choice | None
 
@@ -79,10 +80,18 @@ def drawing_of(kinematics: Kinematics) -> Drawing:
         axes=tuple(zip(mechanism.joints, pose.axes, strict=True)),
         is_zero=pose.is_zero,
         is_home=bool(mechanism.home),
-        is_planar=mechanism.task.position == "xy",
+        plane=_plane(mechanism.task),
         choices=tuple(_choices(_without_search(kinematics, machine), pose, _reassembled(kinematics))),
         assembly=_assembly(kinematics, pose),
     )
+
+
+def _plane(task: Task) -> tuple[int, int] | None:
+    is_flat = task.position == COORDINATE_NAMES_OF_A_PLANE or task.turning in (Turning.NONE, Turning.PITCH)
+    if len(task.position) != 2 or not is_flat:
+        return None
+    first, second = map(COORDINATE_NAMES.index, task.position)
+    return first, second
 
 
 def _without_search(kinematics: Kinematics, machine: Machine) -> Machine:

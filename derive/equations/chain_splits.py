@@ -81,13 +81,13 @@ class Split:
     """The chain from its flange to the point in which its first joints intersect, and this point seen from there."""
 
 
-def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> Split:
+def split_positions(chain: Chain, point: tuple[sp.Expr, ...], commanded: Commanded, unknowns: Unknowns) -> Split:
     """The position equations of a chain, at the split that isolates an unknown, else those of the whole chain.
 
-    Where no split does, the chain is also taken from its flange, to the point in which its first joints intersect.
+    point: the position of its end. Where no split isolates one, the chain is also taken from its flange, to the point
+    in which its first joints intersect.
     """
-    point = [real(c) for c in COORDINATE_NAMES]
-    factors, target = chain.factors, Target(tuple(point))
+    factors, target = chain.factors, Target(point)
     if commanded.columns:
         factors, target = _behind_the_wrist(chain, sp.Matrix(point), commanded, unknowns)
     found = _split(factors, target, unknowns)

@@ -53,8 +53,8 @@ class Closure:
     arguments: tuple[sp.Expr, ...]
     """Arguments of sines and cosines, where sums of parallel angles can be read."""
     lets: tuple[Let, ...] = ()
-    plane: sp.Expr | None = None
-    """The constant z of a planar machine."""
+    planes: tuple[tuple[str, sp.Expr], ...] = ()
+    """The coordinates that the task does not command, each with its constant value: z of a machine in a plane."""
     turns: tuple[Factor, ...] = ()
     """The rotations whose product is the commanded one, where the task is more than a rotation about z."""
     columns: tuple[int, ...] = (0, 1, 2)
@@ -183,7 +183,7 @@ def _with_heading(mechanism: Mechanism, closure: Closure, argument: sp.Expr | No
     parts = (("cos", sp.cos(argument)), ("sin", sp.sin(argument)))
     turns = tuple(_equation(mechanism, f"{word} heading", value - real(f"{word}_heading")) for word, value in parts)
     arguments = tuple(dict.fromkeys((*closure.arguments, argument)))
-    return Closure(closure.equations + turns, arguments, closure.lets, closure.plane)
+    return Closure(closure.equations + turns, arguments, closure.lets, closure.planes)
 
 
 def closure_at(mechanism: Mechanism, known: Joint) -> Closure:
@@ -204,13 +204,17 @@ def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ..
     columns = (2,) if turning in (Turning.DIRECTION, Turning.PITCH) else (0, 1, 2)
     is_whole = follows and not mechanism.followed_turns  # a direction that is projected tells no wrist centre
     commanded = Commanded(sp.Matrix(3, 3, ROTATION_ENTRIES), columns if is_whole else ())
-    split = split_positions(chain, commanded, unknowns) if mechanism.task.position else Split(())
     pose = pose_of(chain)
+    planes = _planes_of(mechanism, pose.position)
+    table = dict(planes)
+    point = tuple(table.get(c, real(c)) for c in COORDINATE_NAMES)  # those not commanded are what the machine has
+    split = split_positions(chain, point, commanded, unknowns) if mechanism.task.position else Split(())
     arguments = dict.fromkeys((*_arguments(pose.position), *(t.amount for t in pose.turns)))
     turns = pose.turns if follows else ()
     return Closure(
-        split.equations,
+        tuple(e for e in split.equations if e.expression != 0),
         tuple(arguments),
+        planes=planes,
         turns=turns,
         columns=columns,
         links=split.links,
@@ -254,7 +258,7 @@ def offset_closure(mechanism: Mechanism, unknown: tuple[Joint, ...]) -> Closure:
         return replace(_spatial_closure(mechanism, seen, unknown, Turning.NONE), lets=tuple(lets))
     pose = pose_of(seen)
     closure = _position_closure(mechanism, pose.position)
-    return Closure(closure.equations, closure.arguments, tuple(lets), closure.plane)
+    return Closure(closure.equations, closure.arguments, tuple(lets), closure.planes)
 
 
 def _named_tool(mechanism: Mechanism, entry: sp.Expr, name: str, unknown: set[sp.Symbol], lets: list[Let]) -> sp.Expr:
@@ -268,16 +272,29 @@ def _named_tool(mechanism: Mechanism, entry: sp.Expr, name: str, unknown: set[sp
 
 
 def _position_closure(mechanism: Mechanism, position: sp.ImmutableMatrix) -> Closure:
-    equations: list[Equation] = []
-    plane: sp.Expr | None = None
+    equations = tuple(
+        _equation(mechanism, name, value - real(name))
+        for value, name in zip(position, COORDINATE_NAMES, strict=True)
+        if name in mechanism.task.position
+    )
+    return Closure(equations, _arguments(position), (), _planes_of(mechanism, position))
+
+
+def _planes_of(mechanism: Mechanism, position: sp.ImmutableMatrix) -> tuple[tuple[str, sp.Expr], ...]:
+    """The coordinates of a chain that the task does not command, by their values, which no joint moves."""
+    joints = {j.symbol for j in mechanism.joints}
+    moving = joints | {f(a) for a in angles_of(mechanism) for f in (sine, cosine)}
+    planes: list[tuple[str, sp.Expr]] = []
     for value, name in zip(position, COORDINATE_NAMES, strict=True):
-        if name in mechanism.task.position:
-            equations.append(_equation(mechanism, name, value - real(name)))
-        elif mechanism.task.position:
-            plane = sp.sympify(value)
-            if plane.free_symbols & {j.symbol for j in mechanism.joints}:
-                raise DescriptionError(f"{name} is not commanded but the joints move it")
-    return Closure(tuple(equations), _arguments(position), (), plane)
+        if name in mechanism.task.position or not mechanism.task.position:
+            continue
+        plane = with_fixed_names(mechanism, sp.sympify(value))
+        if plane.free_symbols & joints:
+            plane = polynomial(plane, all_angles(mechanism), signs_of(mechanism))
+        if plane.free_symbols & moving:
+            raise DescriptionError(f"{name} is not commanded but the joints move it")
+        planes.append((name, plane))
+    return tuple(planes)
 
 
 def _stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: str = "span") -> Closure:
@@ -302,8 +319,8 @@ def _stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: s
         if plane not in mechanism.fixed_guides
     ]
     equations += [_rod_equation(mechanism, rod, table, (known, wanted)) for rod in mechanism.rods]
-    plane = None if "z" in mechanism.motion.position else offset.get("z", sp.Integer(0))
-    return Closure(tuple(equations), _arguments(mechanism.equations), lets, plane)
+    planes = tuple((c, offset.get(c, sp.Integer(0))) for c in COORDINATE_NAMES if c not in mechanism.motion.position)
+    return Closure(tuple(equations), _arguments(mechanism.equations), lets, planes)
 
 
 def position_closure(mechanism: Mechanism) -> Closure:

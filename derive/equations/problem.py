@@ -47,6 +47,9 @@ class Equation:
     """Whether its terms are lengths; those of a rotation have no unit."""
     column: Column | None = None
     """The column of the entry of a rotation that it holds."""
+    apart: tuple[sp.Expr, ...] = ()
+    """The two equations without the length that was eliminated between them: they hold where both its coefficients
+    vanish, and this equation says nothing."""
 
 
 @dataclass(frozen=True)

@@ -56,6 +56,7 @@ class Why(Enum):
     OPPOSITE = "the tool points exactly the opposite way"
     ACROSS = "the tool points across the plane in which the arm can turn it"
     OUT_OF_PLANE = "{}: a planar machine has none"
+    NOT_MOVED = "{}: no axis moves it, and it is not where the machine has it"
     OUT_OF_REACH = "{}: out of reach"
     CANNOT_REACH = "{} cannot reach"
     TOO_SHORT = "{}: its effective length is too short"

@@ -69,6 +69,7 @@ from derive.kinematics.shared_names import (
     with_free_names,
 )
 from derive.lowering.lower import lowered
+from derive.plate.fixed_point import with_fixed_point
 from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
 from derive.plate.stated_rods import with_stated_rods
@@ -94,7 +95,7 @@ def prepared(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> 
     """
     mechanism = with_gears(with_named_numbers(with_inner_names(mechanism, further)))
     check_joints(mechanism)
-    return with_stated_rods(mechanism)
+    return with_stated_rods(with_fixed_point(mechanism))
 
 
 def _built(mechanism: Mechanism) -> Kinematics:

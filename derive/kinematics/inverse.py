@@ -10,6 +10,7 @@ import sympy as sp
 from derive.algebra.normal_form import polynomial
 from derive.description.chains.numbers import fixed_numbers
 from derive.description.mechanism import (
+    COORDINATE_NAMES_OF_A_PLANE,
     DescriptionError,
     Joint,
     Mechanism,
@@ -227,11 +228,7 @@ def inverse_program(
     """The program of one branch: checks of inputs, the derivation with its branch signs, the checks `last`, axis
     values.
     """
-    in_plane: tuple[Statement, ...] = ()
-    if inverse.closure.plane is not None:
-        distance = sp.Abs(real("z") - inverse.closure.plane)
-        reason = about("z", Why.OUT_OF_PLANE, distance - PLANE * SCALE, Unit.LENGTH)
-        in_plane = (Require(sp.Le(distance, PLANE * SCALE), Status.UNREACHABLE, reason=reason),)
+    in_plane = tuple(_in_plane(mechanism, name, value) for name, value in inverse.closure.planes)
     resolved = {s.name for s in statements if isinstance(s, Let)}
     axes = tuple(
         of_angle(let, j, resolved)
@@ -246,6 +243,14 @@ def inverse_program(
     groups = (POSITION, OFFSET, tuple(j.reference for j in mechanism.joints))
     checks = tuple(check for group in groups for check in finite([s for s in group if s in draft.inputs]))
     return shorter(normalise(name, (*checks, *draft.body), draft.outputs))
+
+
+def _in_plane(mechanism: Mechanism, name: str, value: sp.Expr) -> Require:
+    """The condition that a coordinate that the task does not command is where the machine has it."""
+    distance = sp.Abs(real(name) - value)
+    why = Why.OUT_OF_PLANE if mechanism.task.position == COORDINATE_NAMES_OF_A_PLANE else Why.NOT_MOVED
+    reason = about(name, why, distance - PLANE * SCALE, Unit.LENGTH)
+    return Require(sp.Le(distance, PLANE * SCALE), Status.UNREACHABLE, reason=reason)
 
 
 def of_angle(let: Let, joint: Joint, resolved: set[sp.Symbol]) -> Let:

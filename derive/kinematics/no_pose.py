@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.ir.interpret import Array, evaluate
 from derive.ir.program import Statement
-from derive.ir.symbols import ROTATION_ENTRIES
+from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES
 from derive.kinematics.sampling import Samples, machine_at, size_of
 from derive.plate.legs import angles, by_angles
 from derive.plate.turning import NoPoseAtHome, samples_near_home
@@ -39,7 +39,7 @@ def why_no_pose(mechanism: Mechanism, *, at_home: bool = False) -> str:
         missed = search.missed(found)
         if np.abs(missed).max() > _CLOSED:
             return _open_loop(mechanism, machine, missed * search.size, at_home)
-        closed = found[np.abs(search.residual(found)).max(axis=1) <= _CLOSED]
+        closed = search.most_regular_first(found[np.abs(search.residual(found)).max(axis=1) <= _CLOSED])
         return _not_positive(mechanism, search.values(closed)) or _elsewhere(mechanism, search.values(closed[:1]))
     return _not_positive(mechanism, _anywhere(mechanism, machine)) or f"no sampled pose is possible: {_CHECK}"
 
@@ -131,7 +131,7 @@ class _Search:
         """The values of all names, a row for each row of unknowns."""
         columns = (unknowns * self._units).T
         joints = self._mechanism.joints
-        known: dict[str, Array] = {**self._machine, "z": np.asarray(0.0)}
+        known: dict[str, Array] = {**self._machine, **dict.fromkeys(COORDINATE_NAMES, np.asarray(0.0))}
         known |= {j.symbol.name: column for j, column in zip(joints, columns, strict=False)}
         pose = columns[len(joints) :] if self._pose is None else np.array(self._pose)[:, None] * np.ones(len(unknowns))
         known |= dict(zip(self._coordinates, pose, strict=False))
@@ -168,6 +168,16 @@ class _Search:
             missed = np.where(better[:, None], tried, missed)
             damping = np.clip(np.where(better, damping * 0.2, damping * 5.0), 1e-12, 1e6)
         return here
+
+    def most_regular_first(self, closed: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Those that close and whose positive quantities are, the pose that the joints hold best in front."""
+        columns = range(len(self._mechanism.joints), closed.shape[1])
+        if not columns:
+            return closed
+        held = np.linalg.svd(np.stack([self._slope(closed, k) for k in columns], axis=2), compute_uv=False)[:, -1]
+        values = self.values(closed)
+        is_own = [np.broadcast_to(evaluate(q, values) > 0, (len(closed),)) for q in self._mechanism.positive]
+        return np.asarray(closed[np.argsort(-np.where(np.all(is_own, axis=0), held, -1.0), kind="stable")])
 
     def missed(self, found: NDArray[np.float64]) -> NDArray[np.float64]:
         """What the equations miss at the best of these."""

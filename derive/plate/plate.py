@@ -187,6 +187,11 @@ def _no_rods(mechanism: Mechanism) -> str:
     """What to do about equations that are no rods."""
     if not mechanism.closure:
         return ""
+    if not mechanism.task.position:
+        return (
+            f" and {len(mechanism.closure)} other equations: closure= of a platform that only turns must say that a "
+            "direction of the platform encloses a fixed angle with one that joints turn, or its distance to a point"
+        )
     joints = {j.symbol for j in mechanism.joints}
     turns = [e for e in mechanism.closure if not e.free_symbols & {real(c) for c in COORDINATE_NAMES}]
     if turns and all(e.free_symbols & joints for e in turns):

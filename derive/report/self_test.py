@@ -31,6 +31,8 @@ _CANDIDATES, _LOOP_CANDIDATES = 300, 3000
 """The number of axis values that are drawn: few of them close a loop."""
 _TRIED = 8
 """Regular poses, among which the one with the most solutions is tested on every branch."""
+_NEAR = 0.1
+"""The share of the ranges in which poses are sought where none is possible in the whole."""
 _REGULAR = 0.05
 """Margins at a regular pose are at least this."""
 _SINGULAR = 1e-5
@@ -114,6 +116,8 @@ class _Vectors:
         self.machine = machine
         self._mechanism = machine.kinematics.mechanism
         self._candidates = _candidates(machine)
+        if np.isnan(np.min(margins(machine, self._candidates), axis=0)).all():  # few poses close: those near nominal
+            self._candidates = _candidates(machine, _NEAR)
 
     @cached_property
     def poses(self) -> tuple[Reals, ...]:
@@ -274,9 +278,9 @@ class _Vectors:
         yield from (case for case in cases if case.status is not Status.OK)
 
 
-def _candidates(machine: Machine) -> list[Reals]:
-    """Axis values with one decimal, over the whole ranges; for a platform, near its home pose. Lengths of a small
-    machine have more decimals.
+def _candidates(machine: Machine, share: float = 1.0) -> list[Reals]:
+    """Axis values with one decimal, over the whole ranges, or a share of them around nominal values; for a platform,
+    near its home pose. Lengths of a small machine have more decimals.
     """
     mechanism = machine.kinematics.mechanism
     count = _LOOP_CANDIDATES if mechanism.rods else _CANDIDATES
@@ -285,7 +289,7 @@ def _candidates(machine: Machine) -> list[Reals]:
         near = home * (1.0 + _AWAY * np.random.default_rng(3).uniform(-1.0, 1.0, (_TRIED, len(home))))
         drawn = np.vstack([near, _TOO_SHORT * home])
     elif mechanism.joints:
-        samples = sample_axes(mechanism, dict(machine.values), count, 3)
+        samples = sample_axes(mechanism, dict(machine.values), count, 3, share)
         drawn = np.stack([samples[j.axis.name] * _stretch(machine, j) for j in mechanism.joints], axis=1)
     else:
         return [()]

@@ -54,7 +54,8 @@ class DerivationRecord:
 
     def commit(self, binding: Binding) -> Binding:
         """Record a binding. Returns it with the names under which its values are recorded."""
-        names = self._write(binding.statements, keep={f(u) for u in binding.unknowns for f in (sine, cosine)})
+        own = {f(u) for u in binding.unknowns for f in (sine, cosine)}
+        names = self._write(binding.statements, keep=own | {*binding.unknowns})
         binding = replace(
             binding,
             determinant=None if binding.determinant is None else _renamed(binding.determinant, names),

@@ -52,7 +52,8 @@ def _differences(problem: Problem) -> Iterator[tuple[Equation, bool]]:
             expression = reduce_units(b * first.expression - a * second.expression, problem.units, problem.signs)
             label = f"{first.label} and {second.label}"
             is_lossless = problem.determines(problem.reduce(a**2 + b**2))
-            yield Equation(label, expression, first.lets + second.lets), is_lossless
+            lost = () if is_lossless else tuple(e.expression.xreplace({unknown: 0}) for e in (first, second))
+            yield Equation(label, expression, first.lets + second.lets, apart=lost), is_lossless
 
 
 def eliminations(problem: Problem) -> tuple[Equation, ...]:

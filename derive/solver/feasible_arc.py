@@ -1,11 +1,12 @@
 """Feasible arc: a free angle is moved onto the arc on which the later steps have solutions.
 
 Where the conditioning of a step vanishes its angle u is free, and where it is tiny u is known only to a few digits. A
-later two-root step needs |e| <= h with e = level + along cos u + across sin u. (The second harmonic of e in u vanishes
-with the conditioning, and is taken as constant.) So cos(u - centre) lies between two bounds, and u on one of two arcs,
-one on each side of the centre. u moves to the nearest point of the arc on its side, if the change of the pose, which is
-the conditioning times the angle moved, is no more than rounding. Where e is within its bound, or far beyond it although
-u is well known, u stays.
+later two-root step needs |e| <= h with e = level + along cos u + across sin u. (The second harmonic of e in u, and what
+u changes of h, vanish with the conditioning, and are taken as constant.) So cos(u - centre) lies between two bounds,
+and u on one of two arcs, one on each side of the centre. u moves to the nearest point of the arc on its side, if the
+change of the pose, which is the conditioning times the angle moved, is no more than rounding. Where e is within its
+bound, or far beyond it although u is well known, u stays. Where u turns h alone, |h| >= |e| is met in the same way, on
+the side of the sign of h.
 """
 
 from __future__ import annotations
@@ -43,8 +44,10 @@ from derive.ir.symbols import (
     real,
     sine,
 )
+from derive.solver.where_free import square_where_free
 
 WITHIN_ITS_BOUND = "{} has solutions where this is within its bound"
+LARGE_ENOUGH = "{} has solutions where this is large enough"
 
 
 @dataclass(frozen=True)
@@ -66,12 +69,14 @@ class _Condition:
     word: str
     """What the names of this motion end in."""
     size: sp.Expr
-    """h"""
+    """h; e where u turns h"""
     value: sp.Expr
-    """e"""
+    """e; h where u turns it"""
     parts: tuple[_Part, ...]
     chain: tuple[Let, ...]
     """The statements by which these values follow from the angle, in order."""
+    is_least: bool = False
+    """Whether |value| >= |size| is needed, not <=."""
 
 
 def within_reach(
@@ -116,18 +121,46 @@ def _condition(
         return None
     dependent = _dependent(statements, angle)
     size, value = (sp.expand(_squares(v, dependent)) for v in determinant.reach)
-    moved = sorted(value.free_symbols & dependent.keys(), key=lambda s: s.name)
-    if not moved or size.free_symbols & dependent.keys():
+    own = _own(angle)
+    moved = sorted(value.free_symbols & (dependent.keys() | own.keys()), key=lambda s: s.name)
+    word = f"{angle.name}_of_{determinant.step.name}"
+    turned = size.free_symbols & dependent.keys()
+    there = square_where_free(statements, size, dependent, _vanishing(statements, conditioning))
+    if not moved and turned:
+        return _least_size(conditioning, determinant, word, (there, value))
+    if not moved or (turned and there.free_symbols & {*own, *dependent}):
         return None
-    parts = tuple(p for name in moved for p in [_part(name, dependent[name], angle)] if p is not None)
+    parts = tuple(p for name in moved for p in [own.get(name) or _part(name, dependent[name], angle)] if p is not None)
     read = {s for part in parts for coefficient in (part.along, part.across) for s in coefficient.free_symbols}
     if len(parts) < len(moved) or read & dependent.keys():
         return None  # the later step does not depend on the angle by its first harmonic alone
     gone = _vanishing(statements, conditioning)
     if all(p.along.xreplace(gone) == 0 and p.across.xreplace(gone) == 0 for p in parts):
         return None  # where the angle is free these values do not depend on it
-    chain = tuple(_chain(statements, moved, dependent))
-    return _Condition(determinant.step, f"{angle.name}_of_{determinant.step.name}", size, value, parts, chain)
+    chain = tuple(_chain(statements, [*moved, *turned], dependent))
+    return _Condition(determinant.step, word, size, value, parts, chain)
+
+
+def _own(angle: sp.Symbol) -> dict[sp.Symbol, _Part]:
+    """The cosine and sine of the angle, which depend on it by themselves."""
+    none, one = sp.Integer(0), sp.Integer(1)
+    return {cosine(angle): _Part(cosine(angle), none, one, none), sine(angle): _Part(sine(angle), none, none, one)}
+
+
+def _least_size(
+    conditioning: Conditioning, determinant: StepDeterminant, word: str, needed: tuple[sp.Expr, sp.Expr]
+) -> _Condition | None:
+    """The condition where the angle turns h, a first harmonic of it, and not e. needed: h^2, and e."""
+    square, value = needed
+    number, factors = sp.factor_list(square)
+    if any(power % 2 for _, power in factors) or not number.is_positive:
+        return None
+    size = sp.sqrt(number) * sp.Mul(*[base ** (power // 2) for base, power in factors])
+    angle = conditioning.angle
+    linear = linear_coefficients(sp.expand(size), (cosine(angle), sine(angle)))
+    if linear is None or not any(linear[0]):
+        return None
+    return _Condition(determinant.step, word, value, size, (), (), is_least=True)
 
 
 def _chain(
@@ -194,19 +227,46 @@ def _motion(conditioning: Conditioning, condition: _Condition) -> tuple[Let, ...
     """The angle on the arc, computed from where it was."""
     word = condition.word
     value, size = (real(f"{name}_{word}") for name in ("value", "size"))
+    angle = cosine(conditioning.angle), sine(conditioning.angle)
+    if condition.is_least:
+        return _least_motion(condition, (value, size), angle)
     lets, total, derivatives = _parts(condition)
+    before = {let.name: real(f"{let.name.name}_before_{word}") for let in condition.chain}
     return (
         *lets,
         Let(value, total, WITHIN_ITS_BOUND.format(condition.step)),
+        Let(size, sp.Abs(condition.size.xreplace(before))),
+        *nearest_on_arc(word, value, size, derivatives, angle),
+    )
+
+
+def _least_motion(
+    condition: _Condition, names: tuple[sp.Symbol, sp.Symbol], angle: tuple[sp.Symbol, sp.Symbol]
+) -> tuple[Let, ...]:
+    """The angle at which h, with the sign that it has, is as large as e."""
+    (value, size), way = names, real(f"way_{condition.word}")
+    linear = linear_coefficients(sp.expand(condition.value), angle)
+    assert linear is not None
+    (along, across), _ = linear
+    return (
+        Let(way, Select(sp.Ge(condition.value, 0), sp.Integer(1), sp.Integer(-1))),
+        Let(value, way * condition.value, LARGE_ENOUGH.format(condition.step)),
         Let(size, sp.Abs(condition.size)),
-        *nearest_on_arc(word, value, size, derivatives, (cosine(conditioning.angle), sine(conditioning.angle))),
+        *nearest_on_arc(condition.word, value, size, (way * along, way * across), angle, is_least=True),
     )
 
 
 def nearest_on_arc(
-    word: str, value: sp.Expr, size: sp.Expr, derivatives: tuple[sp.Expr, sp.Expr], angle: tuple[sp.Expr, sp.Expr]
+    word: str,
+    value: sp.Expr,
+    size: sp.Expr,
+    derivatives: tuple[sp.Expr, sp.Expr],
+    angle: tuple[sp.Expr, sp.Expr],
+    *,
+    is_least: bool = False,
 ) -> tuple[Let, ...]:
-    """`moved_<word>`: the u nearest to where it was, on its side of the centre, at which |value| <= size.
+    """`moved_<word>`: the u nearest to where it was, on its side of the centre, at which |value| <= size, or, where
+    this is the least value, value >= size.
 
     derivatives: those of the value by cos u and sin u. angle: the cosine and sine of u where it was; `value` is its
     value there.
@@ -219,14 +279,19 @@ def nearest_on_arc(
     centre, before, side, moved = (real(f"{name}_{word}") for name in ("centre", "angle", "side", "moved"))
     turns = sp.Gt(swing, ROUNDING * size)
     one = sp.Integer(1)
+    ends = (
+        (one, _cosine_of((size - level) / divisor))
+        if is_least
+        else tuple(_cosine_of((end - level) / divisor) for end in (size, -size))
+    )
     return (
         Let(along, derivatives[0]),
         Let(across, derivatives[1]),
         Let(swing, Root(along**2 + across**2)),
         Let(level, value - along * cos_u - across * sin_u),
         Let(divisor, Select(turns, swing, one)),
-        Let(highest, Select(turns, _cosine_of((size - level) / divisor), one), "feasible arc: cosines of its ends"),
-        Let(lowest, Select(turns, _cosine_of((-size - level) / divisor), -one)),
+        Let(highest, Select(turns, ends[0], one), "feasible arc: cosines of its ends"),
+        Let(lowest, Select(turns, ends[1], -one)),
         Let(near, Wrap(Atan2(Root((1 - highest) * (1 + highest)), highest))),
         Let(far, Wrap(Atan2(Root((1 - lowest) * (1 + lowest)), lowest))),
         Let(centre, Atan2(across, along)),
@@ -267,8 +332,9 @@ def _bound(conditioning: Conditioning, condition: _Condition, names: dict[sp.Sym
     names_after = [real(f"{f(conditioning.angle).name}_after_{word}") for f in (cosine, sine)]
     share = conditioning.value / conditioning.scale
     chord = Root(sp.Add(*[(a - b) ** 2 for a, b in zip(names_after, before, strict=True)]))
-    beyond = sp.And(sp.Gt(share, KNOWN_ANGLE), sp.Gt(sp.Abs(value), (1 + OUT_OF_REACH) * size))
-    reached = sp.Le(sp.Abs(value), size)
+    smaller, larger = (size, value) if condition.is_least else (sp.Abs(value), size)
+    beyond = sp.And(sp.Gt(share, KNOWN_ANGLE), sp.Gt(smaller, (1 + OUT_OF_REACH) * larger))
+    reached = sp.Le(smaller, larger)
     dear = sp.And(sp.Gt(share, FREE_ANGLE), sp.Gt(costs, ROUNDING))
     return [
         *(Let(n, v) for n, v in zip(names_after, after, strict=True)),

@@ -26,6 +26,7 @@ from derive.solver.eliminations import (
 )
 from derive.solver.feasible_arc import within_reach
 from derive.solver.folds import beyond_folds
+from derive.solver.lost_arms import with_lost_arms_free
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from derive.solver.positive_steps import known_signs, where_roots_meet, with_known_signs
 from derive.solver.subproblems.affine import affine
@@ -157,7 +158,8 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     statements = record.statements
     if not problem.is_overdetermined:
         unfolded = beyond_folds(statements, record.determinants, record.conditionings, problem.scale)
-        statements = within_reach(unfolded, record.determinants, record.conditionings)
+        moved = within_reach(unfolded, record.determinants, record.conditionings)
+        statements = with_lost_arms_free(moved, record.determinants)
     signs = known_signs(problem, record.determinants)
     return Derivation(
         with_known_signs(statements, signs),

@@ -245,11 +245,11 @@ def _residual(mechanism: Mechanism, known: dict[sp.Symbol, Term], pose: Term) ->
     if mechanism.followed_turns:
         pose = _followed_pose(mechanism, known, pose)
     difference = _frame(mechanism.chain, known) - pose
-    count = len(mechanism.task.position)
+    own = ["xyz".index(c) for c in mechanism.task.position]
     column = [5, 8, 11]
     followed = {Turning.NONE: [], Turning.DIRECTION: column, Turning.PITCH: column}
     rotation = followed.get(mechanism.task.turning, list(range(3, 12)))
-    return difference[[*range(count), *rotation]], count
+    return difference[[*own, *rotation]], len(own)
 
 
 def _followed_pose(mechanism: Mechanism, known: dict[sp.Symbol, Term], pose: Term) -> Term:

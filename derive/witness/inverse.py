@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from derive.ir.interpret import Array, run
 from derive.ir.program import Program, Status
+from derive.ir.symbols import COORDINATE_NAMES
 from derive.kinematics.kinematics import Kinematics
 from derive.witness.assembly import in_own_mode, starts_for
 from derive.witness.checks import CLOSURE_TOLERANCE, clear_of_zero, least_move, worst
@@ -92,8 +93,8 @@ def check_offset(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[f
         return 0.0, 0.0
     size = _TOOL * samples.reach / samples.ease
     offset = size[:, None] * np.random.default_rng(SEED + 3).uniform(-1.0, 1.0, (len(samples), 3))
-    offset[:, len(kin.mechanism.task.position) :] = 0.0
     rotation = samples.pose[:, 3:].reshape(-1, 3, 3)
+    offset = _in_reach(kin, rotation, offset)
     point = samples.pose[:, :3] + (rotation @ offset[:, :, None])[:, :, 0]
     named = {f"point_{c}": offset[:, i] for i, c in enumerate("xyz")} | {c: point[:, i] for i, c in enumerate("xyz")}
     references = {j.reference.name: samples.axes[:, i] for i, j in enumerate(kin.mechanism.joints)}
@@ -109,6 +110,14 @@ def check_offset(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[f
             residual = max(residual, worst(kin, "offset interface", errors, part, CLOSURE_TOLERANCE))
     branches, _ = run(kin.offset_configuration, samples.values | named)
     return residual, _round_trip(kin, closure, samples, (axes, ok), branches, "the way back of the offset interface")
+
+
+def _in_reach(kin: Kinematics, rotation: Array, offset: Array) -> Array:
+    """The offsets without what would move a coordinate that the task does not command."""
+    for c in (k for k, name in enumerate(COORDINATE_NAMES) if name not in kin.mechanism.task.position):
+        across = rotation[:, c, :]
+        offset = offset - np.sum(across * offset, axis=1, keepdims=True) * across
+    return offset
 
 
 def run_slots(kin: Kinematics, program: Program, samples: Samples, commands: dict[str, Array]) -> Slots:

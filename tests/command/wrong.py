@@ -105,7 +105,9 @@ WRONG: dict[str, str] = {
     "the mechanism needs either a chain or closure equations; state chain=": changed(
         RAIL, ("chain=Tx(A1) * Ty(A2), ", "")
     ),
-    "the task commands '…': it must be 'xy', 'xyz', or ''": changed(ARM, ('Task("xy")', 'Task("zx")')),
+    "the task commands '…': it must be coordinates in the order x, y, z, or ''": changed(
+        ARM, ('Task("xy")', 'Task("zx")')
+    ),
     "… is not commanded but the joints move it; command it too": changed(
         SCARA,
         ('Task("xyz", Turning', 'Task("xy", Turning'),

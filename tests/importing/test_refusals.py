@@ -175,9 +175,9 @@ REFUSALS: Mapping[str, Refusal] = {
     ),
     "one direction": (
         "r.urdf",
-        urdf("r", joint("a", "prismatic")),
+        urdf("r", joint("a", "prismatic", axis="0.6 0 0.8")),
         O(),
-        r"its tip moves along one line, and a description commands x, y and z, or x and y",
+        r"its tip has 1 free motion and moves along x, z, and a description commands each coordinate that moves",
     ),
     "a file that is not there": ("", "", O(), r"there is no such file$"),
     "MJCF: no body": ("r.xml", MODEL.format("", "", ""), O("a", "z"), r"no body or site is called 'z' \(--tip\)"),

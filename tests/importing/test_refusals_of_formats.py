@@ -115,8 +115,9 @@ REFUSALS: Mapping[str, tuple[str, str, str]] = {
     ),
     "a plane that is no coordinate plane": (
         "r.urdf",
-        urdf("r", joint("a", "prismatic", axis="1 0 0"), joint("b", "prismatic", axis="0 0 1")),
-        "its tip moves in 2 directions, and a description commands x, y and z, or x and y: choose another base or tip$",
+        urdf("r", joint("a", "prismatic", axis="1 0 0"), joint("b", "prismatic", axis="0 0.6 0.8")),
+        "its tip has 2 free motions and moves along x, y, z, and a description commands each coordinate that moves: "
+        "choose a base link whose axes are along the motions, or another tip$",
     ),
     "ways that are no task": (
         "r.urdf",

@@ -6,7 +6,7 @@ import sympy as sp
 from sympy import pi
 
 from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
-from derive.mechanism import Joint, Mechanism, Parameter, Task, Turning, Vendor, length, linear, rotary
+from derive.mechanism import Joint, Mechanism, Parameter, Task, Turning, Vendor, distance, length, linear, rotary
 
 X, Y, Z = (linear(name, f"slide {name}") for name in "XYZ")
 A1, A2, A3, A4, A5, A6, A7 = (rotary(f"A{k}", f"turn A{k}") for k in range(1, 8))
@@ -83,16 +83,20 @@ WITHOUT_ARM = {
 }
 """Joints fold the arm of a later joint onto its axis: that joint is free there. In the last its size changes alone."""
 
+UPPER, TOOL = (distance(name, name, nominal=300.0) for name in ("first_link", "tool_link"))
+SHORT = length("short_link", "short link", nominal=50.0)
+"""The slide is sampled within the lengths of the machine, and distances are none: far below the long links."""
+
 LONG_LINKS = {
     "telescope between long links, with a wrist": _chain(
         "LongLinks",
         (A1, A2, Y, A4, A5, A6),
-        Rz(A1) * Tx(L3) * Ry(A2) * Tx(Y) * Tx(L2) * Rz(A4) * Ry(A5) * Rz(A6) * Tx(L4),
-        (L2, L3, L4),
+        Rz(A1) * Tx(UPPER) * Ry(A2) * Tx(Y) * Tx(SHORT) * Rz(A4) * Ry(A5) * Rz(A6) * Tx(TOOL),
+        (UPPER, SHORT, TOOL),
         Task("xyz", Turning.FULL),
     ),
 }
-"""Determinants of several steps keep one sign where the slide is short: the steps of branches are told by more."""
+"""Determinants of two steps have one sign at all samples: with these dimensions signs alone tell no branch."""
 
 BENT_WRISTS = {
     "arm with a wrist that is bent by 60 degrees": _chain(

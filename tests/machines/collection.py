@@ -26,6 +26,7 @@ from derive.mechanism import (
 from tests.machines.angle_machines import NUMBERS
 from tests.machines.chain_machines import CHAINS, FROM_FLANGE
 from tests.machines.searched_machines import SEARCHED
+from tests.machines.subset_machines import SWEPT
 from tests.machines.task_machines import TASK_MACHINES
 
 X, Y, Z, R = (linear(name, f"slide {name}") for name in ("X", "Y", "Z", "R"))
@@ -419,4 +420,5 @@ MACHINES: Mapping[str, Mechanism] = {
     **CHAINS,
     **NUMBERS,
     **TASK_MACHINES,
+    **SWEPT,
 }

@@ -21,6 +21,8 @@ from tests.catalogue.loop_machines import LoopClosure
 from tests.machines.angle_machines import MEANT
 from tests.machines.carried import CARRIED
 from tests.machines.collection import MACHINES
+from tests.machines.free_machines import FREED
+from tests.machines.subset_machines import SUBSETS
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled_text
 
@@ -67,7 +69,7 @@ class Made:
 @cache
 def made(name: str) -> Made:
     """Derive and load a machine; its offsets are not zero."""
-    mechanism = validate({**MACHINES, **CARRIED}[name])
+    mechanism = validate({**MACHINES, **CARRIED, **SUBSETS, **FREED}[name])
     built = built_of(mechanism)
     robot_class = imported_class(mechanism, built)
     offsets = {j.offset.name: 7.0 * k - 20.0 for k, j in enumerate(mechanism.joints)}

@@ -16,6 +16,7 @@ from tests.machines import angle_machines
 from tests.machines.chain_machines import BENT_WRISTS, CHAIN_SOLUTIONS
 from tests.machines.collection import HELD, MACHINES, PARAMETERS_DECIDE
 from tests.machines.made import Array, Made, made
+from tests.machines.subset_machines import SUBSET_SOLUTIONS
 from tests.machines.task_machines import TASK_SOLUTIONS
 from tests.text.controller import OK
 
@@ -58,6 +59,7 @@ EXPECTED = {
     "arm in metres with a bent wrist and a shoulder beside its axis": 8,
     **angle_machines.EXPECTED,
     **TASK_SOLUTIONS,
+    **SUBSET_SOLUTIONS,
     **CHAIN_SOLUTIONS,
 }
 """The largest number of solutions, as a search of the closure from many starts finds them."""

@@ -210,7 +210,16 @@ LINKS = Rz(A1) * Ry(A2) * Tz(L2) * Ry(A3) * Tz(L3)
         ),
         (
             replace(_arm(LINKS * Ry(A4) * Tz(L4), Turning.PITCH), task=Task("xy", Turning.PITCH)),
-            "a task with pitch commands the whole position: 'xyz'",
+            "one joint too many: the task commands 3 quantities (x, y, pitch), and 4 joints are to be solved for; name"
+            " the one that is held at the reference: held=(A1,)",
+        ),
+        (
+            replace(_arm(LINKS * Ry(A4) * Tz(L4), Turning.PITCH), task=Task("xy", Turning.PITCH_ROLL)),
+            "z is not commanded but the joints move it",
+        ),
+        (
+            replace(_arm(Tz(L2) * Ry(A4), Turning.PITCH, (A4,)), task=Task("", Turning.PITCH)),
+            "a task with pitch commands a position too: as in Task('xyz', Turning.PITCH)",
         ),
         (
             replace(_arm(None, Turning.PITCH), closure=(X - A1, Y - A2, Z - A3)),

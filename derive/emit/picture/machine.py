@@ -44,7 +44,7 @@ class Machine:
         points = self._points()
         left, below, right, above = _MARGINS
         inside = Box(box.left + left, box.bottom + below, box.right - right, box.top - above)
-        self._view = fitted(points, inside, is_planar=drawing.is_planar)
+        self._view = fitted(points, inside, plane=drawing.plane)
         heights = [self._view.page(p)[1] for p in points]
         self.needed = float(max(heights) - min(heights)) + below + above
         """The height of the machine with its names."""

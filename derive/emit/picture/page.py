@@ -41,7 +41,7 @@ def page(drawing: Drawing, title: str, names: Mapping[str, str]) -> Page:
     needed = max(highest.needed, HEIGHT * len(choices) - 26.0, _LOWEST)
     height = round(bottom + needed + 40.0)
     machine = Machine(drawing, Box(10.0, bottom, right, height - 40.0), names).drawn()
-    shown = panels(choices, Box(WIDTH - _PANEL, bottom, WIDTH - 12.0, height - 14.0), is_planar=drawing.is_planar)
+    shown = panels(choices, Box(WIDTH - _PANEL, bottom, WIDTH - 12.0, height - 14.0), plane=drawing.plane)
     heading = Text(title, (16.0, height - 22.0), style.TITLE, style.INK, is_left=True, is_bold=True)
     lines = [(16.0, bottom - 14.0 - _ROW * row) for row in range(len(words))]
     below = [Text(text, at, style.SMALL, style.FAINT, is_left=True) for text, at in zip(words, lines, strict=True)]

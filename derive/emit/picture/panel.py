@@ -32,7 +32,7 @@ def chosen(drawing: Drawing) -> list[tuple[str, Choice]]:
     return [*shown[: _MOST - len(ways)], *ways]
 
 
-def panels(choices: Sequence[tuple[str, Choice]], box: Box, *, is_planar: bool) -> list[Mark]:
+def panels(choices: Sequence[tuple[str, Choice]], box: Box, *, plane: tuple[int, int] | None) -> list[Mark]:
     """The small pictures, one below the other."""
     marks: list[Mark] = []
     if choices:
@@ -41,11 +41,11 @@ def panels(choices: Sequence[tuple[str, Choice]], box: Box, *, is_planar: bool) 
         )
     for row, (heading, choice) in enumerate(choices):
         top = box.top - row * HEIGHT
-        marks += _panel(heading, choice, Box(box.left, top - HEIGHT, box.right, top), is_planar)
+        marks += _panel(heading, choice, Box(box.left, top - HEIGHT, box.right, top), plane)
     return marks
 
 
-def _panel(heading: str, choice: Choice, box: Box, is_planar: bool) -> Iterator[Mark]:
+def _panel(heading: str, choice: Choice, box: Box, plane: tuple[int, int] | None) -> Iterator[Mark]:
     assert choice.scenes is not None
     left = box.left + 4.0
     yield Text(heading, (left, box.top - 10.0), style.SMALL, style.INK, is_left=True, is_bold=True)
@@ -58,7 +58,7 @@ def _panel(heading: str, choice: Choice, box: Box, is_planar: bool) -> Iterator[
     points = [p for scene in choice.scenes for s in scene.segments for p in (s.start, s.end)]
     points += [ORIGIN.position, *(scene.tool.position for scene in choice.scenes)]
     inside = Box(left + 14.0, box.bottom + 22.0, box.right - 24.0, box.top - 64.0)
-    view = fitted(points, inside, is_planar=is_planar)
+    view = fitted(points, inside, plane=plane)
     sheet = Sheet(Box(left, box.bottom, box.right, box.top - 38.0))
     for ground in choice.scenes[0].grounds:
         sheet.draw([_foot(view.page(ground), view)])

@@ -1,4 +1,4 @@
-"""The projection of the machine to the page: from above for a planar machine, else an axonometric view."""
+"""The projection of the machine to the page: a planar machine along its third coordinate, else an axonometric view."""
 
 from __future__ import annotations
 
@@ -34,6 +34,7 @@ class View:
     """Pixels of one unit of the machine."""
     shift: Vector
     is_planar: bool
+    """Whether it shows a plane of the machine, seen along the third coordinate."""
 
     def page(self, point: Iterable[float]) -> Vector:
         """The point of the page that shows a point of the machine."""
@@ -49,21 +50,21 @@ class View:
         return np.cross(self.axes[0], self.axes[1])
 
 
-def axes_of(is_planar: bool) -> Vector:
-    """The rows of the projection."""
-    if is_planar:
-        return np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+def axes_of(plane: tuple[int, int] | None) -> Vector:
+    """The rows of the projection: two coordinates of the machine, or an axonometric view."""
+    if plane is not None:
+        return np.eye(3)[list(plane)]
     right = [-np.sin(_AZIMUTH), np.cos(_AZIMUTH), 0.0]
     up = [-np.sin(_ELEVATION) * np.cos(_AZIMUTH), -np.sin(_ELEVATION) * np.sin(_AZIMUTH), np.cos(_ELEVATION)]
     return np.array([right, up])
 
 
-def fitted(points: Sequence[Point], box: Box, *, is_planar: bool) -> View:
+def fitted(points: Sequence[Point], box: Box, *, plane: tuple[int, int] | None) -> View:
     """The view in which all points are inside the box, as large as possible, in its middle."""
-    axes = axes_of(is_planar)
+    axes = axes_of(plane)
     seen = np.array([axes @ np.array(p) for p in points])
     low, high = seen.min(axis=0), seen.max(axis=0)
     room = np.array([box.right - box.left, box.top - box.bottom])
     scale = float(np.min(room / np.maximum(high - low, 1e-9)))
     middle = np.array([box.left + box.right, box.bottom + box.top]) / 2
-    return View(axes, scale, middle - scale * (low + high) / 2, is_planar)
+    return View(axes, scale, middle - scale * (low + high) / 2, plane is not None)

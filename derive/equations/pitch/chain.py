@@ -45,8 +45,8 @@ def followed_of(mechanism: Mechanism) -> Followed:
     what = mechanism.task.turning.value
     if mechanism.chain is None:
         raise DescriptionError(f"a task with {what} needs a chain: its last turns follow the commanded rotation")
-    if mechanism.task.position != "xyz":
-        raise DescriptionError(f"a task with {what} commands the whole position: 'xyz'")
+    if not mechanism.task.position:
+        raise DescriptionError(f"a task with {what} commands a position too: as in Task('xyz', Turning.PITCH)")
     turns = pose_of(mechanism.chain).turns
     joints = {j.symbol for j in mechanism.solved_joints}
     moving = [k for k, t in enumerate(turns) if t.amount.free_symbols & joints]

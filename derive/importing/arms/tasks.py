@@ -146,17 +146,13 @@ def _task(seen: Motions, rank: int) -> tuple[str, str]:
 
 
 def _position(shifts: Array, rank: int) -> str:
-    if rank == 3:
-        return "xyz"
-    if rank == 1:
-        raise UnreadableRobot(
-            "its tip moves along one line, and a description commands x, y and z, or x and y: choose another tip"
-        )
-    if rank == 2 and np.abs(shifts[:, 2]).max() < _SMALL:
-        return "xy"
+    moved = [c for k, c in enumerate("xyz") if np.abs(shifts[:, k]).max(initial=0.0) >= _SMALL]
+    if len(moved) == rank:
+        return "".join(moved)
     raise UnreadableRobot(
-        f"its tip moves in {rank} directions, and a description commands x, y and z, or x and y: choose another base "
-        "or tip"
+        f"its tip has {rank} free motion{'' if rank == 1 else 's'} and moves along {', '.join(moved)}, and a "
+        "description commands each coordinate that moves: choose a base link whose axes are along the motions, or "
+        "another tip"
     )
 
 

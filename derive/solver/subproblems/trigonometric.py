@@ -44,6 +44,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
+from derive.solver.subproblems.apart import determined_apart
 from derive.solver.subproblems.direction import free_angle
 from derive.solver.subproblems.lateral import Row, aimed_at_point
 from derive.solver.subproblems.naming import Naming
@@ -317,7 +318,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
         *_cosine(angle, amplitude, cos_name, (plus_cos - less_cos) / below, (less, more)),
         Let(square, less_cos * plus_cos, "sine squared, times the squared scale"),
         Let(sin_name, 2 * sigma * Root(square) / size(below)),
-        *(_turned(problem, angle, amplitude, cos_name, sin_name) if turned else ()),
+        *(_turned(problem, equation, angle, amplitude, (cos_name, sin_name)) if turned else ()),
     ]
     determinant = StepDeterminant(angle, amplitude.determinant, amplitude.determinant_scale, (length, right))
     return Binding("trigonometric", (angle,), tuple(statements), determinant, cosine_alone=True, yields_to_a_sum=True)
@@ -344,12 +345,22 @@ def _cosine(
 
 
 def _turned(
-    problem: Problem, angle: sp.Symbol, amplitude: _Amplitude, cos_name: sp.Symbol, sin_name: sp.Symbol
+    problem: Problem,
+    equation: Equation,
+    angle: sp.Symbol,
+    amplitude: _Amplitude,
+    swing: tuple[sp.Symbol, sp.Symbol],
 ) -> Iterator[Let]:
-    """Cosine and sine of the angle from those of the swing; the reference where there is no arm."""
+    """Cosine and sine of the angle from those of the swing; where there is no arm those that the two equations give
+    between which a length was eliminated, else the reference.
+    """
     along, across = amplitude.cos_unit, amplitude.sin_unit
+    cos_name, sin_name = swing
     values = (along * cos_name - across * sin_name, across * cos_name + along * sin_name)
     free = free_angle(problem, angle)
+    if amplitude.aimable is not None:
+        lets, free = determined_apart(problem, equation, angle, free)
+        yield from lets
     notes = (_ADDITION, "")
     for function, value, otherwise, note in zip((cosine, sine), values, free, notes, strict=True):
         chosen = value if amplitude.aimable is None else Select(amplitude.aimable, value, otherwise)

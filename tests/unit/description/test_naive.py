@@ -86,7 +86,11 @@ FAULTS = {
         "positive holds a2 > 0, which is true or false: state the quantity whose sign tells",
     ),
     "one positive quantity": (written(positive="sin(A2)"), "positive must be a tuple, not a sin, as in positive=(R,)"),
-    "rows that do not exist": (written(task='Task("xz")'), "the task commands 'xz': it must be 'xy', 'xyz', or ''"),
+    "rows that do not exist": (written(task='Task("zx")'), "commands 'zx': it must be coordinates in the order x"),
+    "a row that the joints move and nobody commands": (
+        written(task='Task("xz")', joints="(A1, A2)", chain="Rz(A1) * Tx(L1) * Ry(A2) * Tx(L2)", branches=""),
+        'y is not commanded but the joints move it; command it too: task=Task("xyz")',
+    ),
     "a word for a task": (written(task='"xyz"'), "task must not be 'xyz': as in task=Task(\"xyz\")"),
     "a word for a turning": (written(task='Task("xyz", "about z")'), "task: 'about z' is no Turning: as in task"),
     "more rows than joints": (

@@ -196,7 +196,7 @@ def test_the_arrow_of_a_slide_runs_along_it(name: str) -> None:
     drawing = drawn(name).drawing
     assert drawing.scene.slides
     ends = rails(drawing.scene)
-    view = fitted([p for pair in ends.values() for p in pair], Box(0.0, 0.0, 800.0, 500.0), is_planar=drawing.is_planar)
+    view = fitted([p for pair in ends.values() for p in pair], Box(0.0, 0.0, 800.0, 500.0), plane=drawing.plane)
     for slide in (s for s in drawing.scene.slides if s.has_arrow):
         along = view.direction(slide.axis)
         shafts = [m for m in slide_arrow(slide, ends[slide], view, is_beside=False) if isinstance(m, Line)]

@@ -1,0 +1,114 @@
+"""Loops that only turn their platform: in both languages their equations hold, and the commanded rotation is met."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+import softkin
+import sympy as sp
+from numpy.typing import NDArray
+
+from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, Turning
+from derive.description.validate import validate
+from derive.pipeline import derive_one
+from tests.machines.made import imported_class
+from tests.machines.spherical_machines import A1, SPHERICAL
+from tests.text.controller import OK, Controller
+from tests.text.units import compiled_text
+
+EVERY = pytest.mark.parametrize("name", SPHERICAL)
+Matrix = NDArray[np.float64]
+
+
+@cache
+def both(name: str) -> tuple[softkin.Mechanism, Controller, Any]:
+    """The machine in both languages, with offsets, and its stated equations as a function of joints and rotation."""
+    mechanism = validate(SPHERICAL[name])
+    built = derive_one(mechanism)
+    offsets = {j.offset.name: 0.3 if j.is_angle else 0.01 for j in mechanism.joints}
+    robot = imported_class(mechanism, built)(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
+    controller = Controller(compiled_text(f"{mechanism.name}.st", built.parts["st"]["text"]), mechanism)
+    assert controller.initialise(robot.parameters) == OK
+    known = {p.symbol: p.nominal for p in mechanism.parameters}
+    stated = [sp.sympify(e).xreplace(known) for e in mechanism.equations]
+    return robot, controller, sp.lambdify([[j.symbol for j in mechanism.joints], list(ROTATION)], stated)
+
+
+def missed(mechanism: Mechanism, robot: softkin.Mechanism, axes: Any, rotation: Any) -> float:
+    equations = both(next(n for n, m in SPHERICAL.items() if m is mechanism))[2]
+    joints = [
+        (np.radians if j.is_angle else float)(a - robot.parameters[j.offset.name])
+        for j, a in zip(mechanism.joints, axes, strict=True)
+    ]
+    size = max([p.nominal for p in mechanism.parameters], default=1.0)
+    return float(np.max(np.abs(equations(joints, list(np.ravel(rotation)))))) / size**2
+
+
+def near_home(count: int, largest: float) -> list[Matrix]:
+    """Rotations about any axis, up to an angle."""
+    rng = np.random.default_rng(5)
+    found = []
+    for _ in range(count):
+        axis = rng.normal(size=3)
+        x, y, z = axis / np.linalg.norm(axis)
+        angle = rng.uniform(-largest, largest)
+        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        found.append(np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross)
+    return found
+
+
+@EVERY
+def test_the_platform_is_turned_as_commanded(name: str) -> None:
+    robot, controller, _ = both(name)
+    mechanism = SPHERICAL[name]
+    columns = slice(2, 3) if mechanism.task.turning is Turning.DIRECTION else slice(0, 3)
+    answered = 0
+    for commanded in near_home(40, 0.6):
+        rows = tuple(map(tuple, commanded.tolist()))
+        for solution in robot.inverse_all(((0.0, 0.0, 0.0), rows), [0.0] * len(mechanism.joints)):
+            status, found = controller.inverse((0.0, 0.0, 0.0), rows, solution.configuration, [0.0] * 3)
+            assert (status == OK) == (solution.axes is not None)
+            if solution.axes is None:
+                continue
+            assert found[: len(mechanism.joints)] == pytest.approx(solution.axes, abs=1e-9)
+            try:
+                frame, _ = robot.forward(solution.axes)
+            except softkin.KinematicsError:  # a working mode that no home pose has
+                assert controller.forward(solution.axes)[0] != OK
+                continue
+            status, (position, turned, _) = controller.forward(solution.axes)
+            assert status == OK and position == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
+            assert np.allclose(turned, frame.rotation, rtol=0.0, atol=1e-9)
+            assert missed(mechanism, robot, solution.axes, frame.rotation) < 1e-11
+            if np.allclose(np.array(frame.rotation)[:, columns], commanded[:, columns], rtol=0.0, atol=1e-9):
+                answered += 1
+    assert answered >= 36
+
+
+@EVERY
+def test_the_jacobian_is_that_of_the_equations(name: str) -> None:
+    robot, _, _ = both(name)
+    rows = {"turn x", "turn y", "turn z"} if SPHERICAL[name].task.turning is Turning.FULL else {"tilt x", "tilt y"}
+    assert set(robot.JACOBIAN_ROWS) == rows
+    frame, _ = robot.forward(robot.inverse(((0.0, 0.0, 0.0), tuple(map(tuple, near_home(1, 0.4)[0].tolist()))), None))
+    axes = np.array(robot.inverse(frame, None))
+    units = np.where([j.is_angle for j in SPHERICAL[name].joints], np.pi / 180.0, 1.0)
+    jacobian, step = np.array(robot.jacobian(axes)), 1e-5
+    for k in range(len(axes)):
+        ends = [np.array(robot.forward(axes + way * step * np.eye(len(axes))[k])[0].rotation) for way in (-1, 1)]
+        rate = (ends[1] - ends[0]) / (2 * step) / units[k]
+        own = np.array(frame.rotation)
+        spin = rate @ own.T if len(axes) == 3 else own.T @ rate
+        told = np.array([spin[2, 1], spin[0, 2], spin[1, 0]])[: len(jacobian)]
+        assert jacobian[:, k] == pytest.approx(told, rel=1e-5, abs=1e-5 * np.abs(jacobian).max())
+
+
+def test_an_equation_that_encloses_no_fixed_angle_is_refused() -> None:
+    whole = SPHERICAL["camera on three curved arms"]
+    other = (whole.closure[0] + ROTATION[2, 2] * A1.symbol, *whole.closure[1:])
+    with pytest.raises(DescriptionError, match="a direction of the platform encloses a fixed angle with one"):
+        derive_one(validate(replace(whole, closure=other)))
