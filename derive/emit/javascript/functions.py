@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from derive.drawing.parts import Parts
 from derive.emit.javascript.printer import function_name
 from derive.equations.limits import value_of
 from derive.equations.rotation_repair import rotation_program
@@ -60,8 +61,8 @@ def rotation_function() -> Function:
     return Function("The rotation as it is used.", rotation_program(), (("rotation", ROTATION),), ROTATION)
 
 
-def functions(kin: Kinematics) -> list[Function]:
-    """The functions of a module, each before its callers."""
+def functions(kin: Kinematics, parts: Parts | None) -> list[Function]:
+    """The functions of a module, each before its callers. parts: what is drawn, of a machine that has a drawing."""
     joints = kin.mechanism.joints
     axes = (("axes", tuple(j.axis.name for j in joints)),)
     pose = (("position", POSITION), ("rotation", ROTATION))
@@ -85,6 +86,9 @@ def functions(kin: Kinematics) -> list[Function]:
                  tuple(m.name for m in kin.margins), "singularity"),
         Function("The Jacobian by rows, per radian.", kin.jacobian, axes, matrix(len(kin.rows)), "jacobian"),
     ]  # fmt: skip
+    if parts is not None:
+        text = "What is drawn: amounts and points, as `parts` of the description counts them."
+        found.append(Function(text, parts.program, (*axes, *pose), parts.names, "parts"))
     if kin.forward_from is not None:
         text = "Position, rotation and margins, found from a given start."
         found.append(Function(text, kin.forward_from, (*axes, *_START), placed, "forwardFrom"))

@@ -10,6 +10,8 @@ from typing import Any
 
 from jinja2 import Environment
 
+from derive.description.mechanism import DescriptionError
+from derive.drawing.parts import Parts, parts_of
 from derive.emit.javascript.description import description
 from derive.emit.javascript.functions import functions, rotation_function
 from derive.emit.javascript.layout import block, comment, laid_out
@@ -42,8 +44,8 @@ from derive.report.reasons import reasons_of, reasons_of_rotation
 
 name = "javascript"
 _VERSION = "0.1.0"
-_RUNTIME = ("configuration.js", "input.js", "numbers.js", "package.json", "refusal.js", "roots.js", "rotation.js",
-            "softkin.js")  # fmt: skip
+_RUNTIME = ("configuration.js", "input.js", "limits.js", "numbers.js", "package.json", "refusal.js", "roots.js",
+            "rotation.js", "scene.js", "softkin.js")  # fmt: skip
 """The files that no mechanism changes."""
 _OF_THE_SEARCH = (
     *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
@@ -110,14 +112,15 @@ def _literal(value: float | tuple[float, ...]) -> str:
 
 def _module(kin: Kinematics, module: str) -> str:
     names = {p.name: p.name for p in kin.parameters}
-    found, refusals = functions(kin), Refusals(reasons_of(kin))
+    parts = _parts(kin)
+    found, refusals = functions(kin, parts), Refusals(reasons_of(kin))
     further, entries = _further(kin)
     read = {name for f in found for name in read_by(f.program) - f.given}
     read |= set(re.findall(r"k\.(\w+)", " ".join(entries)))
     setup = setup_lines(kin, read, names)
     programs = [f"{f.key}: {f.name}," for f in found if f.key]
     texts = [laid_out(lines) for lines in (setup, *(function_lines(f, refusals) for f in found), *further)]
-    stated = description(kin, module, names)
+    stated = description(kin, module, names) | {"parts": None if parts is None else parts.shape}
     return _templates().get_template("mechanism.js.j2").render(
         head=[line.removeprefix("// ") for line in _head(kin)],
         imports=_imports([line for lines in texts for line in lines]),
@@ -126,6 +129,14 @@ def _module(kin: Kinematics, module: str) -> str:
         programs=["constants: findConstants,", *programs, *entries],
         parameters=[line.removeprefix("// ") for p in stated["parameters"] for line in _parameter(p)],
     )  # fmt: skip
+
+
+def _parts(kin: Kinematics) -> Parts | None:
+    """What is drawn of the machine; None where nothing can be drawn."""
+    try:
+        return parts_of(kin)
+    except DescriptionError:
+        return None
 
 
 def _head(kin: Kinematics) -> list[str]:
