@@ -34,6 +34,7 @@ WRITTEN = (python.name, StructuredTextFiles.name)
 LANGUAGES = (*WRITTEN, javascript.name)
 UNFIT = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
 """What a wrong description leads to: the message says enough."""
+_LANGUAGES = {python.name: "Python", StructuredTextFiles.name: "Structured Text", javascript.name: "JavaScript"}
 Told = Callable[[str, str], None]
 """What is told about a stage: its name, and its result, which is empty at its begin."""
 
@@ -67,6 +68,11 @@ class Built:
     """What the witness found; None where it was kept from an earlier run."""
     undrawn: str = ""
     """Why there is no picture: a drawing is no part of the proof, and a machine without one is whole."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What every language says about names that it could not take from the description."""
+        return tuple(f"{_LANGUAGES.get(name, name)}: {n}" for name, part in self.parts.items() for n in part["notes"])
 
     def as_plain(self) -> dict[str, Any]:
         """What JSON can hold."""

@@ -81,7 +81,7 @@ BROKEN: dict[str, tuple[str, str, str]] = {
     "the same joint twice": (
         "joints=(A1, A2, A3, A4)",
         "joints=(A1, A2, A3, A4, A1)",
-        r"broken\.py:\d+: joint 'a1' is given 2 times",
+        r"broken\.py:\d+: joint 'A1' is given 2 times",
     ),
     "the same parameter twice": (
         "parameters=(L1, L2, P)",

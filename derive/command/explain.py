@@ -69,7 +69,8 @@ def explanation(mechanism: Mechanism) -> Iterator[str]:
             yield f"{joint.name} is scanned for roots. The steps below are those of a trial, where it is known."
             yield from _trial(mechanism, solve_at(mechanism, joint))
             return
-        yield f"Where {parameter.name} is not 0, {joint.name} is scanned for roots. Below are the steps where it is 0."
+        name = parameter.given_name
+        yield f"Where {name} is not 0, {joint.name} is scanned for roots. Below are the steps where it is 0."
         mechanism = without_search(mechanism)
     try:
         inverse = solve_pose(mechanism)

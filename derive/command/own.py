@@ -126,6 +126,8 @@ def _derived(path: Path, package: str, options: argparse.Namespace, stages: Stag
         raise GenerationError(in_place(path, reason_of(problem))) from None
     if built.undrawn:
         stages.line(f"  warning: {in_place(path, f'not drawn: {built.undrawn}')}")
+    for note in built.notes:
+        stages.line(f"  note: {note}")
     if "st" not in built.parts:
         stages.line(f"  note: no block: it has {len(mechanism.joints)} axes, and SoftMotion knows six")
     return files

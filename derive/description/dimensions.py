@@ -8,15 +8,22 @@ from enum import Enum
 import sympy as sp
 
 from derive.description.quantity import Quantity
-from derive.ir.constants import (
-    DEGREE,
-)
-from derive.ir.program import (
-    Let,
-)
+from derive.ir.constants import DEGREE
+from derive.ir.program import Let
 from derive.ir.symbols import (
+    COORDINATE_NAMES,
+    ROTATION_ENTRIES,
     real,
 )
+
+_OF_REACHES = ("side_12", "side_13", "side_23", "equal_power", "reach")
+_OF_EQUATIONS = {
+    *(*COORDINATE_NAMES, DEGREE.name, "corner_area"),
+    *(f"{word}_{c}" for word in ("joint", *_OF_REACHES) for c in COORDINATE_NAMES),
+    *(f"{word}_{k}" for word in ("power", "weight", "reach", "reach_x", "reach_y") for k in (1, 2, 3)),
+    *(r.name for r in ROTATION_ENTRIES),
+}
+"""What equations, and conditions on reaches, call other values."""
 
 
 class Role(Enum):
@@ -55,6 +62,13 @@ class Parameter(Quantity):
     """A value for drawings and tests."""
     fixed: sp.Expr | None = None
     """The value of a number that stands in a chain: it has a name, and no user gives it."""
+    given: str = ""
+    """What the description calls it, where it is derived under another name."""
+
+    @property
+    def given_name(self) -> str:
+        """What the description calls it."""
+        return self.given or self.name
 
     @property
     def has_vendor_range(self) -> bool:
@@ -62,42 +76,52 @@ class Parameter(Quantity):
         return self.high < 1e9
 
 
+def _value_of(name: str) -> sp.Symbol:
+    """The symbol of a value of either sign."""
+    return real(_symbol_name(name))
+
+
+def _symbol_name(name: str) -> str:
+    """A parameter that is called like a coordinate of the pose is not that coordinate."""
+    return f"given {name}" if name in _OF_EQUATIONS else name
+
+
 def length(name: str, meaning: str, *, nominal: float, high: float = 1e9, default: float | None = None) -> Parameter:
     """A length that is more than zero, and must be given where the description, which is of one machine, gives none."""
-    symbol = sp.Symbol(name, positive=True)
+    symbol = sp.Symbol(_symbol_name(name), positive=True)
     return Parameter(symbol, name, Role.LENGTH, meaning, "u", 0.0, high, True, default, nominal)
 
 
 def optional_length(name: str, meaning: str, *, nominal: float, high: float = 1e9) -> Parameter:
     """A length that may be zero, and is when not given."""
-    symbol = sp.Symbol(name, nonnegative=True)
+    symbol = sp.Symbol(_symbol_name(name), nonnegative=True)
     return Parameter(symbol, name, Role.DISTANCE, meaning, "u", 0.0, high, False, 0.0, nominal)
 
 
 def signed_length(name: str, meaning: str, *, nominal: float) -> Parameter:
     """A length of either sign, as in tables of Denavit-Hartenberg parameters: it must be given and not be zero."""
-    symbol = sp.Symbol(name, real=True, nonzero=True)
+    symbol = sp.Symbol(_symbol_name(name), real=True, nonzero=True)
     return Parameter(symbol, name, Role.SIGNED_LENGTH, meaning, "u", -1e9, 1e9, False, None, nominal)
 
 
 def pitch(name: str, meaning: str, *, nominal: float, low: float = -1e9, high: float = 1e9) -> Parameter:
     """A travel per revolution, zero when not given."""
-    return Parameter(real(name), name, Role.PITCH, meaning, "u/rev", low, high, False, 0.0, nominal)
+    return Parameter(_value_of(name), name, Role.PITCH, meaning, "u/rev", low, high, False, 0.0, nominal)
 
 
 def gear(name: str, meaning: str, *, nominal: float) -> Parameter:
     """A travel per degree, zero when not given."""
-    return Parameter(real(name), name, Role.GEAR, meaning, "u/deg", -1e9, 1e9, False, 0.0, nominal)
+    return Parameter(_value_of(name), name, Role.GEAR, meaning, "u/deg", -1e9, 1e9, False, 0.0, nominal)
 
 
 def coupling(name: str, meaning: str, *, nominal: float) -> Parameter:
     """A ratio of one motor's turn to another joint's turn, zero when not given."""
-    return Parameter(real(name), name, Role.COUPLING, meaning, "1", -1e3, 1e3, False, 0.0, nominal)
+    return Parameter(_value_of(name), name, Role.COUPLING, meaning, "1", -1e3, 1e3, False, 0.0, nominal)
 
 
 def transmission(name: str, meaning: str, *, nominal: float) -> Parameter:
     """A ratio of turns, of either sign, as of a gear or a belt: it must be given and not be zero."""
-    symbol = sp.Symbol(name, real=True, nonzero=True)
+    symbol = sp.Symbol(_symbol_name(name), real=True, nonzero=True)
     return Parameter(symbol, name, Role.TRANSMISSION, meaning, "1", -1e6, 1e6, False, None, nominal)
 
 
@@ -105,17 +129,17 @@ def angle(
     name: str, meaning: str, *, nominal: float, low: float = -360.0, high: float = 360.0, default: float | None = None
 ) -> Parameter:
     """An angle of the machine, in degrees; `radians(p)` inside expressions."""
-    return Parameter(real(name), name, Role.ANGLE, meaning, "deg", low, high, False, default, nominal)
+    return Parameter(_value_of(name), name, Role.ANGLE, meaning, "deg", low, high, False, default, nominal)
 
 
 def coordinate(name: str, meaning: str, *, nominal: float) -> Parameter:
     """A coordinate of a point, with a sign, that must be given."""
-    return Parameter(real(name), name, Role.DISTANCE, meaning, "u", -1e9, 1e9, False, None, nominal)
+    return Parameter(_value_of(name), name, Role.DISTANCE, meaning, "u", -1e9, 1e9, False, None, nominal)
 
 
 def distance(name: str, meaning: str, *, nominal: float, low: float = -1e9, default: float = 0.0) -> Parameter:
     """A length with a sign; when not given it is zero, or what the description of one machine gives."""
-    return Parameter(real(name), name, Role.DISTANCE, meaning, "u", low, 1e9, False, default, nominal)
+    return Parameter(_value_of(name), name, Role.DISTANCE, meaning, "u", low, 1e9, False, default, nominal)
 
 
 def radians(parameter: Parameter) -> sp.Expr:
@@ -125,13 +149,13 @@ def radians(parameter: Parameter) -> sp.Expr:
 
 def flag(name: str, meaning: str, *, nominal: bool = False) -> Parameter:
     """A choice that is off when not given; 0 or 1 inside expressions."""
-    symbol = sp.Symbol(name, nonnegative=True)  # its square is itself: see algebra.reduce_units
+    symbol = sp.Symbol(_symbol_name(name), nonnegative=True)  # its square is itself: see algebra.reduce_units
     return Parameter(symbol, name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, float(nominal))
 
 
 def sign(name: str, meaning: str, *, nominal: int = 1) -> Parameter:
     """A direction: +1 or -1."""
-    symbol = sp.Symbol(name, real=True, nonzero=True)  # its square is one
+    symbol = sp.Symbol(_symbol_name(name), real=True, nonzero=True)  # its square is one
     return Parameter(symbol, name, Role.SIGN, meaning, "", -1.0, 1.0, False, 1.0, float(nominal))
 
 

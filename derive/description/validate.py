@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
-from itertools import combinations
+from collections.abc import Iterable, Iterator, Sequence
 
 import sympy as sp
 
-from derive.algebra.angle_sums import name_of, terms_of
+from derive.algebra.angle_sums import terms_of
 from derive.description.chains.amounts import wrong_amounts
 from derive.description.kinds import number, pair
 from derive.description.mechanism import (
@@ -29,17 +28,10 @@ from derive.ir.constants import (
 )
 
 _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
-_PARAMETER = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+_PARAMETER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+_BRANCH = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _FAMILY = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
-_OF_AXES = (
-    *("axis", "ref", "reference", "turn", "offset", "lower", "upper", "motor", "unlimited"),
-    *("lowest", "highest", "mid", "single", "open", "near", "turns", "sense", "turned"),
-)
-"""What programs call values of an axis: `offset_a1`."""
-_OF_BRANCHES = ("sigma", "branch", "sign")
-_RESERVED = {"check_limits", "limits", "machine_scale", "x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123")}
-"""Names that programs need for other values."""
 
 _MARKS = ("(*", "*)", '"""', "\\")
 
@@ -56,9 +48,8 @@ def validate(mechanism: Mechanism) -> Mechanism:
 def _problems(mechanism: Mechanism) -> Iterator[str]:
     yield from _names(mechanism)
     yield from _texts(mechanism)
-    taken = _taken(mechanism)
     for parameter in mechanism.parameters:
-        yield from _parameter(parameter, taken)
+        yield from _parameter(parameter)
     for joint in mechanism.joints:
         yield from _joint(mechanism, joint)
     yield from _held(mechanism)
@@ -102,41 +93,46 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
         ("limited quantity", [q.name for q in mechanism.limited]),
         ("name", [mechanism.name, *mechanism.aliases]),
     ):
-        for name, count in Counter(n.lower() for n in names).items():
+        for name, count in Counter(names).items():
             if count > 1:
                 yield f"{kind} {name!r} is given {count} times"
+        yield from _alike(kind, names)
+    yield from _joints_and_parameters(mechanism)
     for branch in mechanism.branches:
         yield from (
             f"branch {branch.name!r}: {word!r} cannot name it, or a side of it: lower-case words joined by _"
             for word in (branch.name, *branch.names)
-            if not _PARAMETER.match(word)
+            if not _BRANCH.match(word)
         )
     for joint in mechanism.joints:
         if not _AXIS.match(joint.name):
             yield f"{joint.name!r} cannot name a joint: a capital letter, then letters and digits"
-    turning = [j.symbol for j in mechanism.joints if j.is_angle]
-    sums = {
-        name_of(tuple((s, 1) for s in some)) for n in range(2, len(turning) + 1) for some in combinations(turning, n)
-    }
-    for joint in mechanism.joints:
-        if joint.symbol.name in sums:
-            yield f"joint {joint.name!r} has the name of a sum of other joints: choose another"
 
 
-def _taken(mechanism: Mechanism) -> set[str]:
-    """The names that programs of this mechanism give to values of their own, without _: Structured Text joins words."""
-    axes = [*(j.key for j in mechanism.joints), *(q.name for q in mechanism.limited)]
-    of_axes = {f"{word}_{key}" for word in _OF_AXES for key in axes}
-    of_branches = {f"{word}_{b.name}" for word in _OF_BRANCHES for b in mechanism.branches}
-    return {name.replace("_", "") for name in (*_RESERVED, *of_axes, *of_branches)}
+def _alike(kind: str, names: Sequence[str]) -> Iterator[str]:
+    """Structured Text reads names that differ in case alone as one."""
+    first: dict[str, str] = {}
+    for name in names:
+        other = first.setdefault(name.lower(), name)
+        if other != name:
+            yield f"{kind} {name!r} and {kind} {other!r} differ in case alone: Structured Text reads them as one name"
 
 
-def _parameter(parameter: Parameter, taken: set[str]) -> Iterator[str]:
+def _joints_and_parameters(mechanism: Mechanism) -> Iterator[str]:
+    """A joint and a parameter whose names differ in case alone, and that are one symbol in every equation."""
+    joints = {j.symbol: j for j in mechanism.joints}
+    for parameter in mechanism.parameters:
+        if (joint := joints.get(parameter.symbol)) is not None:
+            yield (
+                f"joint {joint.name!r} and parameter {parameter.name!r} differ in case alone: equations would read "
+                "them as one"
+            )
+
+
+def _parameter(parameter: Parameter) -> Iterator[str]:
     name = parameter.name
     if not _PARAMETER.match(name):
-        yield f"{name!r} cannot name a parameter: lower-case words joined by _"
-    if name.replace("_", "") in taken:
-        yield f"{name!r} cannot name a parameter: programs of this mechanism have another value of that name"
+        yield f"{name!r} cannot name a parameter: letters, digits and _, and no digit first"
     stated = (
         parameter.nominal,
         parameter.low,
@@ -295,7 +291,7 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _constraints(mechanism: Mechanism) -> Iterator[str]:
-    values: dict[str, sp.Expr] = {p.name: sp.Float(p.nominal) for p in mechanism.parameters} | {
+    values: dict[str, sp.Expr] = {p.symbol.name: sp.Float(p.nominal) for p in mechanism.parameters} | {
         DEGREE.name: sp.pi / 180
     }
 

@@ -33,6 +33,9 @@ EXACT_ROTATION = sp.Float("1e-12")
 SURE_ROTATION = sp.Float("1e-13")
 """A matrix that misses x x = y y = 1, x y = 0 and z = x × y by no more than this is nearer to a rotation than
 `EXACT_ROTATION`."""
+LEAST = sp.Float("1e-12")
+"""A length or a ratio of this size or less, where it may not be zero, is refused: products of such numbers, and their
+reciprocals, are numbers then."""
 PLANE = sp.Float("1e-6")
 """How far a planar machine's commanded z may be from its plane, per unit of reach."""
 LIMIT = sp.Float("1e-9")

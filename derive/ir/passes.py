@@ -44,7 +44,7 @@ from derive.ir.symbols import (
     is_decided,
     symbols_of,
 )
-from derive.ir.verify import BrokenProgram, verify
+from derive.ir.verify import RepeatedName, verify
 
 
 def normalise(name: str, statements: Iterable[Statement], outputs: Sequence[Output]) -> Program:
@@ -117,7 +117,8 @@ def _without_aliases(
         if isinstance(s, Let):
             value = s.value.xreplace(aliases)
             if bound.setdefault(s.name, s.value) != s.value:
-                raise BrokenProgram(f"{s.name} is bound twice, to {bound[s.name]} and to {s.value}")
+                message = f"{s.name} is bound twice, to {bound[s.name]} and to {s.value}"
+                raise RepeatedName(message, s.name.name)
             if s.name in aliases or s.name in names:
                 continue  # the same Let again
             if value.is_Symbol or value.is_Number or is_decided(value):

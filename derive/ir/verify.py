@@ -36,6 +36,15 @@ class BrokenProgram(Exception):
     """A program that no language may print; the message names the program and the place."""
 
 
+class RepeatedName(BrokenProgram):
+    """Two values of a program have one name, or names that a language joins to one."""
+
+    def __init__(self, message: str, *names: str) -> None:
+        """names: as each of the two is called."""
+        super().__init__(message)
+        self.names = names
+
+
 def verify(program: Program) -> Program:
     """Return the program, or raise `BrokenProgram`: unbound or repeated name, unportable name, unknown primitive, mixed
     types.
@@ -79,9 +88,8 @@ def _check_call(program: Program, call: Call) -> None:
     if strangers := [n.name for n in arguments if n not in call.program.inputs]:
         raise BrokenProgram(f"{program.name}: {call.program.name} does not read {strangers[0]!r}")
     if unbound := [s.name for s in call.constants if s not in program.inputs]:
-        raise BrokenProgram(
-            f"{program.name}: {call.program.name} reads {unbound[0]!r}, which is neither given nor an input"
-        )
+        message = f"{program.name}: {call.program.name} reads {unbound[0]!r}, which is neither given nor an input"
+        raise RepeatedName(message, *(name.name for name in program.bound()))
 
 
 def _check_loop(program: Program, loop: Iterate, bound: dict[str, sp.Symbol]) -> None:
@@ -108,7 +116,8 @@ def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:
         raise BrokenProgram(f"{program.name}: {name!r} is not a portable snake_case name")
     key = name.replace("_", "")  # Structured Text joins the words of a name, and ignores case
     if key in spelled:
-        raise BrokenProgram(f"{program.name}: {name!r} is bound twice (also as {spelled[key]!r})")
+        message = f"{program.name}: {name!r} is bound twice (also as {spelled[key]!r})"
+        raise RepeatedName(message, name, spelled[key])
     spelled[key] = name
 
 
@@ -124,9 +133,11 @@ def _refuse_name(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol])
     """Raise for the first name that is not bound, or bound as another type."""
     for node in sp.preorder_traversal(value):
         if isinstance(node, sp.Symbol) and node.name not in bound:
-            raise BrokenProgram(f"{program.name}: {node.name!r} is read before it is bound, in {value}")
+            message = f"{program.name}: {node.name!r} is read before it is bound, in {value}"
+            raise RepeatedName(message, *(name.name for name in program.bound()))  # one of them may be an input, too
         if isinstance(node, sp.Symbol) and bound[node.name] != node:
-            raise BrokenProgram(f"{program.name}: {node.name!r} is read as another type than it is bound, in {value}")
+            message = f"{program.name}: {node.name!r} is read as another type than it is bound, in {value}"
+            raise RepeatedName(message, node.name)
 
 
 @cache

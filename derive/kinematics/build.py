@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from derive.description.chains.gears import with_gears
 from derive.description.chains.numbers import almost_right_angles, with_named_numbers
+from derive.description.inner_names import with_inner_names
 from derive.description.mechanism import DescriptionError, Mechanism, Parameter, Turning
 from derive.equations.axes import finite
 from derive.equations.choices import with_choices
@@ -60,7 +61,13 @@ from derive.kinematics.scan.derivations import from_joints, solve_both, trial_on
 from derive.kinematics.scan.inverse import branch_statements, search_given
 from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements
 from derive.kinematics.scan.programs import names_of_search
-from derive.kinematics.shared_names import refuse_names, refuse_names_of_joints, refuse_shared_names
+from derive.kinematics.shared_names import (
+    SharedName,
+    refuse_names,
+    refuse_names_of_joints,
+    refuse_shared_names,
+    with_free_names,
+)
 from derive.lowering.lower import lowered
 from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
@@ -73,17 +80,19 @@ def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
     told = almost_right_angles(mechanism)
     try:
-        mechanism = prepared(mechanism)
-        return _built(replace(mechanism, notes=(*mechanism.notes, f"{told}.")) if told else mechanism)
+        noted = replace(mechanism, notes=(*mechanism.notes, f"{told}.")) if told else mechanism
+        return with_free_names(noted, lambda further: _built(prepared(noted, further)))
     except (Unsolved, DescriptionError) as problem:
         if told:
             raise type(problem)(f"{problem}; {told}") from None
         raise
 
 
-def prepared(mechanism: Mechanism) -> Mechanism:
-    """The mechanism as it is derived: its numbers named, its gears at the joints, its rods found."""
-    mechanism = with_gears(with_named_numbers(mechanism))
+def prepared(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> Mechanism:
+    """The mechanism as it is derived: its inputs with names of their own, its numbers named, its gears at the joints,
+    its rods found.
+    """
+    mechanism = with_gears(with_named_numbers(with_inner_names(mechanism, further)))
     check_joints(mechanism)
     return with_stated_rods(mechanism)
 
@@ -236,6 +245,7 @@ def _finished(
     mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...], at_home: Sequence[Statement] = ()
 ) -> Kinematics:
     """The bundle of all programs."""
+    refuse_names(mechanism, (name for program in (*shared(programs), *programs) for name in program.bound()))
     parameters = machine_parameters(mechanism)
     moved = _hoisted(mechanism, parameters, programs, at_home)
     finished = {program.name: program for program in moved.programs}
@@ -308,6 +318,8 @@ def _offset_programs(mechanism: Mechanism, closed: Assembled, conditions: tuple[
         assignments = assign(mechanism, inverse, forward, optional_zero=bool(inverse.frozen))
         if further := [c for c in inverse.derivation.conditions if c not in conditions]:
             raise DescriptionError(f"{further[0]} must not vanish, which the pose does not need")
+    except SharedName:
+        raise
     except (Unsolved, DescriptionError) as problem:
         if mechanism.offset_interface is None:
             return []

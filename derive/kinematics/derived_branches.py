@@ -140,7 +140,10 @@ def in_words(mechanism: Mechanism, value: sp.Expr) -> str:
     own = {j.name for j in mechanism.joints}
     names = {s: sp.Symbol(s.name.upper()) for s in POSITION if s.name.upper() not in own}
     names |= {j.symbol: sp.Symbol(j.name) for j in mechanism.joints}
-    angles = {DEGREE * p.symbol: sp.Symbol(f"radians({p.name})") for p in mechanism.parameters if p.role is Role.ANGLE}
+    angles = {
+        DEGREE * p.symbol: sp.Symbol(f"radians({p.given_name})") for p in mechanism.parameters if p.role is Role.ANGLE
+    }
+    names |= {p.symbol: sp.Symbol(p.given) for p in mechanism.parameters if p.given}
     return str(sp.sympify(value).subs(angles).xreplace(names))
 
 

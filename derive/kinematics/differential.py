@@ -234,7 +234,8 @@ def _by_adjugate(
     """-A^-1 B with a determinant that may vanish. places: the numbers of the equations and of the coordinates."""
     equations, coordinates = places
     entries, lets = _entries(mechanism, by_pose, [mechanism.task.position[c] for c in coordinates], equations)
-    drives, more = _entries(mechanism, by_joints, [j.key for j in mechanism.joints], equations)
+    joints = [j.symbol.name if j.key in COORDINATE_NAMES else j.key for j in mechanism.joints]
+    drives, more = _entries(mechanism, by_joints, joints, equations)
     determinant, divisor = real("determinant"), real("determinant_divisor")
     determined = sp.Gt(sp.Abs(determinant), FREE_ANGLE * SCALE**by_pose.rows)
     statements: tuple[Statement, ...] = (

@@ -14,6 +14,7 @@ from derive.equations.windows import windows
 from derive.geometry.frames import Motion
 from derive.ir.constants import (
     LARGEST,
+    LEAST,
     SINGULAR,
     TIE_SHARE,
 )
@@ -73,7 +74,7 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
         1.0,
         1.0,
     )
-    meaning = "a margin (a number without a unit) of less than this in size is singular"
+    meaning = "a pose counts as singular where a margin (a number without a unit) is less than this in size"
     near = float(SINGULAR)
     warning = Parameter(real(WARNING_DISTANCE), WARNING_DISTANCE, Role.RATIO, meaning, "1", 0.0, 1.0, False, near, near)
     return (*parameters, check, warning)
@@ -230,12 +231,11 @@ def _range_of(parameter: Parameter) -> tuple[Require, ...]:
     low = sp.Float(parameter.low) if parameter.low % 1 else sp.Integer(int(parameter.low))
     high = sp.Float(parameter.high) if parameter.high % 1 else sp.Integer(int(parameter.high))
     if parameter.role in (Role.SIGNED_LENGTH, Role.TRANSMISSION):
-        nonzero = sp.Or(
-            sp.Gt(value, 0), sp.Lt(value, 0)
-        )  # NaN fails a comparison; the absolute value of NaN is an error
+        # NaN fails a comparison; the absolute value of NaN is an error
+        nonzero = sp.Or(sp.Gt(value, LEAST), sp.Lt(value, -LEAST))
         inside = sp.And(nonzero, sp.Ge(value, low), sp.Le(value, min(high, LARGEST)))
         return (_needed(inside, note),)
-    above = sp.Gt(value, low) if parameter.low_open else sp.Ge(value, low)
+    above = sp.Gt(value, sp.Max(low, LEAST)) if parameter.low_open else sp.Ge(value, low)
     return (_needed(sp.And(above, sp.Le(value, min(high, LARGEST))), note),)
 
 

@@ -1,19 +1,42 @@
-"""Refuse a parameter and a value of a derivation with the same name: a program could not tell the two apart."""
+"""Find an input and a value of a derivation with the same name: a program could not tell the two apart.
+
+Where they meet, the mechanism is derived again with another name for the input inside.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
 
 import sympy as sp
 
+from derive.description.inner_names import in_given_names, inputs_named, joined, suspects, with_inner_names
 from derive.description.mechanism import DescriptionError, Mechanism
-from derive.ir.program import Let, Statement
+from derive.ir.program import Call, Program, Statement, shared
 from derive.ir.symbols import cosine, sine
+from derive.ir.verify import BrokenProgram, RepeatedName
+from derive.kinematics.kinematics import Kinematics
+from derive.solver.solve import Unsolved
+
+_ATTEMPTS = 4
+"""How often an input gets another name."""
+
+
+class SharedName(DescriptionError):
+    """A parameter has the name of a value of the derivation."""
+
+    def __init__(self, message: str, name: str = "") -> None:
+        """name: what the parameter is called inside the derivation."""
+        super().__init__(message)
+        self.names = (name,)
 
 
 def refuse_shared_names(mechanism: Mechanism, statements: Iterable[Statement]) -> None:
-    """Refuse a parameter named like a value of the derivation."""
-    refuse_names(mechanism, (s.name for s in statements if isinstance(s, Let)))
+    """Refuse a parameter named like a value of the derivation, or of a program that it calls."""
+    own = Program("derivation", (), tuple(statements), ())
+    programs = (own, *shared([own]))
+    given = (name for p in programs for s in p.body if isinstance(s, Call) for name, _ in s.given)
+    refuse_names(mechanism, (*given, *(name for p in programs for name in p.bound())))
 
 
 def refuse_names_of_joints(mechanism: Mechanism) -> None:
@@ -23,12 +46,34 @@ def refuse_names_of_joints(mechanism: Mechanism) -> None:
 
 def refuse_names(mechanism: Mechanism, names: Iterable[sp.Symbol]) -> None:
     """Refuse a parameter with one of these names."""
-    parameters = {_key(p.name): p.name for p in mechanism.parameters}
+    parameters = {joined(p.name): p.name for p in mechanism.parameters}
     for name in names:
-        if own := parameters.get(_key(name.name)):
-            raise DescriptionError(f"parameter {own!r} has a name that the derivation itself uses: choose another")
+        if own := parameters.get(joined(name.name)):
+            raise SharedName(f"parameter {own!r} has a name that the derivation itself uses: choose another", own)
 
 
-def _key(name: str) -> str:
-    """The name as Structured Text compares it, where words are joined."""
-    return name.replace("_", "")
+def with_free_names(mechanism: Mechanism, derived: Callable[[Mapping[str, int]], Kinematics]) -> Kinematics:
+    """What `derived` answers, given the symbols of inputs that need another name inside, and how often they met one.
+
+    Raises what it raises, in the names of the description.
+    """
+    further: Counter[str] = Counter()
+    while True:
+        try:
+            return derived(further)
+        except (Unsolved, DescriptionError, BrokenProgram) as problem:
+            inner = with_inner_names(mechanism, further)
+            met = {name for name in _met(mechanism, inner, problem) if further[name] < _ATTEMPTS}
+            if not met:
+                said = in_given_names(str(problem), inner)
+                if said == str(problem):
+                    raise
+                raise type(problem)(said) from None
+        further.update(met)
+
+
+def _met(mechanism: Mechanism, inner: Mechanism, problem: Exception) -> frozenset[str]:
+    """The inputs whose names a derivation has met, or may have met where it came to nothing."""
+    if isinstance(problem, SharedName | RepeatedName):
+        return inputs_named(mechanism, inner, problem.names)
+    return frozenset() if isinstance(problem, BrokenProgram) else suspects(inner)

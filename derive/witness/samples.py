@@ -178,7 +178,7 @@ def describe(kin: Kinematics, samples: Samples, row: int) -> str:
     """One sample, for a message."""
     axes = ", ".join(f"{j.name}={samples.axes[row, i]:.6g}" for i, j in enumerate(kin.mechanism.joints))
     machine = ", ".join(
-        f"{p.name}={samples.values[p.name][row]:.6g}" for p in kin.mechanism.parameters if p.fixed is None
+        f"{p.given_name}={samples.values[p.name][row]:.6g}" for p in kin.mechanism.parameters if p.fixed is None
     )
     return f"at {axes}" + (f" of the machine {machine}" if machine else "")
 

@@ -83,7 +83,7 @@ def test_what_is_wrong_is_said_with_its_remedy(tmp_path: Path) -> None:
     with pytest.raises(Unsolved, match=rf"^{re.escape(str(path))}:9: the closure does not determine a1, a2"):
         compile_mechanism(path)
     path.write_text(RAIL.replace("joints=(A1, A2)", "joints=(A1, A2, A2)"))
-    with pytest.raises(DescriptionError, match=rf"^{re.escape(str(path))}:\d+: joint 'a2' is given 2 times; give each"):
+    with pytest.raises(DescriptionError, match=rf"^{re.escape(str(path))}:\d+: joint 'A2' is given 2 times; give each"):
         compile_mechanism(path)
     with pytest.raises(TypeError, match="takes a Mechanism, or the path of its file"):
         compile_mechanism(7)  # type: ignore[arg-type]

@@ -60,11 +60,13 @@ WRONG: dict[str, str] = {
     ),
     "'…' cannot name a family": changed(ARM, ('"ArmOnTrack",', '"ArmOnTrack", family="my machines",')),
     "'…' cannot name a joint: a capital letter, then letters and digits": changed(ARM, ('rotary("A1"', 'rotary("a_1"')),
-    "'…' cannot name a parameter: lower-case words joined by _": with_parameter("linkLength"),
-    "'…' cannot name a parameter: programs of this mechanism have another value of that name": with_parameter(
-        "offset_a1"
+    "'…' cannot name a parameter: letters, digits and _": with_parameter("link length"),
+    "joint '…' and parameter '…' differ in case alone: equations would read them as one": changed(
+        ARM, ('length("link_length_1"', 'distance("a1"'), ("import Mechanism,", "import distance, Mechanism,")
     ),
-    "parameter '…' has a name that the derivation itself uses: choose another": with_parameter("reach"),
+    "parameter '…' and parameter '…' differ in case alone: Structured Text reads them as one name": with_parameter(
+        "LINK_length_2"
+    ),
     "joint '…' is given 2 times; give each thing a name of its own": changed(ARM, ('rotary("A2"', 'rotary("A1"')),
     "parameter '…': its nominal value … is outside its range …": changed(ARM, ("nominal=400.0", "nominal=0.0")),
     "joint '…': its limit_range … is empty; state the lower end first": changed(

@@ -122,9 +122,14 @@ def test_a_mechanism_with_the_name_of_a_block_of_softmotion(tmp_path: Path, caps
 
 
 def test_a_parameter_whose_input_is_a_keyword(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A length `int` is the input dInt, and DINT is a type."""
-    said = generated(tmp_path, capsys, arm_length_1="int")
-    assert said.startswith(
-        "error: scara/Softkin_Scara2_Z.st: Softkin_Scara2_Z declares dInt, which is a word of IEC 61131-3"
-    )
-    assert said.count("\n") == 1
+    """A length `int` would be the input dInt, and DINT is a type: it is called otherwise, and the command says so."""
+    folder, out = tmp_path / "mechanisms", tmp_path / "out"
+    folder.mkdir()
+    text = re.sub(r"\barm_length_1\b", "int", SCARA.read_text(encoding="utf-8"))
+    (folder / "mine.py").write_text(text, encoding="utf-8")
+    assert main(["generate", "--output", str(out), "--mechanisms", str(folder)]) == 0
+    told = "The parameter int is called dIntLength here, because dInt is a word of IEC 61131-3 or of a dialect of it."
+    assert f"    note: Structured Text: {told}\n" in capsys.readouterr().out
+    block = (out / "st" / "scara" / "Softkin_Scara2_Z.st").read_text(encoding="utf-8")
+    assert "dIntLength : LREAL" in block and told in " ".join(block.split())
+    assert " int: float," in (out / "python" / "softkin" / "scara2_z.py").read_text("utf-8")

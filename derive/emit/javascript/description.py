@@ -2,19 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from itertools import count
 from typing import Any
 
 from derive.description.mechanism import Joint, Mechanism, Parameter
+from derive.emit.inputs import Inputs, Spelling, inputs_of, word_of
+from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import CHECK_LIMITS, WARNING_DISTANCE
 
 _TURN = 360.0
 
 
-def description(kin: Kinematics, module: str, names: Mapping[str, str]) -> dict[str, Any]:
-    """The data. names: what the parameters are called, by their names inside the derivation."""
-    mechanism = kin.mechanism
+@kept_by_identity(10)
+def inputs(kinematics: Kinematics) -> Inputs:
+    """What the parameters are called: they are members of an object, whose names are free."""
+    return inputs_of(kinematics, _JAVASCRIPT, {})
+
+
+def _meaning(name: str) -> str | None:
+    return "what an object inherits from" if name == "__proto__" else None
+
+
+def _others(parameter: Parameter, wish: str) -> Iterator[str]:
+    plain = f"{wish.strip('_')}_{word_of(parameter)}"
+    yield plain
+    yield from (f"{plain}_{number}" for number in count(2))
+
+
+_JAVASCRIPT = Spelling(lambda parameter: parameter.given_name, _others, _meaning)
+
+
+def description(kin: Kinematics, module: str) -> dict[str, Any]:
+    """The data."""
+    mechanism, given = kin.mechanism, inputs(kin)
+    names = given.names
     order = [joint.name for joint in mechanism.joints]
     held = {joint.name for joint in mechanism.held_joints}
     return {
@@ -39,7 +62,7 @@ def description(kin: Kinematics, module: str, names: Mapping[str, str]) -> dict[
         "sides": kin.tried_branches,
         "jacobianRows": list(kin.rows),
         "margins": [{"name": m.name, "kind": m.kind, "isDistance": bool(m.length)} for m in kin.margins],
-        "notes": list(mechanism.all_notes),
+        "notes": [*map(given.told, mechanism.all_notes), *given.notes],
     }
 
 

@@ -12,7 +12,7 @@ from jinja2 import Environment
 
 from derive.description.mechanism import DescriptionError
 from derive.drawing.parts import Parts, parts_of
-from derive.emit.javascript.description import description
+from derive.emit.javascript.description import description, inputs
 from derive.emit.javascript.functions import functions, rotation_function
 from derive.emit.javascript.layout import block, comment, laid_out
 from derive.emit.javascript.printer import PRINTER, RUNTIME, list_of, spelled, text
@@ -65,7 +65,11 @@ def part(kinematics: Kinematics) -> Part:
     """The module of one mechanism, and its entry in the list."""
     module = module_name(kinematics.mechanism.name)
     entry = {"name": kinematics.mechanism.name, "module": module}
-    return {"index": entry, "files": {f"{module}.js": _module(kinematics, module)}, "notes": []}
+    return {
+        "index": entry,
+        "files": {f"{module}.js": _module(kinematics, module)},
+        "notes": list(inputs(kinematics).notes),
+    }
 
 
 def files(parts: Sequence[Part]) -> dict[str, str]:
@@ -111,16 +115,15 @@ def _literal(value: float | tuple[float, ...]) -> str:
 
 
 def _module(kin: Kinematics, module: str) -> str:
-    names = {p.name: p.name for p in kin.parameters}
     parts = _parts(kin)
     found, refusals = functions(kin, parts), Refusals(reasons_of(kin))
     further, entries = _further(kin)
     read = {name for f in found for name in read_by(f.program) - f.given}
     read |= set(re.findall(r"k\.(\w+)", " ".join(entries)))
-    setup = setup_lines(kin, read, names)
+    setup = setup_lines(kin, read, inputs(kin))
     programs = [f"{f.key}: {f.name}," for f in found if f.key]
     texts = [laid_out(lines) for lines in (setup, *(function_lines(f, refusals) for f in found), *further)]
-    stated = description(kin, module, names) | {"parts": None if parts is None else parts.shape}
+    stated = description(kin, module) | {"parts": None if parts is None else parts.shape}
     return _templates().get_template("mechanism.js.j2").render(
         head=[line.removeprefix("// ") for line in _head(kin)],
         imports=_imports([line for lines in texts for line in lines]),
@@ -147,7 +150,7 @@ def _head(kin: Kinematics) -> list[str]:
         lines += comment(f"{joint.name} ({joint.kind.value}, {'deg' if joint.in_degrees else 'u'}): {joint.meaning}")
     for branch in kin.branches:
         lines += comment(f"{branch.name}: 1 = {branch.names[0]}, 2 = {branch.names[1]}, 0 = automatic, 3 = both meet")
-    for note in mechanism.all_notes:
+    for note in map(inputs(kin).told, mechanism.all_notes):
         lines += ["", *comment(note)]
     return lines
 

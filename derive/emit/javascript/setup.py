@@ -5,10 +5,11 @@ The runtime tests the range of each parameter, and computes the range of each ax
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from dataclasses import replace
 
 from derive.description.mechanism import Parameter
+from derive.emit.inputs import Inputs
 from derive.emit.javascript.layout import block, comment, commented
 from derive.emit.javascript.printer import PRINTER, list_of, spelled, text
 from derive.emit.javascript.program import solved, without_brackets
@@ -20,8 +21,8 @@ from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import ranges
 
 
-def setup_lines(kin: Kinematics, read: Collection[str], names: Mapping[str, str]) -> list[str]:
-    """The function. read: the constants that other functions read; names: what the parameters are called."""
+def setup_lines(kin: Kinematics, read: Collection[str], inputs: Inputs) -> list[str]:
+    """The function. read: the constants that other functions read; inputs: what the parameters are called."""
     by_refusal = {window.refusal: window for window in windows(kin.mechanism)}
     program = _own(kin, read)
     lines: list[str] = []
@@ -31,7 +32,7 @@ def setup_lines(kin: Kinematics, read: Collection[str], names: Mapping[str, str]
         if window is not None:
             lines += _window(window, read, values)
         elif isinstance(statement, Require):
-            lines += _refusal(statement, names)
+            lines += _refusal(statement, inputs)
         elif isinstance(statement, Let):
             value = without_brackets(statement.value, PRINTER.value(statement.name, statement.value))
             lines += commented(f"const {spelled(statement.name.name)} = {value};", statement.comment)
@@ -41,7 +42,7 @@ def setup_lines(kin: Kinematics, read: Collection[str], names: Mapping[str, str]
             raise TypeError("what depends on parameters alone is straight-line: it neither iterates nor calls")
     ends = {o.name for window in by_refusal.values() for o in window.outputs}
     values |= {o.name: PRINTER.print(o.value) for o in program.outputs if o.name not in ends}
-    given = [(names[p.name], spelled(p.name)) for p in _given(kin, program, by_refusal.values())]
+    given = [(inputs.names[p.name], spelled(p.name)) for p in _given(kin, program, by_refusal.values())]
     taken = [name if name == inner else f"{name}: {inner}" for name, inner in given]
     head = [f"const {{ {', '.join(taken)} }} = p;"] if taken else []
     result = [f"{name}: {value}," if name != value else f"{name}," for name, value in values.items()]
@@ -96,10 +97,10 @@ def _window(window: Window, read: Collection[str], values: dict[str, str]) -> li
     return [call, f"if ({place} instanceof Refusal) return {place};"]
 
 
-def _refusal(statement: Require, names: Mapping[str, str]) -> list[str]:
+def _refusal(statement: Require, inputs: Inputs) -> list[str]:
     """A condition on several parameters, with its sentence and their names."""
     assert statement.reason is not None
     read = {s.name for s in statement.condition.free_symbols}
-    given = text([name for inner, name in names.items() if inner in read])
-    refused = f"return refuseParameters({text(statement.reason.subject.name)}, {given});"
+    given = text([name for inner, name in inputs.names.items() if inner in read])
+    refused = f"return refuseParameters({text(inputs.told(statement.reason.subject.name))}, {given});"
     return [*comment(statement.note), *block(f"if (!({condition_of([statement.condition])}))", [refused])]

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import count
+from keyword import iskeyword
 
 from derive.description.mechanism import Mechanism, Parameter, Role
+from derive.emit.inputs import Inputs, Spelling, inputs_of, word_of
 from derive.ir.constants import LARGEST
+from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.report.cost import Cost, costs_of
 
@@ -60,13 +64,14 @@ def usual(role: Role) -> dict[str, object]:
 
 def parameters(kin: Kinematics) -> list[str]:
     """The parameters of the class: kind, name and meaning, then what differs from the usual of its kind."""
-    return _tuple(_parameter(p) for p in kin.parameters)
+    names = inputs(kin).names
+    return _tuple(_parameter(p, names[p.name]) for p in kin.parameters)
 
 
-def _parameter(p: Parameter) -> str:
+def _parameter(p: Parameter, name: str) -> str:
     given = {"unit": p.unit, "low": p.low, "high": p.high, "low_is_open": p.low_open, "default": p.default}
     unusual = {key: value for key, value in given.items() if value != usual(p.role)[key]}
-    return _call("Parameter.of", *map(literal, (p.role.value, p.name, p.meaning)), **unusual)
+    return _call("Parameter.of", *map(literal, (p.role.value, name, p.meaning)), **unusual)
 
 
 def limit_keys(kin: Kinematics) -> str:
@@ -112,6 +117,18 @@ def _operations(cost: Cost) -> str:
     )
 
 
+def described(kin: Kinematics) -> list[str]:
+    """A line for each parameter: what the class calls it, its meaning, and its unit."""
+    names = inputs(kin).names
+    return [f"{names[p.name]}: {p.meaning}" + (f" [{p.unit}]" if p.unit else "") for p in kin.parameters]
+
+
+def notes(kin: Kinematics) -> list[str]:
+    """What is to be known, in the names of the class; the parameters that are called otherwise here come last."""
+    given = inputs(kin)
+    return [*map(given.told, kin.mechanism.all_notes), *given.notes]
+
+
 def default_configuration(kin: Kinematics) -> str:
     """The default configuration: branch 1 everywhere, and no period is commanded."""
     return literal((1,) * len(kin.branches) + (0,) * len(kin.period_joints))
@@ -127,7 +144,9 @@ def example(kin: Kinematics) -> list[str]:
     """The first lines of code of a user of this machine, with PACKAGE for the name of the package."""
     mechanism = kin.mechanism
     needed = [p for p in mechanism.parameters if p.default is None or p.nominal != p.default]
-    values = (f"{p.name}={literal(int(p.nominal) if p.role in _WHOLE else p.nominal)}" for p in needed)
+    names = inputs(kin).names
+    given = [(names.get(p.name, p.name), int(p.nominal) if p.role in _WHOLE else p.nominal) for p in needed]
+    values = (f"{name}={literal(value)}" for name, value in given)
     axes = literal(tuple(j.nominal for j in mechanism.joints))
     return [
         f"robot = PACKAGE.{class_name(mechanism.name, mechanism.class_name)}({', '.join(values)})",
@@ -159,3 +178,44 @@ def _call(constructor: str, *first: str, **values: object) -> str:
 def _tuple(entries: Iterable[str]) -> list[str]:
     parts = [f"    {entry}," for entry in entries]
     return ["(", *parts, ")"] if parts else ["()"]
+
+
+_OF_INIT = frozenset({"self", "locals", "unrolled", "Constants", "limits"})
+"""What the text of `__init__` reads."""
+OF_CLASS = frozenset(
+    """
+    AXES BRANCHES CONFIGURATION DEFAULT_CONFIGURATION DISTANCE_AXES FREEDOM HELD JACOBIAN_ROWS LIMIT_KEYS MARGINS
+    NAME PARAMETERS PERIOD_AXES READS_ROTATION ROLE axis_velocities branch branches changed checks_limits condition
+    configuration configuration_offset diagnose forward forward_batch from_dict from_json image_on in_degrees
+    in_radians inverse inverse_all inverse_all_batch inverse_batch inverse_offset is_compatible jacobian
+    jacobian_batch limits line manipulability names nearest nearest_batch orientation orientation_image parameters
+    path project singularity singularity_batch to_dict to_json twist with_base with_tool
+    """.split()
+)
+"""What a class has beside its parameters, which are attributes of it."""
+
+
+@kept_by_identity(10)
+def inputs(kinematics: Kinematics) -> Inputs:
+    """The keywords of the class of a mechanism."""
+    return inputs_of(kinematics, _PYTHON, {})
+
+
+def _meaning(name: str) -> str | None:
+    if iskeyword(name):
+        return "a word of Python"
+    if name in _OF_INIT or name in OF_CLASS:
+        return "a name that the class itself needs"
+    return "hidden inside the class" if name.startswith("_") else None
+
+
+def _others(parameter: Parameter, wish: str) -> Iterator[str]:
+    """As Python writes a name that is a word of its own, then with the kind of the parameter."""
+    plain = wish.lstrip("_") or "value"
+    if _meaning(wish) is not None:
+        yield f"{plain}_"
+    yield f"{plain}_{word_of(parameter)}"
+    yield from (f"{plain}_{word_of(parameter)}_{number}" for number in count(2))
+
+
+_PYTHON = Spelling(lambda parameter: parameter.given_name, _others, _meaning)

@@ -16,6 +16,7 @@ from derive.emit.language import GENERATED, Part, environment
 from derive.emit.python import entries, setup
 from derive.emit.python.arrays import CALLED, OF_A_SEARCH, TYPES, array_body, named_in, values_of_a_row
 from derive.emit.python.calls import every_root
+from derive.emit.python.entries import inputs
 from derive.emit.python.finish import Function
 from derive.emit.python.layout import formatted
 from derive.emit.python.methods import (
@@ -50,6 +51,7 @@ from derive.ir.constants import (
     GEARED_TURN,
     HELD,
     LARGEST,
+    LEAST,
     LIMIT,
     ONE_TURN,
     PIVOT,
@@ -149,7 +151,8 @@ _MEANINGS = {
 
 def part(kinematics: Kinematics) -> Part:
     """The files of one mechanism, and its entries in the lists."""
-    return {"index": _index(kinematics), "files": _mechanism(_templates(), kinematics)}
+    found = {"index": _index(kinematics), "files": _mechanism(_templates(), kinematics)}
+    return {**found, "notes": list(inputs(kinematics).notes)}
 
 
 def files(parts: Sequence[Part]) -> dict[str, str]:
@@ -184,6 +187,7 @@ def _templates() -> Environment:
         "held": literal(float(HELD)),
         "free_angle": literal(float(FREE_ANGLE)),
         "largest": literal(float(LARGEST)),
+        "least": literal(float(LEAST)),
         "rotation": rotation_functions(),
         "largest_error": literal(float(ROTATION)),
         "search_constants": {name: _literal((vars(cells) | vars(roots))[name]) for name in _OF_THE_SEARCH},
@@ -261,8 +265,8 @@ def _class_context(kin: Kinematics, arrays: Sequence[Method], lean: Unrolled | N
         "kin": kin,
         "mechanism": kin.mechanism,
         "entries": entries,
-        "keywords": setup.keywords(kin.parameters),
-        "attributes": setup.attributes(kin.parameters),
+        "keywords": setup.keywords(kin),
+        "attributes": setup.attributes(kin),
         "setup_body": setup_lines,
         "array_programs": _array_programs(kin),
         "bases": _bases(kin),

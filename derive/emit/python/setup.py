@@ -12,6 +12,8 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.description.mechanism import Parameter, Role
+from derive.emit.inputs import Inputs
+from derive.emit.python.entries import inputs
 from derive.emit.python.layout import assigned
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.emit.python.program import binding_lines
@@ -35,16 +37,18 @@ _PRINTER = ScalarPrinter()
 _TYPES = {Role.FLAG: "bool", Role.SIGN: "int"}
 
 
-def keywords(parameters: tuple[Parameter, ...]) -> str:
+def keywords(kin: Kinematics) -> str:
     """The parameters of `__init__`: a keyword for each parameter of the machine, with its default where it has one."""
-    typed = [f"{p.name}: {_TYPES.get(p.role, 'float')}{_default(p)}" for p in parameters]
+    names = inputs(kin).names
+    typed = [f"{names[p.name]}: {_TYPES.get(p.role, 'float')}{_default(p)}" for p in kin.parameters]
     typed.append("limits: Limits | None = None")
     return f"def __init__(self, *, {', '.join(typed)}) -> None:"
 
 
-def attributes(parameters: tuple[Parameter, ...]) -> list[str]:
+def attributes(kin: Kinematics) -> list[str]:
     """The parameters as typed attributes of the class."""
-    return [f"{p.name}: {_TYPES.get(p.role, 'float')}" for p in parameters]
+    names = inputs(kin).names
+    return [f"{names[p.name]}: {_TYPES.get(p.role, 'float')}" for p in kin.parameters]
 
 
 def setup_body(kin: Kinematics, read: Collection[str]) -> list[str]:
@@ -61,7 +65,7 @@ def setup_body(kin: Kinematics, read: Collection[str]) -> list[str]:
         if window:
             lines += _window(window, read)
         elif isinstance(statement, Require):
-            lines += _refusal(statement, [p.name for p in kin.parameters])
+            lines += _refusal(statement, inputs(kin))
         else:
             lines += binding_lines(statement, _PRINTER)
     ends = {o.name for window in by_refusal.values() for o in window.outputs}
@@ -92,12 +96,12 @@ def _given(kin: Kinematics, program: Program, found: Collection[Window]) -> dict
     for statement in program.body:
         if not (isinstance(statement, Require) and statement.reason in refusals):
             symbols |= reads(statement)
-    names = {s.name for s in symbols}
-    return {spelled(p.name): _value(p) for p in kin.parameters if p.name in names}
+    names, given = {s.name for s in symbols}, inputs(kin).names
+    return {spelled(p.name): _value(p, given[p.name]) for p in kin.parameters if p.name in names}
 
 
-def _value(parameter: Parameter) -> str:
-    text = f'p["{parameter.name}"]'
+def _value(parameter: Parameter, name: str) -> str:
+    text = f'p["{name}"]'
     return f"bool({text})" if parameter.role is Role.FLAG else text
 
 
@@ -126,11 +130,11 @@ def _gear(window: Window) -> str:
     return f", turns={_PRINTER.print(window.turns)}" if window.has_turns and window.turns != 1 else ""
 
 
-def _refusal(statement: Require, inputs: list[str]) -> list[str]:
+def _refusal(statement: Require, given: Inputs) -> list[str]:
     read = {s.name for s in statement.condition.free_symbols}
-    names = "".join(f', "{name}"' for name in inputs if name in read)
+    names = "".join(f', "{name}"' for inner, name in given.names.items() if inner in read)
     assert statement.reason is not None
-    message = statement.reason.subject.name.replace('"', "'")
+    message = given.told(statement.reason.subject.name).replace('"', "'")
     return [f"if not ({conjunction([statement.condition])}):", f'    raise machine._refusal("{message}"{names})']
 
 

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from derive.description.mechanism import Joint, Kind
-from derive.emit.softmotion.inputs import Input, parameter_input
+from derive.emit.softmotion.inputs import Input, inputs, parameter_input
 from derive.emit.st.contract import Contract
 from derive.emit.st.expression import literal
-from derive.emit.st.names import capitalized, stored_name, type_name
+from derive.emit.st.names import capitalized, free, stored_name, type_name
 from derive.emit.st.program import Printed
 from derive.ir.passes import needed_for
 from derive.ir.program import (
@@ -62,6 +62,8 @@ class BranchByte:
     stem: str
     first: str
     second: str
+    inputs: tuple[str, str, str]
+    """Of the configuration block: whether the first branch is chosen, or none; whether both coincide."""
     choice: str
     of_slot: str
     output: str
@@ -71,8 +73,8 @@ class BranchByte:
         """The inputs of the configuration block that choose the branch."""
         meaning = f"{self.name}: TRUE {self.first}, FALSE {self.second}"
         return (
-            Input(f"x{self.stem}{capitalized(self.first)}", "BOOL", "TRUE", meaning),
-            Input(f"x{self.stem}Automatic", "BOOL", "FALSE", f"{self.name}: nearest to the reference"),
+            Input(self.inputs[0], "BOOL", "TRUE", meaning),
+            Input(self.inputs[1], "BOOL", "FALSE", f"{self.name}: nearest to the reference"),
         )
 
 
@@ -135,18 +137,19 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
     interfaces = _interfaces(kinematics, contract)
     axis_fields = tuple(spelling["axes"]["fields"])
     size = len(kinematics.branches)
+    chosen = _chosen(kinematics)
     order = {joint.name: index for index, joint in enumerate(mechanism.joints)}
     return Block(
         name=mechanism.block_name,
         title=mechanism.title or mechanism.block_name,
         interfaces=interfaces,
-        inputs=tuple(parameter_input(p) for p in kinematics.parameters),
+        inputs=tuple(parameter_input(p, inputs(kinematics).names[p.name]) for p in kinematics.parameters),
         fields=_fields(kinematics),
         axes=tuple(
             _axis(j, f, is_held=j in mechanism.held_joints) for j, f in zip(mechanism.joints, axis_fields, strict=False)
         ),
         axis_fields=axis_fields,
-        branches=tuple(_branch_byte(i, b.name, b.names) for i, b in enumerate(kinematics.branches)),
+        branches=tuple(_branch_byte(i, b.name, b.names, chosen[i]) for i, b in enumerate(kinematics.branches)),
         periods=tuple(
             PeriodByte(
                 size + i,
@@ -268,10 +271,21 @@ def turns_of(joint: Joint) -> str:
     return literal(float(joint.turns)) if joint.turns.is_number else stored_name(str(joint.turns))
 
 
-def _branch_byte(byte: int, name: str, names: tuple[str, str]) -> BranchByte:
+def _chosen(kinematics: Kinematics) -> list[tuple[str, str, str]]:
+    """What the configuration block calls the inputs of every branch: no name is another one, or that of a period."""
+    used = {"config", *(f"iperiod{j.key}" for j in kinematics.period_joints)}
+    found = []
+    for branch in kinematics.branches:
+        stem = f"x{capitalized(branch.name)}"
+        names = [free(f"{stem}{word}", used) for word in ("Automatic", "Singular")]
+        found.append((free(f"{stem}{capitalized(branch.names[0])}", used), names[0], names[1]))
+    return found
+
+
+def _branch_byte(byte: int, name: str, names: tuple[str, str], inputs: tuple[str, str, str]) -> BranchByte:
     stem = capitalized(name)
     of_slot = f"slot/{2**byte} MOD 2 + 1" if byte else "slot MOD 2 + 1"
-    return BranchByte(byte, name, stem, names[0], names[1], f"branch{stem}", of_slot, f"branch_{name}")
+    return BranchByte(byte, name, stem, names[0], names[1], inputs, f"branch{stem}", of_slot, f"branch_{name}")
 
 
 def _interfaces(kinematics: Kinematics, contract: Contract) -> tuple[str, ...]:

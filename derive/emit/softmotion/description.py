@@ -10,8 +10,9 @@ from jinja2 import Environment
 
 from derive.description.mechanism import Kind, Role
 from derive.emit.softmotion.block import Block
+from derive.emit.softmotion.inputs import inputs
 from derive.emit.st.layout import WIDTH
-from derive.emit.st.names import input_name, respelled
+from derive.emit.st.names import respelled
 from derive.ir.constants import (
     EXACT_ROTATION,
     FREE_ANGLE,
@@ -75,7 +76,7 @@ _DRIVES = (
 
 def description(kinematics: Kinematics, block: Block, picture: str, templates: Environment) -> str:
     """The description of a block, with a reference to its picture."""
-    names = {p.name: input_name(p) for p in kinematics.parameters}
+    names, further = inputs(kinematics).names, inputs(kinematics).notes
     mechanism = kinematics.mechanism
     source = _KINDS[mechanism.is_position, mechanism.is_orientation]
     source += f"Source of the geometry: {mechanism.source}." if mechanism.source else ""
@@ -94,7 +95,8 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
         workspace=list(_workspace(kinematics)),
         costs=[*_costs(costs_of(kinematics), block), *_looped(kinematics, costs_of(kinematics))],
         tasks=wrap(_TASKS[block.has_settings], _WIDTH),
-        notes=[line for note in mechanism.all_notes for line in _item(respelled(note, names))],
+        notes=[line for note in mechanism.all_notes for line in _item(respelled(note, names))]
+        + [line for note in further for line in _item(note)],
         verification=list(_verification(kinematics)),
     )
     return text.rstrip("\n")
@@ -112,7 +114,8 @@ def _parameters(block: Block) -> Iterator[Sequence[str]]:
 
 def _refused(kinematics: Kinematics) -> str:
     """The sentence that names the lengths that may not be 0, which is the value of an input that is not set."""
-    lengths = [input_name(p) for p in kinematics.parameters if p.role in (Role.LENGTH, Role.SIGNED_LENGTH)]
+    names = inputs(kinematics).names
+    lengths = [names[p.name] for p in kinematics.parameters if p.role in (Role.LENGTH, Role.SIGNED_LENGTH)]
     return f"A length has no default: Initialize refuses 0 for {', '.join(lengths)}. " if lengths else ""
 
 

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import count
 
 from derive.description.mechanism import Parameter, Role
+from derive.emit.inputs import Inputs, Spelling, inputs_of, word_of
 from derive.emit.st.expression import literal
-from derive.emit.st.names import input_name
+from derive.emit.st.names import TEMPLATE_LOCALS, capitalized, input_name, of_methods, stored_name
+from derive.emit.st.reserved import clash
 from derive.ir.constants import (
     LARGEST,
 )
+from derive.kept import kept_by_identity
+from derive.kinematics.kinematics import Kinematics
 
 _DIMENSIONLESS = ("", "1")
 
@@ -26,12 +32,30 @@ class Input:
     unit: str = ""
 
 
-def parameter_input(parameter: Parameter) -> Input:
+@kept_by_identity(10)
+def inputs(kinematics: Kinematics) -> Inputs:
+    """The names of the inputs of a block: none is another variable of the block, or of one of its methods."""
+    stored = {stored_name(o.name): "a variable of the block" for o in kinematics.setup.outputs}
+    local = dict.fromkeys(of_methods() | TEMPLATE_LOCALS, "a method or a variable of one")
+    return inputs_of(kinematics, _TEXT, stored | local)
+
+
+def _others(parameter: Parameter, wish: str) -> Iterator[str]:
+    """The name with the kind of the parameter behind it."""
+    longer = f"{wish}{capitalized(word_of(parameter))}"
+    yield longer
+    yield from (f"{longer}{number}" for number in count(2))
+
+
+_TEXT = Spelling(input_name, _others, clash, str.lower)
+
+
+def parameter_input(parameter: Parameter, name: str) -> Input:
     """The input for a parameter of the machine."""
     kind, default = _value(parameter)
     unit = "" if parameter.unit in _DIMENSIONLESS else parameter.unit
     interval = "" if parameter.role is Role.FLAG else _range(parameter)
-    return Input(input_name(parameter), kind, default, parameter.meaning, interval, unit)
+    return Input(name, kind, default, parameter.meaning, interval, unit)
 
 
 def _value(parameter: Parameter) -> tuple[str, str]:

@@ -17,6 +17,7 @@ from derive.emit.plcopen.uses import needed
 from derive.emit.softmotion.base import base_text
 from derive.emit.softmotion.block import Block, block_of
 from derive.emit.softmotion.description import description
+from derive.emit.softmotion.inputs import inputs
 from derive.emit.softmotion.methods import methods_of
 from derive.emit.softmotion.overview import row_of
 from derive.emit.softmotion.self_test import FOLDER as SELF_TESTS
@@ -72,6 +73,7 @@ class StructuredTextFiles:
             return None
         block = block_of(kinematics, contract)
         found: Part = {"row": row_of(kinematics), "text": _unit(kinematics, block, contract, templates), "test": None}
+        found["notes"] = list(inputs(kinematics).notes)
         test = test_of(kinematics, block)
         if test is not None:
             text = templates.get_template("selftest.st.j2").render(contract.spelling, test=test)

@@ -10,12 +10,13 @@ from jinja2 import Environment
 from derive.emit.softmotion.base import BASE_VARIABLES, INHERITED, Method
 from derive.emit.softmotion.block import Block, constants, direct, setup_of, stored_as
 from derive.emit.softmotion.calls import BranchCall, branch_call, checks, without_checks
+from derive.emit.softmotion.inputs import inputs
 from derive.emit.softmotion.layout import tidy
 from derive.emit.softmotion.refused import refused_texts
 from derive.emit.st.contract import Contract, Parameter, Signature
 from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import commented, with_gathered
-from derive.emit.st.names import input_name, parameter_name
+from derive.emit.st.names import parameter_name
 from derive.emit.st.program import Printed, printed
 from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal, Tested, Told
 from derive.emit.st.refused_inputs import OfInputs, chained, conditions_first
@@ -225,10 +226,10 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
             signature, errors, error, reasons_of(kinematics), texts(kinematics), _axes(kinematics, block)
         )
     if signature.name == "ReadInputs":
-        given = {p.name: input_name(p) for p in kinematics.parameters}
+        given = dict(inputs(kinematics).names)
         stored = {let: stored_as(kinematics, output) for let, output in direct(kinematics, program).items()}
-        inputs = OfInputs(signature, errors, error, refused_texts(kinematics))
-        return chained(printed(conditions_first(program), given, stored, taken, inputs))
+        refused = OfInputs(signature, errors, error, refused_texts(kinematics))
+        return chained(printed(conditions_first(program), given, stored, taken, refused))
     spelled = spelled_inputs(kinematics)
     if source.is_shared:
         own = own_names(program, spelled)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from derive.drawing.drawing import drawing_of
-from derive.emit.st.names import input_name
+from derive.emit.softmotion.inputs import inputs
 from derive.kinematics.kinematics import Kinematics
 
 FOLDER = "pictures"
@@ -16,7 +16,8 @@ def pictures_of(kinematics: Kinematics) -> dict[str, bytes]:
 
     block = kinematics.mechanism.block_name
     parameters = kinematics.mechanism.parameters
-    names = {p.name: input_name(p) if p.fixed is None else f"{p.nominal:g}" for p in parameters}
+    given = inputs(kinematics).names
+    names = {p.name: given[p.name] if p.fixed is None else f"{p.nominal:g}" for p in parameters}
     drawn = page(drawing_of(kinematics), block, names)
     made = pictures(drawn.marks, drawn.height)
     return {f"{FOLDER}/{block}.png": made.png, f"{FOLDER}/{block}.svg": made.svg}

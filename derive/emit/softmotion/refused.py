@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from derive.description.mechanism import Parameter, Role
-from derive.emit.st.names import input_name, respelled
+from derive.emit.softmotion.inputs import inputs
+from derive.emit.st.names import respelled
+from derive.ir.constants import LEAST
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 
@@ -18,7 +20,7 @@ def refused_texts(kinematics: Kinematics) -> dict[str, str]:
 
     A condition on a single input gives the range of that input and the condition.
     """
-    spelled = {p.name: input_name(p) for p in kinematics.parameters}
+    spelled = inputs(kinematics).names
     found: dict[str, str] = {}
     for require in kinematics.setup_less_windows.requires():
         assert require.reason is not None
@@ -47,5 +49,8 @@ def _allowed(parameter: Parameter) -> str:
     """The values that are allowed, in words."""
     if parameter.role is Role.SIGN:
         return "1 or -1"
-    low = "more than" if parameter.low_open else "at least"
-    return f"{low} {parameter.low:g} and at most {parameter.high:g}"
+    least = max(parameter.low, float(LEAST))
+    low = f"more than {least:g}" if parameter.low_open else f"at least {parameter.low:g}"
+    is_never_zero = parameter.role in (Role.SIGNED_LENGTH, Role.TRANSMISSION)
+    size = f", and more than {float(LEAST):g} in size" if is_never_zero else ""
+    return f"{low} and at most {parameter.high:g}{size}"

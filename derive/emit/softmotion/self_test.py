@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from derive.description.mechanism import Parameter, Role
 from derive.emit.softmotion.block import Block
-from derive.emit.softmotion.inputs import parameter_input
+from derive.emit.softmotion.inputs import inputs, parameter_input
 from derive.emit.st.expression import literal
 from derive.emit.st.layout import packed
 from derive.ir.program import Status
@@ -59,17 +59,19 @@ def test_of(kinematics: Kinematics, block: Block) -> Test | None:
         tolerance=literal(_TOLERANCE),
         fields=tuple(axis.field for axis in block.axes),
         bytes=size,
-        machines=tuple(_inputs(kinematics.parameters, found)),
+        machines=tuple(_inputs(kinematics.parameters, inputs(kinematics).names, found)),
         tables=tuple(_tables(found.cases, len(block.axes), size)),
     )
 
 
-def _inputs(parameters: Sequence[Parameter], test: SelfTest) -> Iterator[tuple[tuple[str, str], ...]]:
+def _inputs(
+    parameters: Sequence[Parameter], names: Mapping[str, str], test: SelfTest
+) -> Iterator[tuple[tuple[str, str], ...]]:
     """The inputs of every machine with their values: each machine sets all inputs that any machine sets."""
     spelled = [{p.name: _value(p, machine) for p in parameters} for machine in test.machines]
-    given = [p for p in parameters if any(values[p.name] != parameter_input(p).default for values in spelled)]
+    given = [p for p in parameters if any(values[p.name] != parameter_input(p, "").default for values in spelled)]
     for values in spelled:
-        yield tuple((parameter_input(p).name, values[p.name]) for p in given)
+        yield tuple((names[p.name], values[p.name]) for p in given)
 
 
 def _value(parameter: Parameter, machine: Mapping[str, float]) -> str:

@@ -7,12 +7,19 @@ from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 
 from derive.description.mechanism import Parameter, Role
+from derive.emit.language import TEMPLATES
+from derive.emit.st.contract import load
 from derive.emit.st.reserved import reserved
+from derive.equations.windows import limits_of_axis
 from derive.ir.types import Type
 
 _LETTERS = {"zc": "ZC"}
 """Words that stand for axes, and so are written in capital letters."""
 _NEUTRAL = re.compile(r"[a-z]+(_[a-z0-9]+)+")
+_DECLARED = re.compile(r"^ +([A-Za-z]\w*) : ", re.MULTILINE)
+_OF_PLATFORMS = frozenset({"within"})
+"""Constants of platforms, whose blocks have no search: its method has a variable of the same name."""
+_OF_THE_BLOCK = ("initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes")
 _PREFIX = {Role.FLAG: "x", Role.SIGN: "i"}
 
 TEMPLATE_LOCALS = frozenset(
@@ -50,7 +57,14 @@ def capitalized(name: str) -> str:
 
 def input_name(parameter: Parameter) -> str:
     """The input of the function block: `dLinkLength1`, `xFlangeDown`, `iDirectionR`."""
-    return _PREFIX.get(parameter.role, "d") + capitalized(parameter.name)
+    return _PREFIX.get(parameter.role, "d") + capitalized(parameter.given_name)
+
+
+def free(name: str, used: set[str]) -> str:
+    """The name, with a word behind it where it is used or reserved; it is used from then on."""
+    spelled = _free(name, used | reserved())
+    used.add(spelled.lower())
+    return spelled
 
 
 def type_name(kind: Type) -> str:
@@ -61,7 +75,23 @@ def type_name(kind: Type) -> str:
 @cache
 def stored_name(name: str) -> str:
     """The instance variable for a constant: `link_length_1` → `linkLength1`."""
-    return spellings((name,), ())[name]
+    return spellings((name,), of_methods())[name]
+
+
+@cache
+def of_methods() -> frozenset[str]:
+    """The names of all methods, and of the variables that these declare whatever the machine is, in small letters:
+    another variable of the block with such a name would be hidden.
+    """
+    signatures = load().signatures.values()
+    found = {name for s in signatures for name in (s.name, *(p.name for p in s.parameters))}
+    settings = limits_of_axis()
+    found |= {
+        parameter_name(name) for name in (*(s.name for s in settings.inputs), *(o.name for o in settings.outputs))
+    }
+    for path in (TEMPLATES / "st" / "methods").glob("*.st.j2"):
+        found |= {path.name.removesuffix(".st.j2"), *_DECLARED.findall(path.read_text(encoding="utf-8"))}
+    return frozenset(name.lower() for name in (*found, "LimitsOfAxis", *_OF_THE_BLOCK)) - _OF_PLATFORMS
 
 
 def respelled(text: str, names: Mapping[str, str]) -> str:

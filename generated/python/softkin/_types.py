@@ -190,7 +190,7 @@ class Parameter:
     low: float
     high: float
     low_is_open: bool
-    """Whether the value must be more than `low` and may not be equal to it."""
+    """Whether the value must be more than `low`, and more than 1e-12, so that no product of lengths vanishes."""
     default: float | None
     """None where the parameter must be given."""
 
@@ -205,9 +205,10 @@ class Parameter:
             return True
         if self.kind == "sign":
             return value in (1, -1)
-        if self.kind in ("signed length", "transmission") and not (value > 0.0 or value < 0.0):
+        if self.kind in ("signed length", "transmission") and not (value > 1e-12 or value < -1e-12):
             return False
-        return (value > self.low if self.low_is_open else value >= self.low) and value <= min(self.high, 1e9)
+        above = value > max(self.low, 1e-12) if self.low_is_open else value >= self.low
+        return above and value <= min(self.high, 1e9)
 
     @property
     def range(self) -> str:
@@ -216,8 +217,9 @@ class Parameter:
             return "True or False"
         if self.kind == "sign":
             return "1 or -1"
-        low = "more than" if self.low_is_open else "at least"
-        return f"{low} {self.low:g} and at most {self.high:g}"
+        low = f"more than {max(self.low, 1e-12):g}" if self.low_is_open else f"at least {self.low:g}"
+        size = ", and more than 1e-12 in size" if self.kind in ("signed length", "transmission") else ""
+        return f"{low} and at most {self.high:g}{size}"
 
 
 @dataclass(frozen=True, slots=True)

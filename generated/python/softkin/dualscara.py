@@ -197,7 +197,7 @@ class DualScara(OffsetKinematics, TwistChoice):
         Parameter.of(
             "ratio",
             "warning_distance",
-            "a margin (a number without a unit) of less than this in size is singular",
+            "a pose counts as singular where a margin (a number without a unit) is less than this in size",
             default=0.001,
         ),
     )
@@ -289,7 +289,7 @@ class DualScara(OffsetKinematics, TwistChoice):
         tcp_back: assembly mode: back instead of front
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
-        warning_distance: a margin (a number without a unit) of less than this in size is singular [1]
+        warning_distance: a pose counts as singular where a margin (a number without a unit) is less than this in size [1]
         limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())

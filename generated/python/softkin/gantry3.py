@@ -81,7 +81,7 @@ class Gantry3(OffsetKinematics):
         Parameter.of(
             "ratio",
             "warning_distance",
-            "a margin (a number without a unit) of less than this in size is singular",
+            "a pose counts as singular where a margin (a number without a unit) is less than this in size",
             default=0.001,
         ),
     )
@@ -137,7 +137,7 @@ class Gantry3(OffsetKinematics):
         lower_z: Z: lower limit of the axis, both 0: no limit [u]
         upper_z: Z: upper limit of the axis, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
-        warning_distance: a margin (a number without a unit) of less than this in size is singular [1]
+        warning_distance: a pose counts as singular where a margin (a number without a unit) is less than this in size [1]
         limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())

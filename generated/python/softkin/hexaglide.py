@@ -617,7 +617,7 @@ class Hexaglide(IterativeForward):
         Parameter.of(
             "ratio",
             "warning_distance",
-            "a margin (a number without a unit) of less than this in size is singular",
+            "a pose counts as singular where a margin (a number without a unit) is less than this in size",
             default=0.001,
         ),
     )
@@ -853,7 +853,7 @@ class Hexaglide(IterativeForward):
         upper_a6: A6: upper limit of the axis, both 0: no limit [u]
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
-        warning_distance: a margin (a number without a unit) of less than this in size is singular [1]
+        warning_distance: a pose counts as singular where a margin (a number without a unit) is less than this in size [1]
         limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())

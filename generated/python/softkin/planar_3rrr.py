@@ -373,7 +373,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         Parameter.of(
             "ratio",
             "warning_distance",
-            "a margin (a number without a unit) of less than this in size is singular",
+            "a pose counts as singular where a margin (a number without a unit) is less than this in size",
             default=0.001,
         ),
     )
@@ -511,7 +511,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         home_elbow_3_left: branch elbow_3 at the home pose: left instead of right
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
-        warning_distance: a margin (a number without a unit) of less than this in size is singular [1]
+        warning_distance: a pose counts as singular where a margin (a number without a unit) is less than this in size [1]
         limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())

@@ -86,7 +86,7 @@ class Polar(Mechanism):
         Parameter.of(
             "ratio",
             "warning_distance",
-            "a margin (a number without a unit) of less than this in size is singular",
+            "a pose counts as singular where a margin (a number without a unit) is less than this in size",
             default=0.001,
         ),
     )
@@ -133,7 +133,7 @@ class Polar(Mechanism):
         lower_r: R: lower limit of the axis, both 0: joint value 0 or more [u]
         upper_r: R: upper limit of the axis, both 0: joint value 0 or more [u]
         check_limits: inverse kinematics tests the limits
-        warning_distance: a margin (a number without a unit) of less than this in size is singular [1]
+        warning_distance: a pose counts as singular where a margin (a number without a unit) is less than this in size [1]
         limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())

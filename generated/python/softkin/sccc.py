@@ -139,7 +139,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         Parameter.of(
             "ratio",
             "warning_distance",
-            "a margin (a number without a unit) of less than this in size is singular",
+            "a pose counts as singular where a margin (a number without a unit) is less than this in size",
             default=0.001,
         ),
     )
@@ -230,7 +230,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         lower_joint_3: lower limit of joint 3, both 0: no limit [deg]
         upper_joint_3: upper limit of joint 3, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
-        warning_distance: a margin (a number without a unit) of less than this in size is singular [1]
+        warning_distance: a pose counts as singular where a margin (a number without a unit) is less than this in size [1]
         limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())

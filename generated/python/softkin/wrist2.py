@@ -113,7 +113,7 @@ class Wrist2(OrientationKinematics):
         Parameter.of(
             "ratio",
             "warning_distance",
-            "a margin (a number without a unit) of less than this in size is singular",
+            "a pose counts as singular where a margin (a number without a unit) is less than this in size",
             default=0.001,
         ),
     )
@@ -179,7 +179,7 @@ class Wrist2(OrientationKinematics):
         lower_b: B: lower limit of the axis, both 0: no limit [deg]
         upper_b: B: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
-        warning_distance: a margin (a number without a unit) of less than this in size is singular [1]
+        warning_distance: a pose counts as singular where a margin (a number without a unit) is less than this in size [1]
         limits: the limits as one mapping, instead of the above: {"name of an axis": (lower, upper)}, None for no limit
         """
         self._accept(locals())

@@ -55,7 +55,7 @@ FAULTS = {
     "a joint too few in the chain": (written(chain=CHAIN.replace("* Tz(Z1) ", "")), "joint 'Z1' occurs nowhere in"),
     "a parameter too few": (written(parameters="(L1,)"), "chain reads 'link_2', which is not a joint or a parameter"),
     "a joint used twice": (written(chain=CHAIN.replace("A2", "A1")), "joint 'A2' occurs nowhere in the closure"),
-    "a joint listed twice": (written(joints="(A1, A1, Z1, A4)"), "joint 'a1' is given 2 times"),
+    "a joint listed twice": (written(joints="(A1, A1, Z1, A4)"), "joint 'A1' is given 2 times"),
     "a joint by its name": (written(chain=CHAIN.replace("A1", '"A1"')), "TypeError: Rz('A1') needs a joint, a param"),
     "nothing for a joint": (written(chain=CHAIN.replace("A1", "None")), "Rz(None) needs a joint, a parameter, a num"),
     "names for joints": (written(joints='("A1", "A2")'), "joints must not hold 'A1': as in joints=(A1, A2)"),

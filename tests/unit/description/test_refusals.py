@@ -3,12 +3,26 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import pytest
 from sympy import cos, sin
 
-from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning, X, Y, branch, length, rotary
+from derive.description.mechanism import (
+    DescriptionError,
+    Mechanism,
+    Parameter,
+    Task,
+    Turning,
+    X,
+    Y,
+    branch,
+    distance,
+    length,
+    rotary,
+)
 from derive.description.validate import validate
 from derive.geometry.frames import Rx, Rz, Tx, Ty, Tz, flip_x
 from derive.kinematics.build import build
@@ -30,15 +44,38 @@ def arm(**changes: object) -> Mechanism:
     return described(**{**sound, **changes})
 
 
-def with_parameter(name: str) -> Mechanism:
-    odd = length(name, "second link", nominal=200.0)
+def with_parameter(name: str, kind: Callable[..., Parameter] = length) -> Mechanism:
+    odd = kind(name, "second link", nominal=200.0)
     return arm(parameters=(L1, odd), chain=Rz(A1) * Tx(L1) * Rz(A2) * Tx(odd))
 
 
-@pytest.mark.parametrize("name", ["upper_arm", "lower_arm", "axis_offset", "offset_x", "branch_pipe"])
-def test_natural_names_of_parameters_are_taken(name: str) -> None:
-    """A parameter may begin with a word of the programs, where no program of its mechanism has that name."""
-    assert build(validate(with_parameter(name))).margins[0].name == "elbow"
+NATURAL = """
+    upper_arm axis_offset branch_pipe reach upper_a1 lowest_a1 upper_a_1 axis_a1 cos_a2 sigma_elbow x r11 Link
+    linkLength _link link__length lambda check_limits given_x a1 a12
+""".split()
+OF_EITHER_SIGN = ("tool_x", "point_x", "reach", "x", "r11", "heading", "cos_a2")
+"""Their symbols are those of values of a derivation, to the last assumption."""
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"), [*((length, name) for name in NATURAL), *((distance, name) for name in OF_EITHER_SIGN)]
+)
+def test_any_identifier_names_a_parameter(kind: Callable[..., Parameter], name: str) -> None:
+    """Whatever programs call so: the description keeps its name, and the derivation is that of any other name."""
+    built = build(validate(with_parameter(name, kind)))
+    assert [p.given_name for p in built.parameters[:2]] == ["link_1", name]
+    assert [len(p.body) for p in built.programs] == lengths_of_programs(kind)
+
+
+@cache
+def lengths_of_programs(kind: Callable[..., Parameter]) -> list[int]:
+    return [len(p.body) for p in build(validate(with_parameter("link_beside", kind))).programs]
+
+
+def test_a_joint_may_have_the_name_of_a_sum() -> None:
+    """A1 + A2 is called a12 inside."""
+    joints = {"joints": (A1, A2, TWELVE), "chain": links(A1, A2, TWELVE), "parameters": (L1, L2, L3)}
+    assert build(validate(arm(task=Task("xy", FOLLOWED), **joints))).margins[0].name == "elbow"
 
 
 def test_the_arm_itself_is_sound() -> None:
@@ -49,8 +86,6 @@ def test_the_arm_itself_is_sound() -> None:
 SAME = (ELBOW, branch("arm", -sin(A2), left=+1, right=-1))
 LOOP = (X - P1, Y - P2, P1 - P2)
 AGREES = "branch 'elbow': its indicator agrees with 0 steps, not one"
-GIVEN = "cannot name a parameter: programs of this mechanism have another value of that name"
-TAKEN = "has a name that the derivation itself uses"
 TWELVE = rotary("A12", "a name too many")
 
 REFUSED = {
@@ -132,20 +167,21 @@ REFUSED = {
         arm(positive=(-1 - cos(A2) ** 2,)),
         "-cos(a2)**2 - 1 must be positive, and is at most -1: check the nominal values of parameters",
     ),
-    "a parameter with the name of a value": (with_parameter("reach"), f"parameter 'reach' {TAKEN}"),
-    "a parameter with the name of a limit": (with_parameter("upper_a1"), f"'upper_a1' {GIVEN}"),
-    "a parameter with the name of an effective limit": (with_parameter("lowest_a1"), f"'lowest_a1' {GIVEN}"),
-    "a parameter that Structured Text spells like a limit": (with_parameter("upper_a_1"), f"'upper_a_1' {GIVEN}"),
-    "a parameter with a capital letter": (with_parameter("Link"), "'Link' cannot name a parameter: lower-case words"),
+    "a parameter that is no identifier": (with_parameter("my link"), "'my link' cannot name a parameter: letters"),
+    "a parameter in letters of no language": (with_parameter("länge"), "'länge' cannot name a parameter: letters"),
+    "parameters of one name": (with_parameter("link_1"), "parameter 'link_1' is given 2 times"),
+    "parameters that differ in case alone": (
+        with_parameter("Link_1"),
+        "parameter 'Link_1' and parameter 'link_1' differ in case alone: Structured Text reads them as one name",
+    ),
     "a family of two words": (replace(arm(), family="two words"), "'two words' cannot name a family"),
     "a held joint with a gear coupling": (
         arm(joints=(A1, replace(A2, coupling=A1.motor), A3), chain=ARM * Rz(A3), held=(A2,)),
         "joint 'A2' is held and geared to other axes",
     ),
-    "a parameter with the name of a joint": (with_parameter("a1"), f"parameter 'a1' {TAKEN}"),
-    "a joint with the name of a sum": (
-        arm(joints=(A1, A2, TWELVE), chain=links(A1, A2, TWELVE), task=Task("xy", FOLLOWED), parameters=(L1, L2, L3)),
-        "joint 'A12' has the name of a sum of other joints",
+    "a parameter that is one symbol with a joint": (
+        with_parameter("a1", distance),
+        "joint 'A1' and parameter 'a1' differ in case alone: equations would read them as one",
     ),
 }
 

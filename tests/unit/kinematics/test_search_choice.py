@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from sympy import cos, sin
 
-from derive.description.mechanism import DescriptionError, Mechanism, Parameter, Task, Turning, branch, length
+from derive.description.mechanism import Mechanism, Parameter, Task, Turning, branch, length
 from derive.description.validate import validate
 from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
 from derive.kinematics.build import build
@@ -107,11 +107,12 @@ def test_nothing_is_searched_that_nothing_determines() -> None:
 
 
 @pytest.mark.parametrize("name", ["side", "goal_x", "residual_tried", "rate_1_1"])
-def test_a_parameter_named_like_a_value_of_the_search_is_refused(name: str) -> None:
+def test_a_parameter_named_like_a_value_of_the_search_keeps_its_name(name: str) -> None:
+    """It has another one inside."""
     strange = replace(length(name, "offset of the wrist", nominal=150.0))
     chain = ARM * Ty(strange) * Ry(A5) * Rx(A6) * Tx(L[4])
-    with pytest.raises(DescriptionError, match=f"parameter '{name}' has a name that the derivation itself uses"):
-        build(arm(chain, parameters=(*LENGTHS, strange)))
+    built = build(arm(chain, parameters=(*LENGTHS, strange)))
+    assert name in [p.given_name for p in built.parameters] and name not in [p.name for p in built.parameters]
 
 
 def test_an_angle_of_a_table_counts_in_degrees_in_the_branches_that_are_derived() -> None:
