@@ -44,9 +44,12 @@ from derive.report.reasons import reasons_of, reasons_of_rotation
 
 name = "javascript"
 _VERSION = "0.1.0"
-_RUNTIME = ("configuration.js", "input.js", "limits.js", "numbers.js", "package.json", "refusal.js", "roots.js",
-            "rotation.js", "scene.js", "softkin.js")  # fmt: skip
-"""The files that no mechanism changes."""
+_RUNTIME = tuple(
+    f"softkin/{name}.js"
+    for name in ("configuration", "input", "limits", "numbers", "refusal", "roots", "rotation", "scene", "softkin")
+)
+"""The files that no mechanism changes; a machine may have the name of one of them."""
+_AROUND = ("index.js", "package.json")
 _OF_THE_SEARCH = (
     *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
     *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
@@ -76,7 +79,7 @@ def files(parts: Sequence[Part]) -> dict[str, str]:
     """All files: path → text."""
     index = sorted((part["index"] for part in parts), key=lambda entry: str(entry["module"]))
     known = {"index": index}
-    found = {path: _templates().get_template(f"{path}.j2").render(known) for path in (*_RUNTIME, "index.js")}
+    found = {path: _templates().get_template(f"{path}.j2").render(known) for path in (*_RUNTIME, *_AROUND)}
     for one in parts:
         found |= one["files"]
     return found
@@ -85,7 +88,8 @@ def files(parts: Sequence[Part]) -> dict[str, str]:
 def module_name(mechanism: str) -> str:
     """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`, as in the Python package."""
     short = mechanism.removeprefix("Kin_").removeprefix("Softkin_")
-    return (short if short.isidentifier() else mechanism).lower()
+    module = (short if short.isidentifier() else mechanism).lower()
+    return f"{module}_machine" if f"{module}.js" in _AROUND else module
 
 
 @cache
