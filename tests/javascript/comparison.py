@@ -1,8 +1,8 @@
 """What JavaScript answers, held against the Python package that is asked the same.
 
-Statuses, bytes, slots, reasons, units and turns are equal. Reals are equal within 1e-12 of their scale over the smallest
-margin of the pose. Where that margin is below `SINGULAR`, axes are not known to that: both bring the machine to one
-frame.
+Statuses, bytes, slots, reasons, units and turns are equal. Reals are equal within 1e-12 of their scale over the
+smallest margin of the pose. Where that margin is below `SINGULAR`, axes are not known to that: both bring the machine
+to one frame.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class Comparison:
             self._reals("margins", list(expected.margins.values()), values, 1.0, self._margin(axes))
 
     def _jacobian(self, question: Answer, answer: Answer) -> None:
-        """Of a singular pose: the pose is found with its error over the margin, and the Jacobian divides by it again."""
+        """A singular pose is found with an error over the margin, and the Jacobian divides by that again."""
         axes = question["axes"]
         expected = _asked(lambda: self.robot.made.jacobian(axes))
         is_refused = isinstance(expected, softkin.KinematicsError)

@@ -1,4 +1,4 @@
-"""Every mechanism answers in JavaScript as in Python: every pose of the corpus, regular, singular, beyond limits, garbage."""
+"""Every mechanism answers in JavaScript as in Python: at every pose of the corpus, singular, beyond limits, garbage."""
 
 from __future__ import annotations
 

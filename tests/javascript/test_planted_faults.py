@@ -27,16 +27,16 @@ FAULTS: dict[str, tuple[str, str, str, str]] = {
     "status": (ARM, "scara4", r"refuse\(Status\.UNREACHABLE, \"A2: out", 'refuse(Status.IMPOSSIBLE, "A2: out'),
     "order of bytes": (ARM, "scara4", r"periodAxes: \[3, 0, 1\]", "periodAxes: [0, 3, 1]"),
     "edge of a period": (ARM, "softkin/numbers.js", r"180 \+ 1e-9", "180 - 1e-9"),
-    "choice by distance": (ARM, "softkin/softkin.js", r"squaredDistance\(axes, near, counted\) <", "squaredDistance(axes, near, counted) >"),
+    "choice by distance": (ARM, "softkin/softkin.js", r"(Distance\(axes, near, counted\)) <", r"\1 >"),
     "byte that means nothing": (ARM, "softkin/softkin.js", r"byte < 0 \|\| byte > 3", "byte < 0 || byte > 4"),
-    "turn that is inside": (ARM, "softkin/configuration.js", r"turn >= 0 \? turn \+ 1 : turn", "turn >= 0 ? turn : turn"),
+    "turn that is inside": (ARM, "softkin/configuration.js", r"turn >= 0 \? turn \+ 1 : turn", "turn"),
     "tolerance of limits": (ARM, "softkin/limits.js", r"low - tolerance, isWide", "low - 1, isWide"),
     "repair of a rotation": (ELBOW, "softkin/rotation.js", r"<= 0\.0001", "<= 0.01"),
     "wide matrix": (PLATE, "softkin/numbers.js", r"factor \* rows\[k\]\[j\]", "factor * rows[k][i]"),
     "no exchange of rows": (PLATE, "softkin/numbers.js", r"determinant = -determinant;", ""),
     "fewer trials": (SEARCHED, "softkin/roots.js", r"const CELLS = 72;", "const CELLS = 7;"),
     "way along a curve": (SEARCHED, "softkin/roots.js", r"base \+ scale \* s \* s", "base - scale * s * s"),
-    "tangents": (SEARCHED, "softkin/roots.js", r"return met > 0 && met < width \? met", "return met > 0 && met < width ? -met"),
+    "tangents": (SEARCHED, "softkin/roots.js", r"met < width \? met", "met < width ? -met"),
     "one search alone": (SEARCHED, "softkin/softkin.js", r"others\.some\(\(other\)", "!others.some((other)"),
 }  # fmt: skip
 """The mechanism, the beginning of the file, what stands there, and what is planted."""
@@ -48,7 +48,7 @@ def planted(file: str, found: str, wrong: str) -> Callable[[str, str], str]:
     def change(path: str, text: str) -> str:
         if not path.startswith(file):
             return text
-        changed = re.sub(found, wrong.replace("\\", r"\\"), text)
+        changed = re.sub(found, wrong, text)
         assert changed != text, f"{path} does not hold {found}"
         return changed
 

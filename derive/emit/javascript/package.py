@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping, Sequence
 from functools import cache
+from textwrap import wrap
 from typing import Any
 
 from jinja2 import Environment
@@ -54,6 +54,8 @@ _OF_THE_SEARCH = (
     *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
     *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
 )
+_TEXT = 90
+"""The most columns of a text; a longer one is a sum of several."""
 _MEANINGS = {
     Status.OK: "no error",
     Status.NOT_INITIALIZED: "a parameter is not allowed",
@@ -229,4 +231,6 @@ def _flat(value: Any) -> str:
         return list_of(map(_flat, value))
     if isinstance(value, float):
         return PRINTER.number(value)
-    return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, str):
+        return " + ".join(map(text, wrap(value, _TEXT, drop_whitespace=False))) or text(value)
+    return text(value)
