@@ -61,5 +61,7 @@ def test_a_planted_fault_is_found(fault: str) -> None:
     name, file, found, wrong = FAULTS[fault]
     module = written(part_of(name), planted(file, found, wrong))
     recording = read(name)
-    few = recording[:1] if name == SEARCHED else [*recording[:2], *recording[-16:]]
+    few = [*recording[:2], *recording[-16:]]
+    if name == SEARCHED:
+        few = [recording[0] | {"asked": recording[0]["asked"][:12]}]
     assert differences(compared(module, few)), f"{fault} is not found"

