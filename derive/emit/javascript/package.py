@@ -10,7 +10,6 @@ from typing import Any
 
 from jinja2 import Environment
 
-from derive.description.mechanism import DescriptionError
 from derive.drawing.parts import Parts, parts_of
 from derive.emit.javascript.description import description, inputs
 from derive.emit.javascript.functions import functions, rotation_function
@@ -144,7 +143,7 @@ def _parts(kin: Kinematics) -> Parts | None:
     """What is drawn of the machine; None where nothing can be drawn."""
     try:
         return parts_of(kin)
-    except DescriptionError:
+    except Exception:  # whatever a drawing meets, the formulas are proven without it
         return None
 
 
