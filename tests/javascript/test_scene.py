@@ -86,7 +86,7 @@ def test_rods_are_as_long_as_stated(name: str) -> None:
     if pose is None:
         assert mechanism.chain is not None
         return
-    ((scene, _),) = scenes(name, parameters, [list(map(float, pose.axes))])
+    ((scene, _),) = scenes(name, parameters, [ask(module_of(name), [])["description"]["drawn"]])
     rods = [body for body in scene["bodies"] if body["kind"] == "rod"]
     assert list(dict.fromkeys(rod["name"] for rod in rods)) == [bar.name for bar in bars]
     values = dict(machine.values) | {

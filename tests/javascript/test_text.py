@@ -62,7 +62,9 @@ def test_the_description_is_that_of_the_class(name: str) -> None:
     ]  # fmt: skip
     assert [one["key"] for one in told["limits"]] == list(made.LIMIT_KEYS)
     nominal = {p["name"]: p["nominal"] for p in told["parameters"]}
-    assert ask(module_of(name), [{"parameters": nominal, "calls": []}])["answers"][0]["made"] == {"status": 0}
+    calls = [["forward", told["drawn"]]]
+    answer = ask(module_of(name), [{"parameters": nominal, "calls": calls}])["answers"][0]
+    assert answer["made"] == {"status": 0} and answer["found"][0]["status"] == 0
 
 
 def _parameter(p: dict[str, Any]) -> tuple[Any, ...]:
