@@ -15,10 +15,14 @@ READY := $(ENVIRONMENT)/ready
 
 BENCH := .venv-bench
 
-.PHONY: generate check test quick bench
+.PHONY: generate check test quick bench javascript
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
+
+# The modules of the catalogue, into build/javascript; what is derived already is taken from generated.cache/.
+javascript: $(READY)
+	$(RUN) -m derive generate --language javascript --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
 
 check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)

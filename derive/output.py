@@ -49,6 +49,14 @@ def replace_folder(folder: Path, files: Mapping[str, bytes]) -> None:
         shutil.rmtree(workshop, ignore_errors=True)
 
 
+def replace_parts(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Put the files in the place of the folders inside a folder that they are in; whatever else is there stays."""
+    for part in dict.fromkeys(Path(name).parts[0] for name in files):
+        own = {str(Path(name).relative_to(part)): data for name, data in files.items() if Path(name).parts[0] == part}
+        if any(differences(folder / part, own)):
+            replace_folder(folder / part, own)
+
+
 def _refuse_foreign(folder: Path, files: Mapping[str, bytes]) -> None:
     own = {Path(name).parts[0] for name in files}
     if folder.exists():

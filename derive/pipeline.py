@@ -18,6 +18,7 @@ from derive.cache import Cache, entry_key, key_of
 from derive.description.catalogue import Entry
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.places import in_place
+from derive.emit.javascript import package as javascript
 from derive.emit.language import Language, Part
 from derive.emit.named_package import NamedPackage
 from derive.emit.python import package as python
@@ -28,9 +29,12 @@ from derive.solver.solve import Unsolved
 from derive.witness.disagreement import Disagreement
 
 PROCESSES = 2
+WRITTEN = (python.name, StructuredTextFiles.name)
+"""The languages that are written unless others are asked for."""
+LANGUAGES = (*WRITTEN, javascript.name)
 UNFIT = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
 """What a wrong description leads to: the message says enough."""
-_LANGUAGES = {python.name: "Python", StructuredTextFiles.name: "Structured Text"}
+_LANGUAGES = {python.name: "Python", StructuredTextFiles.name: "Structured Text", javascript.name: "JavaScript"}
 Told = Callable[[str, str], None]
 """What is told about a stage: its name, and its result, which is empty at its begin."""
 
@@ -152,7 +156,7 @@ def derive_one(mechanism: Mechanism, profile: str | None = None, told: Told = _n
     # Not loaded where nothing is derived: CasADi and matplotlib take longer to start than the rest of such a run.
     start = time.perf_counter()
     whole = derive_and_measure(mechanism, told)
-    outputs = languages(profile)
+    outputs = languages(profile, wanted=LANGUAGES)
     told("draw", "")
     drawn: Mapping[str, bytes] = {}
     if len(mechanism.joints) <= most_axes(profile):
@@ -195,15 +199,23 @@ def _pictures(kinematics: Kinematics) -> tuple[Mapping[str, bytes], str]:
         return {}, f"{type(problem).__name__}: {_one_line(problem)}"
 
 
-def languages(profile: str | None = None, package: str = python.PACKAGE) -> tuple[Language, ...]:
-    """All output languages, for a profile of the SoftMotion contract (its own if `None`), and a name of the package.
+def languages(
+    profile: str | None = None, package: str = python.PACKAGE, wanted: Sequence[str] = WRITTEN
+) -> tuple[Language, ...]:
+    """Output languages by their names, for a profile of the SoftMotion contract (its own if `None`), and a name of the
+    package.
 
     Raises `GenerationError` for a profile that the contract has not.
     """
     try:
-        return python if package == python.PACKAGE else NamedPackage(package), StructuredTextFiles(profile)
+        every: tuple[Language, ...] = (
+            python if package == python.PACKAGE else NamedPackage(package),
+            StructuredTextFiles(profile),
+            javascript,
+        )
     except ValueError as problem:
         raise GenerationError(str(problem)) from None
+    return tuple(language for language in every if language.name in wanted)
 
 
 def files_of(
@@ -213,14 +225,15 @@ def files_of(
     whole.
     """
     known = [key for key in keys if key]
-    whole = key_of("texts", *known) if cache and len(known) == len(built) else None
+    names = [language.name for language in outputs]
+    whole = key_of("texts", *names, *known) if cache and len(known) == len(built) else None
     texts: dict[str, str] | None = cache.read(whole) if cache and whole else None
     if texts is None:
         texts = _texts(built, outputs)
         if cache and whole:
             cache.write(whole, texts)
     return {name: text.encode() for name, text in texts.items()} | {
-        n: data for one in built for n, data in one.pictures.items()
+        n: data for one in built for n, data in one.pictures.items() if Path(n).parts[0] in names
     }
 
 

@@ -14,8 +14,8 @@ from pathlib import Path
 from derive.cache import Cache, foundation
 from derive.command.own import complain
 from derive.description.catalogue import MECHANISMS, Entry, catalogue, catalogue_and_faults
-from derive.output import differences, replace_folder
-from derive.pipeline import Built, Failure, GenerationError, Work, attempts, files_of, languages, work_of
+from derive.output import differences, replace_folder, replace_parts
+from derive.pipeline import WRITTEN, Built, Failure, GenerationError, Work, attempts, files_of, languages, work_of
 from derive.progress import Progress
 
 _ROOT = MECHANISMS.parents[1]
@@ -24,8 +24,9 @@ OUTPUT = _ROOT / "generated" if (_ROOT / "pyproject.toml").is_file() else Path("
 
 def generate(options: argparse.Namespace) -> int:
     """Write the output folder; 1 where a mechanism could not be derived."""
-    if options.only and options.output == OUTPUT:
-        raise GenerationError("--only needs --output: the output folder of the project holds every mechanism")
+    if options.output == OUTPUT and (options.only or options.language):
+        what = "--only" if options.only else "--language"
+        raise GenerationError(f"{what} needs --output: the output folder of the project holds every mechanism")
     entries, unread = catalogue_and_faults(options.mechanisms)
     for fault in unread:
         complain(fault)
@@ -36,7 +37,9 @@ def generate(options: argparse.Namespace) -> int:
         complain(fault)
     if underived and not (options.keep_going and files):
         return 1
-    if any(differences(options.output, files)):
+    if options.language:
+        replace_parts(options.output, files)
+    elif any(differences(options.output, files)):
         replace_folder(options.output, files)
     print(f"{len(files)} files in {options.output}")
     return 1 if unread or underived else 0
@@ -57,8 +60,8 @@ def compare(options: argparse.Namespace) -> int:
 
 def _files(options: argparse.Namespace, entries: tuple[Entry, ...]) -> tuple[dict[str, bytes], list[str]]:
     """All files of a run, from the cache what it has, and what could not be derived."""
-    outputs = languages(options.profile)
-    cache = None if options.fresh else Cache(Path(f"{options.output}.cache"))
+    outputs = languages(options.profile, wanted=options.language or WRITTEN)
+    cache = None if options.fresh else Cache(Path(f"{OUTPUT if options.language else options.output}.cache"))
     before = foundation(options.profile) if cache else ""
     work = work_of(_chosen(entries, options.only), cache, before)
     built, keys, faults = _derived(work, options.profile, cache, before)

@@ -21,7 +21,7 @@ from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
 from derive.importing import line as importing
 from derive.output import ForeignFolder
-from derive.pipeline import GenerationError
+from derive.pipeline import LANGUAGES, GenerationError
 
 _WRONG, _STALE, _INTERRUPTED = 2, 1, 130
 
@@ -68,12 +68,13 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
         help="the output folder (default: build); of several machines each has a folder inside it",
     )
     derive.add_argument("--package", metavar="NAME", help="the Python package (default: the name of the file)")
+    _languages(derive)
     derive.set_defaults(run=own.derive)
     text = "derive and measure machines, and write nothing; without a file: compare the output of the catalogue"
     check = commands.add_parser("check", help=text, description=text)
     check.add_argument("files", nargs="*", type=Path, metavar="FILE", help="a description, or a folder of them")
     _catalogue_options(check)
-    check.set_defaults(only=[], fresh=True, package=None, keep_going=True)
+    check.set_defaults(only=[], fresh=True, package=None, keep_going=True, language=None)
     for parser in (derive, check):
         parser.add_argument(
             "--keep-going",
@@ -98,6 +99,15 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     live.add_arguments(commands.add_parser("live", help=text, description=text))
 
 
+def _languages(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--language",
+        action="append",
+        choices=LANGUAGES,
+        help="write this language, into its folder alone; may be given several times (default: python and st)",
+    )
+
+
 _PROFILE = "a profile of templates/st/softmotion.toml, for an older library or flat blocks; several are joined by +"
 
 
@@ -109,6 +119,7 @@ def _catalogue_commands(commands: argparse._SubParsersAction[argparse.ArgumentPa
     generate.add_argument(
         "--only", nargs="+", default=[], metavar="NAME", help="these mechanisms alone, into another folder"
     )
+    _languages(generate)
     generate.add_argument("--fresh", action="store_true", help="derive everything, without the cache")
     generate.add_argument(
         "--keep-going",

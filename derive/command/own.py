@@ -14,8 +14,8 @@ from derive.command.stages import Stages
 from derive.description.catalogue import load
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.places import in_place
-from derive.output import ForeignFolder, differences, replace_folder
-from derive.pipeline import GenerationError, derive_one, files_of, languages, reason_of
+from derive.output import ForeignFolder, differences, replace_folder, replace_parts
+from derive.pipeline import WRITTEN, GenerationError, derive_one, files_of, languages, reason_of
 
 _TAKEN = ("softkin", "derive", "numpy", "scipy", "sympy", "casadi", "matplotlib")
 """Packages that a user of the machine may have installed, besides the modules of Python."""
@@ -41,9 +41,11 @@ def derive(options: argparse.Namespace) -> int:
     def written(path: Path, stages: Stages) -> None:
         package, folder = targets[path]
         refuse_another(folder, package)
-        data = _derived(path, package, options.profile, stages)
+        data = _derived(path, package, options, stages)
         stages.told("write", "")
-        if any(differences(folder, data)):
+        if options.language:
+            replace_parts(folder, data)
+        elif any(differences(folder, data)):
             replace_folder(folder, data)
         stages.told("write", f"{len(data)} files in {folder}")
 
@@ -55,9 +57,7 @@ def check(options: argparse.Namespace) -> int:
     files = described(options.files)
     return each(
         files,
-        lambda path, stages: stages.line(
-            f"  {len(_derived(path, 'checked', options.profile, stages))} files, not written"
-        ),
+        lambda path, stages: stages.line(f"  {len(_derived(path, 'checked', options, stages))} files, not written"),
         options.keep_going,
     )
 
@@ -113,9 +113,10 @@ def each(files: Sequence[Path], work: Callable[[Path, Stages], None], keep_going
     return 2 if wrong else 0
 
 
-def _derived(path: Path, package: str, profile: str | None, stages: Stages) -> dict[str, bytes]:
+def _derived(path: Path, package: str, options: argparse.Namespace, stages: Stages) -> dict[str, bytes]:
     """All files of one machine. Raises `GenerationError` with file, line and remedy."""
-    outputs = languages(profile, package)
+    profile = options.profile
+    outputs = languages(profile, package, options.language or WRITTEN)
     mechanism = load(path)
     stages.line(f"  {_described(mechanism)}")
     try:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, Turning
 from derive.description.validate import validate
 from derive.pipeline import derive_one
-from tests.machines.made import imported_class
+from tests.machines.made import built_of, imported_class
 from tests.machines.spherical_machines import A1, SPHERICAL
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled_text
@@ -28,7 +28,7 @@ Matrix = NDArray[np.float64]
 def both(name: str) -> tuple[softkin.Mechanism, Controller, Any]:
     """The machine in both languages, with offsets, and its stated equations as a function of joints and rotation."""
     mechanism = validate(SPHERICAL[name])
-    built = derive_one(mechanism)
+    built = built_of(mechanism)
     offsets = {j.offset.name: 0.3 if j.is_angle else 0.01 for j in mechanism.joints}
     robot = imported_class(mechanism, built)(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
     controller = Controller(compiled_text(f"{mechanism.name}.st", built.parts["st"]["text"]), mechanism)

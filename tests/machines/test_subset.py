@@ -15,8 +15,7 @@ from derive.description.validate import validate
 from derive.drawing.drawing import drawing_of
 from derive.emit.picture.view import axes_of
 from derive.kinematics.build import build
-from derive.pipeline import derive_one
-from tests.machines.made import Array, imported_class, made
+from tests.machines.made import Array, built_of, imported_class, made
 from tests.machines.subset_machines import A1, LOOPS, SUBSETS
 from tests.machines.test_machines import grid
 from tests.text.controller import OK, UNREACHABLE, Controller
@@ -31,7 +30,7 @@ NO_TURN = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 def loop(name: str) -> tuple[softkin.Mechanism, Controller]:
     """A loop in both languages, with offsets."""
     mechanism = validate(LOOPS[name])
-    built = derive_one(mechanism)
+    built = built_of(mechanism)
     robot_class = imported_class(mechanism, built)
     offsets = {f"offset_{j.key}": 11.0 * k - 20.0 for k, j in enumerate(mechanism.joints)}
     robot = robot_class(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)

@@ -1,0 +1,169 @@
+"""What is drawn of a machine at any pose: a program computes numbers, and the parts say what each of them is.
+
+Of a chain: the amounts of its factors. Of a loop: points and directions, from the equations of the ends of its bars, as
+in `loop`: the circle of a crank by its centre and an end, the line of a rail by its direction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from derive.description.mechanism import DescriptionError, Joint, Mechanism, X, Y, Z
+from derive.drawing.loop import bars_of, is_held_by_parallelograms
+from derive.equations.axes import joint_lets
+from derive.equations.choices import with_choices
+from derive.ir.passes import normalise
+from derive.ir.program import Output, Program
+from derive.kinematics.kinematics import Kinematics
+
+_TCP: tuple[sp.Expr, ...] = (X.symbol, Y.symbol, Z.symbol)
+Entries = tuple[sp.Expr, ...]
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The parts of a machine."""
+
+    program: Program
+    """axis_*, x y z, r11 … r33 → its outputs, all numbers."""
+    names: tuple[tuple[str, ...], ...]
+    """The outputs: of a chain the amount of every factor and its change with its last joint, of a loop the coordinates
+    of every vector."""
+    shape: dict[str, Any]
+    """Plain data; a whole number is the place of an amount or of a vector in `names`."""
+
+
+def parts_of(kinematics: Kinematics) -> Parts:
+    """The parts. Raises `DescriptionError` where nothing that is drawn moves with a joint."""
+    mechanism = kinematics.mechanism
+    values = _Values()
+    shape = _chain(mechanism, values) if mechanism.chain is not None else _loop(mechanism, values)
+    names = tuple(tuple(f"part_{i}_{k}" for k in range(len(value))) for i, value in enumerate(values.found))
+    outputs = [
+        Output(name, sp.sympify(entry))
+        for row, value in zip(names, values.found, strict=True)
+        for name, entry in zip(row, value, strict=True)
+    ]
+    program = normalise("parts", joint_lets(mechanism), outputs)
+    return Parts(with_choices(program, kinematics.parameters), names, shape)
+
+
+@dataclass
+class _Values:
+    """Values, each with its place."""
+
+    found: list[Entries] = field(default_factory=list)
+
+    def place(self, entries: Sequence[sp.Expr]) -> int:
+        """The place of a value; equal ones have the same."""
+        value = tuple(entries)
+        if value not in self.found:
+            self.found.append(value)
+        return self.found.index(value)
+
+    def point(self, entries: Sequence[sp.Expr]) -> int:
+        """The place of a vector; one in the plane lies at z = 0."""
+        return self.place((*entries, *[sp.Integer(0)] * (3 - len(entries))))
+
+
+def _chain(mechanism: Mechanism, values: _Values) -> dict[str, Any]:
+    assert mechanism.chain is not None
+    factors = []
+    for factor in mechanism.chain.factors:
+        moving = [j for j in mechanism.joints if j.symbol in factor.amount.free_symbols]
+        rate = sp.diff(factor.amount, moving[-1].symbol) if moving else sp.Integer(1)
+        names, at = [j.name for j in moving], values.place((factor.amount, rate))
+        factors.append({"motion": factor.motion.value, "axis": factor.axis, "joints": names, "amount": at})
+    return {"kind": "chain", "factors": factors}
+
+
+def _loop(mechanism: Mechanism, values: _Values) -> dict[str, Any]:
+    bars, joints = bars_of(mechanism), {j.symbol for j in mechanism.joints}
+    rods = []
+    for bar in bars:
+        drives = [j.name for j in mechanism.joints if j.symbol in bar.length.free_symbols]
+        rods.append(
+            {"name": bar.name, "start": values.point(bar.base), "end": values.point(bar.plate), "joints": drives}
+        )
+    held: list[int] = []
+    shape: dict[str, Any] = {
+        "kind": "loop", "isParallel": is_held_by_parallelograms(mechanism), "rods": rods, "cranks": [], "rails": [],
+        "carried": [],
+    }  # fmt: skip
+    for joint in mechanism.joints:
+        if any(joint.symbol in bar.length.free_symbols for bar in bars):
+            continue
+        kind, part = _driven(mechanism, joint, values, held)
+        shape[kind].append(part)
+    plate = [bar.plate for bar in bars if _is_on_plate(bar.plate, joints)]
+    held += [values.point(b.base) for b in bars if not sp.Matrix(b.base).free_symbols & (joints | set(_TCP))]
+    return shape | {"plate": [values.point(p) for p in dict.fromkeys(plate)], "base": list(dict.fromkeys(held))}
+
+
+def _is_on_plate(entries: Entries, joints: set[sp.Basic]) -> bool:
+    """Whether an end moves with the pose alone."""
+    symbols = sp.Matrix(entries).free_symbols
+    return bool(symbols & set(_TCP)) and not symbols & joints
+
+
+def _driven(mechanism: Mechanism, joint: Joint, values: _Values, held: list[int]) -> tuple[str, dict[str, Any]]:
+    """The crank or rail by which a joint moves the ends of bars, or what it moves at the tool."""
+    ends, is_held = _moved_by(mechanism, joint)
+    if not ends:
+        return "carried", {"joint": joint.name, **_carried(mechanism, joint)}
+    if not joint.is_angle:
+        rate = values.point([sp.diff(e, joint.symbol) for e in ends[0]])
+        origin = values.point([e.xreplace({joint.symbol: sp.Integer(0)}) for e in ends[0]])
+        held.append(origin)
+        found = {"joint": joint.name, "at": values.point(ends[0]), "direction": rate, "origin": origin}
+        return "rails", found
+    centres, quarters = [_centre(joint, e) for e in ends], [_turned(joint, e, sp.pi / 2) for e in ends]
+    centre = tuple(sp.Add(*column) / len(ends) for column in zip(*centres, strict=True))
+    if is_held:
+        held.append(values.point(centre))
+    return "cranks", {
+        "joint": joint.name,
+        "isHeld": is_held,
+        "centre": values.point(centre),
+        "ends": [values.point(e) for e in ends],
+        "quarter": values.point(quarters[0]),
+        "around": values.point(centres[0]),
+        "foot": values.point(centre if is_held else next(b.base for b in bars_of(mechanism) if b.plate == ends[0])),
+    }
+
+
+def _moved_by(mechanism: Mechanism, joint: Joint) -> tuple[list[Entries], bool]:
+    """The ends of bars that a joint moves, and whether a crank holds them: base ends, else the first plate end."""
+    bars = bars_of(mechanism)
+    based = [b.base for b in bars if joint.symbol in sp.Matrix(b.base).free_symbols]
+    on_plate = [b.plate for b in bars if joint.symbol in sp.Matrix(b.plate).free_symbols]
+    first = next((b for b in bars if joint.symbol in sp.Matrix([*b.base, *b.plate]).free_symbols), None)
+    return (based, True) if first is not None and first.base in based else (on_plate[:1], False)
+
+
+def _carried(mechanism: Mechanism, joint: Joint) -> dict[str, Any]:
+    """A joint that moves no bar turns the tool about z, or shifts it as a stated equation tells."""
+    rate = sp.sympify(mechanism.heading or 0).coeff(joint.symbol)
+    if rate != 0:
+        return {"kind": "turn", "axis": [0, 0, float(rate)]}
+    for equation in mechanism.closure:
+        slides = [j for j in mechanism.joints if not j.is_angle and j.symbol in equation.free_symbols]
+        moved = [c for c in _TCP if c in equation.free_symbols]
+        slopes = [-sp.diff(equation, joint.symbol) / sp.diff(equation, c) for c in moved]
+        if slides == [joint] and slopes and all(s.is_number for s in slopes):
+            known = dict(zip(moved, slopes, strict=True))
+            return {"kind": "slide", "axis": [float(known.get(c, 0)) for c in _TCP]}
+    raise DescriptionError(f"nothing that is drawn moves with joint {joint.name!r}: name its bars")
+
+
+def _turned(joint: Joint, entries: Entries, angle: sp.Expr) -> Entries:
+    return tuple(e.xreplace({joint.symbol: joint.symbol + angle}) for e in entries)
+
+
+def _centre(joint: Joint, entries: Entries) -> Entries:
+    """The centre of the circle on which a joint moves a point."""
+    return tuple((e + o) / 2 for e, o in zip(entries, _turned(joint, entries, sp.pi), strict=True))

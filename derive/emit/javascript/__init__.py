@@ -1,0 +1,1 @@
+"""JavaScript: an ES module a mechanism, on the runtime in `templates/javascript`."""

@@ -1,0 +1,244 @@
+"""JavaScript: an ES module a mechanism, and the modules of the runtime that all of them import."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from functools import cache
+from textwrap import wrap
+from typing import Any
+
+from jinja2 import Environment
+
+from derive.drawing.parts import Parts, parts_of
+from derive.drawing.pose import drawn_pose, nominal_machine
+from derive.emit.javascript.description import description, inputs
+from derive.emit.javascript.functions import functions, rotation_function
+from derive.emit.javascript.layout import block, comment, laid_out
+from derive.emit.javascript.printer import PRINTER, RUNTIME, list_of, spelled, text
+from derive.emit.javascript.program import function_lines, looked_for, read_by
+from derive.emit.javascript.refusal import Refusals
+from derive.emit.javascript.setup import setup_lines
+from derive.emit.language import GENERATED, Part, environment
+from derive.ir import cells, roots
+from derive.ir.constants import (
+    EDGE,
+    EXACT_ROTATION,
+    FINISHED,
+    FREE_ANGLE,
+    GEARED_TURN,
+    LARGEST,
+    LIMIT,
+    ONE_TURN,
+    PIVOT,
+    ROTATION,
+    SOLVABLE,
+    TIE,
+    TRIALS,
+    UNLIMITED,
+)
+from derive.ir.program import FindRoot, Status
+from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
+from derive.report.reasons import reasons_of, reasons_of_rotation
+
+name = "javascript"
+_VERSION = "0.1.0"
+_RUNTIME = tuple(
+    f"softkin/{name}.js"
+    for name in ("configuration", "input", "limits", "numbers", "refusal", "roots", "rotation", "scene", "softkin")
+)
+"""The files that no mechanism changes; a machine may have the name of one of them."""
+_AROUND = ("index.js", "package.json")
+_OF_THE_SEARCH = (
+    *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
+    *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
+)
+_TEXT = 90
+"""The most columns of a text; a longer one is a sum of several."""
+_MEANINGS = {
+    Status.OK: "no error",
+    Status.NOT_INITIALIZED: "a parameter is not allowed",
+    Status.BAD_INPUT: "numbers must be finite and at most 1e9 in size, and a rotation must be one",
+    Status.UNREACHABLE: "out of reach or beyond a limit",
+    Status.IMPOSSIBLE: "the mechanism cannot be assembled there, or a joint is undetermined",
+    Status.INVALID_COUPLING: "this pair of position and orientation kinematics is impossible",
+}
+
+
+def part(kinematics: Kinematics) -> Part:
+    """The module of one mechanism, and its entry in the list."""
+    module = module_name(kinematics.mechanism.name)
+    entry = {"name": kinematics.mechanism.name, "module": module}
+    return {
+        "index": entry,
+        "files": {f"{module}.js": _module(kinematics, module)},
+        "notes": list(inputs(kinematics).notes),
+    }
+
+
+def files(parts: Sequence[Part]) -> dict[str, str]:
+    """All files: path → text."""
+    index = sorted((part["index"] for part in parts), key=lambda entry: str(entry["module"]))
+    known = {"index": index}
+    found = {path: _templates().get_template(f"{path}.j2").render(known) for path in (*_RUNTIME, *_AROUND)}
+    for one in parts:
+        found |= one["files"]
+    return found
+
+
+def module_name(mechanism: str) -> str:
+    """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`, as in the Python package."""
+    short = mechanism.removeprefix("Kin_").removeprefix("Softkin_")
+    module = (short if short.isidentifier() else mechanism).lower()
+    return f"{module}_machine" if f"{module}.js" in _AROUND else module
+
+
+@cache
+def _templates() -> Environment:
+    templates = environment(name).overlay(variable_start_string="<<", variable_end_string=">>")
+    numbers = {
+        "edge": EDGE, "exact": EXACT_ROTATION, "free_angle": FREE_ANGLE, "geared_turn": GEARED_TURN, "largest": LARGEST,
+        "largest_error": ROTATION, "limit": LIMIT, "one_turn": ONE_TURN, "pivot": PIVOT, "solvable": SOLVABLE,
+        "tie": TIE, "unlimited": UNLIMITED,
+    }  # fmt: skip
+    templates.filters |= {"text": text}
+    templates.globals |= {key: PRINTER.number(float(value)) for key, value in numbers.items()}
+    templates.globals |= {
+        "generated": GENERATED,
+        "version": _VERSION,
+        "statuses": [{"name": s.name, "meaning": _MEANINGS[s]} for s in Status],
+        "rotation": laid_out(function_lines(rotation_function(), Refusals(reasons_of_rotation()))),
+        "search_constants": {key: _literal((vars(cells) | vars(roots))[key]) for key in _OF_THE_SEARCH},
+        "trials": TRIALS,
+        "finished": FINISHED,
+    }
+    return templates
+
+
+def _literal(value: float | tuple[float, ...]) -> str:
+    return list_of(map(_literal, value)) if isinstance(value, tuple) else PRINTER.number(value)
+
+
+def _module(kin: Kinematics, module: str) -> str:
+    parts = _parts(kin)
+    found, refusals = functions(kin, parts), Refusals(reasons_of(kin))
+    further, entries = _further(kin)
+    read = {name for f in found for name in read_by(f.program) - f.given}
+    read |= set(re.findall(r"k\.(\w+)", " ".join(entries)))
+    setup = setup_lines(kin, read, inputs(kin))
+    programs = [f"{f.key}: {f.name}," for f in found if f.key]
+    texts = [laid_out(lines) for lines in (setup, *(function_lines(f, refusals) for f in found), *further)]
+    stated = description(kin, module) | {"drawn": _drawn(kin), "parts": None if parts is None else parts.shape}
+    return _templates().get_template("mechanism.js.j2").render(
+        head=[line.removeprefix("// ") for line in _head(kin)],
+        imports=_imports([line for lines in texts for line in lines]),
+        description="\n".join(laid_out(_data(stated).split("\n"))),
+        functions=texts,
+        programs=["constants: findConstants,", *programs, *entries],
+        parameters=[line.removeprefix("// ") for p in stated["parameters"] for line in _parameter(p)],
+    )  # fmt: skip
+
+
+def _parts(kin: Kinematics) -> Parts | None:
+    """What is drawn of the machine; None where nothing can be drawn."""
+    try:
+        return parts_of(kin)
+    except Exception:  # whatever a drawing meets, the formulas are proven without it
+        return None
+
+
+def _drawn(kin: Kinematics) -> list[float] | None:
+    """The axis values of the pose that a picture shows, with nominal parameters; None where there is none."""
+    try:
+        return list(map(float, drawn_pose(nominal_machine(kin)).axes))
+    except Exception:  # as above
+        return None
+
+
+def _head(kin: Kinematics) -> list[str]:
+    """What stands at the top of a module."""
+    mechanism = kin.mechanism
+    lines = [*comment(f"{mechanism.name}: {mechanism.summary}"), ""]
+    for joint in mechanism.joints:
+        lines += comment(f"{joint.name} ({joint.kind.value}, {'deg' if joint.in_degrees else 'u'}): {joint.meaning}")
+    for branch in kin.branches:
+        lines += comment(f"{branch.name}: 1 = {branch.names[0]}, 2 = {branch.names[1]}, 0 = automatic, 3 = both meet")
+    for note in map(inputs(kin).told, mechanism.all_notes):
+        lines += ["", *comment(note)]
+    return lines
+
+
+def _parameter(p: Mapping[str, Any]) -> list[str]:
+    default = "" if p["default"] is None else f"; default {PRINTER.number(float(p['default']))}"
+    unit = f" [{p['unit']}]" if p["unit"] else ""
+    return comment(f"{p['name']}: {p['meaning']}{unit}{default}")
+
+
+def _further(kin: Kinematics) -> tuple[list[list[str]], list[str]]:
+    """Further functions, and entries among the programs, of machines that have them."""
+    lines: list[list[str]] = []
+    entries: list[str] = []
+    if kin.search_given is not None:
+        lines.append(_all_joints(kin))
+        entries.append("allJoints: findAllJoints,")
+        if kin.mechanism.search is not None and kin.mechanism.search.where is not None:
+            entries.append("isSearched: (k) => k.searched,")
+    if chooses_by_lengths(kin.mechanism):
+        entries.append(f"tie: (k) => k.{TIE_OF_LENGTHS.name},")
+    if any(joint.is_geared for joint in kin.period_joints):
+        sizes = [PRINTER.number(float(j.turns)) if j.turns.is_number else f"k.{j.turns}" for j in kin.period_joints]
+        entries.append(f"turnSizes: (k) => {list_of(sizes)},")
+    return lines, entries
+
+
+def _all_joints(kin: Kinematics) -> list[str]:
+    """The function that finds all roots of a search; it is given what the search itself is."""
+    for program in kin.shared:
+        for search in (s for s in program.body if isinstance(s, FindRoot)):
+            constants = {o.name for o in kin.setup.outputs}
+            given = [spelled(s.name) for s in program.inputs if s.name not in constants]
+            taken = f"const {list_of(given)} = given;"
+            body = block("function findAllJoints(k, given)", [taken, f"return {looked_for(search, 'everyRoot')};"])
+            return ["/** The joints at every root of the search, the nearest to the reference first. */", *body]
+    raise TypeError(f"{kin.mechanism.name}: the inverse has no search")
+
+
+def _imports(lines: Sequence[str]) -> list[str]:
+    """What the functions read of the runtime."""
+    words = {word for line in lines for word in re.findall(r"[A-Za-z_]\w*", line.partition("// ")[0])}
+    wanted = [n for n in (*RUNTIME, "refuseParameters") if n in words]
+    return laid_out_list(sorted({*wanted, "createMachine", "freeze"}))
+
+
+def laid_out_list(words: Sequence[str]) -> list[str]:
+    """Words with commas, as many as fit in a line."""
+    lines = [""]
+    for word in words:
+        if len(lines[-1]) + len(word) > 110:
+            lines.append("")
+        lines[-1] += f"{' ' if lines[-1] else ''}{word},"
+    return lines
+
+
+def _data(value: dict[str, Any]) -> str:
+    """Plain data, an entry a line."""
+    return "{\n" + "".join(f"  {key}: {_entry(part)},\n" for key, part in value.items()) + "}"
+
+
+def _entry(value: Any) -> str:
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        return "[\n" + "".join(f"    {_flat(one)},\n" for one in value) + "  ]"
+    return _flat(value)
+
+
+def _flat(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key}: {_flat(one)}" for key, one in value.items()) + " }"
+    if isinstance(value, list):
+        return list_of(map(_flat, value))
+    if isinstance(value, float):
+        return PRINTER.number(value)
+    if isinstance(value, str):
+        return " + ".join(map(text, wrap(value, _TEXT, drop_whitespace=False))) or text(value)
+    return text(value)

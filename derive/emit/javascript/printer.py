@@ -1,0 +1,105 @@
+"""Expressions in JavaScript.
+
+Names of the derivation stay as they are, in small letters; what the runtime has, has a capital letter in its name.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+
+import sympy as sp
+
+from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter
+from derive.ir.constants import DEGREE
+from derive.ir.primitives import Root
+from derive.ir.program import Status
+
+_FUNCTIONS = {
+    "sin": "Math.sin", "cos": "Math.cos", "abs": "Math.abs", "root": "squareRoot", "atan2": "angleOf",
+    "nearest_period": "nearestPeriod", "nearest_on_arc": "nearestOnArc",
+}  # fmt: skip
+RUNTIME = (
+    "DEGREE", "RADIAN", "Machine", "Refusal", "Status", "angleOf", "everyRoot", "isReasonable", "nearestOnArc",
+    "nearestPeriod", "nearestRoot", "refuse", "solveLinear", "squareRoot", "turnInside",
+)  # fmt: skip
+"""What a module may import of the runtime."""
+_WORDS = frozenset(
+    "arguments await break case catch class const continue debugger default delete do else enum eval export extends "
+    "false finally for function if implements import in instanceof interface let new null package private protected "
+    "public return static super switch this throw true try typeof undefined var void while with yield".split()
+)
+"""Words of JavaScript, which are no names."""
+TAKEN = frozenset({"axes", "found", "given", "k", "p", "pass", "point", "offset", "position", "reference", "refuse",
+                   "rotation", "signs", "start", "turn", "turns", "window"})  # fmt: skip
+"""Names that a printed function needs for its own variables."""
+
+
+def spelled(name: str) -> str:
+    """The spelling of a name: unchanged, unless it is a word of JavaScript, or the printed function uses it already."""
+    return f"{name}_" if name in _WORDS or name in TAKEN else name
+
+
+def names_of(symbols: Iterable[sp.Symbol]) -> list[str]:
+    """The spelling of several names."""
+    return [spelled(symbol.name) for symbol in symbols]
+
+
+def text(value: object) -> str:
+    """A literal text, or plain data."""
+    return json.dumps(value, ensure_ascii=False)
+
+
+def status(value: Status) -> str:
+    """A status."""
+    return f"Status.{value.name}"
+
+
+def list_of(parts: Iterable[str]) -> str:
+    """Expressions as an array."""
+    return f"[{', '.join(parts)}]"
+
+
+def function_name(program: str) -> str:
+    """The function of a program: `wrist_centre` → `findWristCentre`. No name of the derivation is written like this."""
+    return "find" + "".join(word[:1].upper() + word[1:] for word in program.split("_"))
+
+
+class JavaScript(ExpressionPrinter):
+    """Writes expressions: a choice evaluates one side alone."""
+
+    def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if isinstance(node, sp.Not):
+            return f"!{self._text(node.args[0], ATOM)}", ATOM
+        if node.is_Mul and 1 / DEGREE in node.args:
+            return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT
+        if isinstance(node, Root) and _is_sum_of_squares(node.args[0]):
+            return f"Math.sqrt({self.print(node.args[0])})", ATOM
+        return super()._spell(node)
+
+    def name(self, symbol: sp.Symbol) -> str:
+        return symbol.name if symbol == DEGREE else spelled(symbol.name)
+
+    def number(self, value: float) -> str:
+        mantissa, letter, exponent = repr(value).removesuffix(".0").partition("e")
+        return f"{mantissa}e{int(exponent)}" if letter else mantissa
+
+    def call(self, key: str, arguments: Sequence[str]) -> str:
+        if key == "select":
+            condition, first, second = arguments
+            return f"({condition} ? {first} : {second})"
+        return f"{_FUNCTIONS[key]}({', '.join(arguments)})"
+
+    def logic(self, word: str) -> str:
+        return {"and": "&&", "or": "||", "not": "!"}.get(word, word)
+
+    def comparison(self, operator: str) -> str:
+        return {"==": "===", "!=": "!=="}.get(operator, operator)
+
+
+def _is_sum_of_squares(value: sp.Expr) -> bool:
+    """Whether a value cannot be negative."""
+    return bool(value.is_Add) and all(term.is_Pow and term.exp == 2 for term in value.args)
+
+
+PRINTER = JavaScript()

@@ -1,0 +1,88 @@
+"""How a function refuses: with a status, the reason, the missing amount, and the turn that would be inside."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.emit.javascript.layout import block, comment, indented
+from derive.emit.javascript.printer import PRINTER, status, text
+from derive.ir.constants import LARGEST
+from derive.ir.program import Iterate, Require
+from derive.ir.reason import OtherTurn
+from derive.report.reasons import Check, Reasons
+
+
+@dataclass(frozen=True)
+class Refusals:
+    """The refusals of one mechanism. The missing amount is computed where the refusal is returned, and nowhere else."""
+
+    reasons: Reasons
+
+    def lines(self, requires: Sequence[Require]) -> list[str]:
+        """The lines that refuse where conditions about one subject do not all hold."""
+        notes = [] if _sized(r.condition for r in requires) else comment(requires[0].comment)
+        explained = [r for r in requires if r.reason is not None]
+        if len(explained) < len(requires):  # nobody is told why
+            head = f"if (!({condition_of([r.condition for r in requires])}))"
+            return [*notes, *block(head, [f"return refuse({status(requires[0].otherwise)});"])]
+        return [*notes, *(line for check in self.reasons.checks(requires) for line in self._check(check))]
+
+    def of_loop(self, loop: Iterate) -> str:
+        """The line that refuses where a loop is never left: a reason without an amount."""
+        reason = "" if loop.reason is None else f", {text(self.reasons.loop(loop))}"
+        return f"return refuse({status(loop.otherwise)}{reason});"
+
+    def _check(self, check: Check) -> list[str]:
+        given = [status(check.status), text(check.reason)]
+        given += [] if check.missing is None else [PRINTER.print(check.missing)]
+        inner = [line for turn, reason in check.turns for line in _on_another(turn, reason, check)]
+        sized = _sized(check.conditions)
+        head = (
+            f"isReasonable({', '.join(map(PRINTER.print, sized))})" if sized else f"({condition_of(check.conditions)})"
+        )
+        return block(f"if (!{head})", [*inner, f"return refuse({', '.join(given)});"])
+
+
+def _on_another(turn: OtherTurn, reason: str, check: Check) -> Iterator[str]:
+    """The lines that refuse because of the turn where another turn is inside the limits."""
+    low, high = (_one(word, ends) for word, ends in (("Math.max", turn.lowest), ("Math.min", turn.highest)))
+    missing = "0" if check.missing is None else PRINTER.print(check.missing)
+    inside = f"const turn = turnInside({PRINTER.print(turn.axis)}, {low}, {high});"
+    refused = f"if (turn) return refuse({status(check.status)}, {text(reason)}, {missing}, turn);"
+    yield from ["{", *indented([inside, refused]), "}"]
+
+
+def _one(word: str, ends: Sequence[sp.Expr]) -> str:
+    """The largest or the smallest of one or more limits."""
+    texts = [PRINTER.print(end) for end in ends]
+    return f"{word}({', '.join(texts)})" if len(texts) > 1 else texts[0]
+
+
+def condition_of(conditions: Iterable[sp.Basic]) -> str:
+    """Conditions that must all hold, as one."""
+    parts = _parts(conditions)
+    if len(parts) == 1:
+        return PRINTER.print(parts[0])
+    return " && ".join(PRINTER.print(p) if _is_plain(p) else f"({PRINTER.print(p)})" for p in parts)
+
+
+def _is_plain(condition: sp.Basic) -> bool:
+    return not isinstance(condition, sp.Or)
+
+
+def _sized(conditions: Iterable[sp.Basic]) -> list[sp.Expr]:
+    """The values, if the conditions test that several values are numbers of reasonable size."""
+    parts = _parts(conditions)
+    sized = [
+        part.lhs.args[0]
+        for part in parts
+        if isinstance(part, sp.LessThan) and isinstance(part.lhs, sp.Abs) and part.rhs == LARGEST
+    ]
+    return sized if len(sized) == len(parts) > 1 else []
+
+
+def _parts(conditions: Iterable[sp.Basic]) -> list[sp.Basic]:
+    return [p for c in conditions for p in (sp.ordered(c.args) if isinstance(c, sp.And) else [c])]
