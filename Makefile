@@ -14,7 +14,7 @@ READY := $(ENVIRONMENT)/ready
 
 BENCH := .venv-bench
 
-.PHONY: generate check test quick bench
+.PHONY: generate check test quick report bench
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -27,6 +27,9 @@ test: $(READY)
 
 quick: $(READY)
 	$(RUN) -m pytest -n 2 --dist loadgroup -m quick tests/unit tests/harness tests/catalogue tests/text
+
+report: $(READY)
+	$(RUN) -m derive report
 
 bench: $(READY) $(BENCH)/ready
 	PYTHONPATH=generated/python $(RUN) -m bench.blocks

@@ -1,0 +1,202 @@
+"""The derivation of a mechanism as it is told to a reader: its closure, its steps with the equations that they use,
+the branches that they make, and the margins.
+
+It is made again from the description, by the functions that the build calls in the same order: they keep what they have
+solved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.algebra.normal_form import cancelled, reduce_units
+from derive.description.mechanism import Joint, Mechanism, Parameter
+from derive.equations.closure import Closure, fixed_lets
+from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
+from derive.ir.primitives import Root
+from derive.ir.program import Let, Statement, rewritten
+from derive.ir.symbols import ASSEMBLY_SIGN, cosine, sine
+from derive.kinematics.assembly import Assembled, assembled, with_derived_assembly
+from derive.kinematics.branch_assignment import Assignment, assign, with_branch_signs
+from derive.kinematics.build import prepared
+from derive.kinematics.derived_branches import with_derived_branches
+from derive.kinematics.differential import Factor, factor_of
+from derive.kinematics.forward import pose_at_axes, solve_for_position
+from derive.kinematics.inverse import Inverse, solve_pose
+from derive.kinematics.scan.choice import with_search
+from derive.kinematics.scan.derivations import solve_both
+from derive.plate.passive import GUIDES, guides_determinant, solve_passive
+from derive.report.used import equations_of
+from derive.solver.parallel_axes import Sum
+from derive.solver.solve import Derivation, Step
+
+_WORTH_A_NAME = 3
+"""Operations of a value that is put by its name into an equation of many operations."""
+MANY = 40
+"""An equation with more operations is written in the names that its step binds."""
+
+
+@dataclass(frozen=True)
+class ToldStep:
+    """One step: unknowns ← rule ← equations, and what it binds."""
+
+    number: int
+    unknowns: tuple[sp.Symbol, ...]
+    rule: str
+    equations: tuple[Equation, ...]
+    """In the names of the derivation."""
+    statements: tuple[Statement, ...]
+    determinant: StepDeterminant | None
+    assignments: tuple[Assignment, ...]
+    """The branches that its sign makes."""
+    conditioning: Conditioning | None
+    conditions: tuple[sp.Expr, ...]
+    """What Initialize refuses where it is zero."""
+    total: Sum | None = None
+    """The sum of angles that it takes apart."""
+
+
+@dataclass(frozen=True)
+class Route:
+    """One solved problem: its closure and its steps."""
+
+    title: str
+    closure: Closure | None
+    known: tuple[Statement, ...]
+    """What is bound before the first step."""
+    steps: tuple[ToldStep, ...]
+    frozen: tuple[Joint, ...] = ()
+    residuals: tuple[sp.Expr, ...] = ()
+    """What is left of a trial: zero at a root."""
+    assignments: tuple[Assignment, ...] = ()
+
+
+@dataclass(frozen=True)
+class Derived:
+    """The derivation of a mechanism."""
+
+    mechanism: Mechanism
+    """As it is derived: its numbers named, its gears at the joints."""
+    inverse: tuple[Route, ...]
+    forward: Route | None
+    """Of a closed loop whose forward kinematics has a closed form."""
+    factors: tuple[Factor, ...]
+    """What the margins are."""
+    searched: Joint | None = None
+    where: Parameter | None = None
+    """The parameter without which nothing is searched."""
+
+
+def derived_of(mechanism: Mechanism) -> Derived:
+    """The derivation of a mechanism that the build derives. Raises what the build raises."""
+    mechanism = with_derived_assembly(with_search(prepared(mechanism)))
+    if mechanism.search is not None:
+        return _searched(mechanism)
+    inverse, closed = solve_pose(mechanism), assembled(mechanism, pose_at_axes(mechanism))
+    whole = with_derived_branches(mechanism, inverse, closed.forward)
+    assignments = assign(whole, inverse, closed.forward)
+    routes = [_route("Inverse kinematics", mechanism, inverse, assignments)]
+    if mechanism.passive:
+        derivation = solve_passive(mechanism)
+        steps = _steps(derivation, derivation.plain, ())
+        title = f"What the task does not command: {', '.join(mechanism.passive)}"
+        routes.insert(0, Route(title, None, (), steps))
+    return Derived(whole, tuple(routes), _forward(mechanism), tuple(_factors(whole, inverse, assignments, closed)))
+
+
+def _searched(mechanism: Mechanism) -> Derived:
+    both = solve_both(mechanism)
+    search = mechanism.search
+    assert search is not None
+    routes = [_route(f"A trial: {search.joint.name} is known", mechanism, both.trial, both.trial_branches)]
+    if both.closed is not None and search.where is not None:
+        title = f"Where {search.where.name} is 0: in closed form"
+        routes.insert(0, _route(title, mechanism, both.closed, both.closed_branches))
+    return Derived(mechanism, tuple(routes), None, (), search.joint, search.where)
+
+
+def _route(title: str, mechanism: Mechanism, inverse: Inverse, assignments: Sequence[Assignment]) -> Route:
+    derivation = inverse.derivation
+    signed = with_branch_signs(derivation.plain, assignments)
+    signs, plain = signed[: len(assignments)], signed[len(assignments) :]
+    steps = _steps(derivation, plain, assignments)
+    known = (*inverse.naming, *signs)
+    return Route(title, inverse.closure, known, steps, inverse.frozen, derivation.residuals, tuple(assignments))
+
+
+def _forward(mechanism: Mechanism) -> Route | None:
+    if mechanism.chain is not None or mechanism.is_platform:
+        return None
+    derivation = solve_for_position(mechanism)
+    sides = {s.sigma: ASSEMBLY_SIGN for s in derivation.determinants}
+    plain = tuple(rewritten(s, lambda e: e.xreplace(sides)) for s in derivation.plain)
+    return Route("Forward kinematics", None, fixed_lets(mechanism), _steps(derivation, plain, ()))
+
+
+def _steps(
+    derivation: Derivation, plain: Sequence[Statement], assignments: Sequence[Assignment]
+) -> tuple[ToldStep, ...]:
+    return tuple(_step(number, step, derivation, plain, assignments) for number, step in enumerate(derivation.steps, 1))
+
+
+def _step(
+    number: int, step: Step, derivation: Derivation, plain: Sequence[Statement], assignments: Sequence[Assignment]
+) -> ToldStep:
+    binding, names = step.recorded, dict(step.names)
+    own = tuple(plain[slice(*step.span)])
+    equations = [Equation(e.label, e.expression.xreplace(names)) for e in equations_of(step)]
+    made = binding.determinant
+    return ToldStep(
+        number=number,
+        unknowns=binding.unknowns,
+        rule=binding.rule,
+        equations=tuple(Equation(e.label, _in_names(e.expression, own, step.problem, binding)) for e in equations),
+        statements=own,
+        determinant=made,
+        assignments=tuple(a for a in assignments if made is not None and a.determinant.step == made.step),
+        conditioning=binding.conditioning,
+        conditions=binding.conditions,
+        total=next((t for t in derivation.sums if binding.rule == "sum" and t.replaced in binding.unknowns), None),
+    )
+
+
+def _in_names(value: sp.Expr, statements: Sequence[Statement], problem: Problem, binding: Binding) -> sp.Expr:
+    """An equation of many operations, collected by its unknowns, in the names that the step has for coefficients."""
+    if sp.count_ops(value) <= MANY:
+        return value
+    atoms = [a for u in binding.unknowns for a in (u, cosine(u), sine(u)) if value.has(a)]
+    lets = [s for s in statements if isinstance(s, Let) and s.value.free_symbols]
+    parts = sp.collect(sp.expand(value), atoms, evaluate=False)
+    terms = [(atom, _named(sp.together(c), lets, problem)) for atom, c in parts.items()]
+    return sp.Add(*(c if atom == 1 else sp.Mul(c, atom, evaluate=False) for atom, c in terms))
+
+
+def _named(value: sp.Expr, lets: Sequence[Let], problem: Problem) -> sp.Expr:
+    """A coefficient as a multiple of a value that has a name, or as the square of a root that has one, and the rest."""
+    best = value
+    for let in lets:
+        if isinstance(let.value, Root):
+            values = {other.name: other.value for other in lets if other.name in let.value.free_symbols}
+            square = let.value.args[0].xreplace(values)
+            rest = reduce_units(sp.expand(value - square), problem.units, problem.signs)
+            if sp.count_ops(rest) < sp.count_ops(best) / 2:
+                best = let.name**2 + rest
+        elif sp.count_ops(let.value) >= _WORTH_A_NAME and let.value.is_rational_function():
+            ratio = cancelled(value / let.value)
+            if sp.count_ops(ratio) < sp.count_ops(best) / 3 and not ratio.is_Add:
+                best = ratio * let.name
+    return best
+
+
+def _factors(
+    mechanism: Mechanism, inverse: Inverse, assignments: Sequence[Assignment], closed: Assembled
+) -> Iterator[Factor]:
+    told: list[Assignment | Conditioning] = [*assignments, *inverse.derivation.conditionings]
+    yield from (factor_of(mechanism, found) for found in told)
+    if mechanism.passive:
+        yield Factor(GUIDES, guides_determinant(mechanism))
+    if closed.margin is not None:
+        yield Factor(closed.name, closed.margin)
