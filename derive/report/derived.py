@@ -7,14 +7,14 @@ solved.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from derive.algebra.normal_form import cancelled, reduce_units
 from derive.description.mechanism import Joint, Mechanism, Parameter
-from derive.equations.closure import Closure, fixed_lets
+from derive.equations.closure import fixed_lets
 from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Statement, rewritten
@@ -31,6 +31,7 @@ from derive.kinematics.scan.derivations import solve_both
 from derive.plate.passive import GUIDES, guides_determinant, solve_passive
 from derive.report.used import equations_of
 from derive.solver.parallel_axes import Sum
+from derive.solver.positive_steps import known_signs
 from derive.solver.solve import Derivation, Step
 
 _WORTH_A_NAME = 3
@@ -57,6 +58,8 @@ class ToldStep:
     """What Initialize refuses where it is zero."""
     total: Sum | None = None
     """The sum of angles that it takes apart."""
+    only: int = 0
+    """The sign of the determinant, where this machine has one of the two solutions alone."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,8 @@ class Route:
     """One solved problem: its closure and its steps."""
 
     title: str
-    closure: Closure | None
+    equations: tuple[Equation, ...]
+    """The closure, in the names of the derivation."""
     known: tuple[Statement, ...]
     """What is bound before the first step."""
     steps: tuple[ToldStep, ...]
@@ -101,9 +105,9 @@ def derived_of(mechanism: Mechanism) -> Derived:
     routes = [_route("Inverse kinematics", mechanism, inverse, assignments)]
     if mechanism.passive:
         derivation = solve_passive(mechanism)
-        steps = _steps(derivation, derivation.plain, ())
+        steps = _Told(derivation, {}).steps()
         title = f"What the task does not command: {', '.join(mechanism.passive)}"
-        routes.insert(0, Route(title, None, (), steps))
+        routes.insert(0, Route(title, (), (), steps))
     return Derived(whole, tuple(routes), _forward(mechanism), tuple(_factors(whole, inverse, assignments, closed)))
 
 
@@ -120,11 +124,21 @@ def _searched(mechanism: Mechanism) -> Derived:
 
 def _route(title: str, mechanism: Mechanism, inverse: Inverse, assignments: Sequence[Assignment]) -> Route:
     derivation = inverse.derivation
-    signed = with_branch_signs(derivation.plain, assignments)
-    signs, plain = signed[: len(assignments)], signed[len(assignments) :]
-    steps = _steps(derivation, plain, assignments)
+    signs = with_branch_signs((), assignments)
+    told = _Told(derivation, {a.determinant.sigma: a.orientation * a.factor for a in assignments}, assignments)
+    left = tuple(told.signed(r) for r in derivation.residuals)
     known = (*inverse.naming, *signs)
-    return Route(title, inverse.closure, known, steps, inverse.frozen, derivation.residuals, tuple(assignments))
+    equations = tuple(_recorded(e, derivation) for e in inverse.closure.equations)
+    return Route(title, equations, known, told.steps(), inverse.frozen, left, tuple(assignments))
+
+
+def _recorded(equation: Equation, derivation: Derivation) -> Equation:
+    """An equation in the names under which its values are recorded: values that are equal have one name."""
+    names = {s.value: s.name for s in reversed(derivation.plain) if isinstance(s, Let)}
+    table: dict[sp.Symbol, sp.Symbol] = {}
+    for let in equation.lets:
+        table[let.name] = names.get(let.value.xreplace(table), let.name)
+    return Equation(equation.label, equation.expression.xreplace(table))
 
 
 def _forward(mechanism: Mechanism) -> Route | None:
@@ -132,35 +146,48 @@ def _forward(mechanism: Mechanism) -> Route | None:
         return None
     derivation = solve_for_position(mechanism)
     sides = {s.sigma: ASSEMBLY_SIGN for s in derivation.determinants}
-    plain = tuple(rewritten(s, lambda e: e.xreplace(sides)) for s in derivation.plain)
-    return Route("Forward kinematics", None, fixed_lets(mechanism), _steps(derivation, plain, ()))
+    return Route("Forward kinematics", (), fixed_lets(mechanism), _Told(derivation, sides).steps())
 
 
-def _steps(
-    derivation: Derivation, plain: Sequence[Statement], assignments: Sequence[Assignment]
-) -> tuple[ToldStep, ...]:
-    return tuple(_step(number, step, derivation, plain, assignments) for number, step in enumerate(derivation.steps, 1))
+class _Told:
+    """The steps of a derivation, in the signs of branches."""
 
+    def __init__(
+        self, derivation: Derivation, signs: Mapping[sp.Symbol, sp.Expr], assignments: Sequence[Assignment] = ()
+    ) -> None:
+        made = [s.recorded.determinant for s in derivation.steps if s.recorded.determinant is not None]
+        single = known_signs(derivation.steps[-1].problem, made) if made else {}
+        self._derivation, self._assignments = derivation, assignments
+        self._known = {step.step: sign for step, sign in single.items()}
+        self._signs = {**signs, **{step.sigma: sp.Integer(sign) for step, sign in single.items()}}
 
-def _step(
-    number: int, step: Step, derivation: Derivation, plain: Sequence[Statement], assignments: Sequence[Assignment]
-) -> ToldStep:
-    binding, names = step.recorded, dict(step.names)
-    own = tuple(plain[slice(*step.span)])
-    equations = [Equation(e.label, e.expression.xreplace(names)) for e in equations_of(step)]
-    made = binding.determinant
-    return ToldStep(
-        number=number,
-        unknowns=binding.unknowns,
-        rule=binding.rule,
-        equations=tuple(Equation(e.label, _in_names(e.expression, own, step.problem, binding)) for e in equations),
-        statements=own,
-        determinant=made,
-        assignments=tuple(a for a in assignments if made is not None and a.determinant.step == made.step),
-        conditioning=binding.conditioning,
-        conditions=binding.conditions,
-        total=next((t for t in derivation.sums if binding.rule == "sum" and t.replaced in binding.unknowns), None),
-    )
+    def signed(self, value: sp.Expr) -> sp.Expr:
+        """An expression in the signs of branches."""
+        return value.xreplace(self._signs)
+
+    def steps(self) -> tuple[ToldStep, ...]:
+        """All of them, in their order."""
+        return tuple(self._step(number, step) for number, step in enumerate(self._derivation.steps, 1))
+
+    def _step(self, number: int, step: Step) -> ToldStep:
+        binding, names = step.recorded, dict(step.names)
+        own = tuple(rewritten(s, lambda e: e.xreplace(self._signs)) for s in self._derivation.plain[slice(*step.span)])
+        equations = [Equation(e.label, self.signed(e.expression.xreplace(names))) for e in equations_of(step)]
+        made, partial = binding.determinant, binding.conditioning
+        is_sum = binding.rule == "sum"
+        return ToldStep(
+            number=number,
+            unknowns=binding.unknowns,
+            rule=binding.rule,
+            equations=tuple(Equation(e.label, _in_names(e.expression, own, step.problem, binding)) for e in equations),
+            statements=own,
+            determinant=None if made is None else replace(made, value=self.signed(made.value)),
+            assignments=tuple(a for a in self._assignments if made is not None and a.determinant.step == made.step),
+            conditioning=None if partial is None else replace(partial, value=self.signed(partial.value)),
+            conditions=binding.conditions,
+            total=next((t for t in self._derivation.sums if is_sum and t.replaced in binding.unknowns), None),
+            only=0 if made is None else self._known.get(made.step, 0),
+        )
 
 
 def _in_names(value: sp.Expr, statements: Sequence[Statement], problem: Problem, binding: Binding) -> sp.Expr:

@@ -103,10 +103,11 @@ class Lines:
 
     def _linear(self, item: Solve) -> Iterator[Line]:
         note = item.note or "linear equations, by elimination with pivoting"
-        rows = [self._sides(item, k) for k in range(item.size)] if item.right else []
-        yield Line("equations", math=tuple(line for row in rows for line in row), note=note)
-        if item.determinant is not None:
-            yield Line("matrix", self.name(item.determinant), (self._matrix(item),), neutral=item.determinant.name)
+        if item.right:
+            rows = [self._sides(item, k) for k in range(item.size)]
+            yield Line("equations", math=tuple(line for row in rows for line in row), note=note)
+        if (made := item.determinant) is not None:
+            yield Line("matrix", self.name(made), (self._matrix(item),), note=note, neutral=made.name)
 
     def _matrix(self, item: Solve) -> Markup:
         """The determinant of the matrix."""

@@ -192,6 +192,8 @@ class MathML:
         inside = self._row(base, _PRODUCT if exponent == 1 else _ATOM)
         if exponent == 1:
             return inside
+        if len(inside) > 1 and _width(inside) > _SHORT and _bare(inside) == inside:
+            inside = (_fence("("), *inside, _fence(")"))
         *before, last = inside
         if before and _width(inside) <= _SHORT:
             before, last = [], Token(f"<mrow>{_text(inside)}</mrow>", _width(inside))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 from derive.emit.softmotion.block import block_of
 from derive.emit.softmotion.library import most_axes
@@ -36,7 +37,12 @@ class Spelling:
 
 def has_block(kinematics: Kinematics) -> bool:
     """Whether there is a function block: SoftMotion knows no more than six axes."""
-    return len(kinematics.mechanism.joints) <= most_axes(None)
+    return len(kinematics.mechanism.joints) <= _most_axes()
+
+
+@cache
+def _most_axes() -> int:
+    return most_axes(None)
 
 
 def spelling_of(kinematics: Kinematics) -> Spelling:

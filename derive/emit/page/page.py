@@ -55,15 +55,18 @@ class ShownProgram:
     outputs: tuple[Line, ...] = ()
 
 
-def page_of(mechanism: Mechanism, kinematics: Kinematics, has_maps: bool = True) -> Page:
-    """The page of a machine. kinematics: what the build made of the mechanism, measured where a witness has."""
+def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = True) -> Page:
+    """The page of a machine. kinematics: what the build made of the mechanism, measured where a witness has.
+
+    has_pictures: with the drawing, the machine in its singular poses, and maps; without, the formulas alone.
+    """
     derived, spelling = derived_of(mechanism), spelling_of(kinematics)
     lines, plain = Lines(spelling, _numbered(derived)), Lines(spelling)
     names = {p.name: _called(p, kinematics) for p in kinematics.mechanism.parameters}
-    found = pictured(kinematics, names)
+    found = pictured(kinematics, names) if has_pictures else None
     body, entries = jacobian_of(kinematics, lines)
     factors = {f.name: f for f in derived.factors}
-    told = dict(singularities(found, derived, names))
+    told = {} if found is None else dict(singularities(found, derived, names))
     block = kinematics.mechanism.block_name
     text = (
         _templates()
@@ -90,10 +93,10 @@ def page_of(mechanism: Mechanism, kinematics: Kinematics, has_maps: bool = True)
             entries=entries,
             rows=kinematics.rows,
             factored=factored(kinematics.margins),
-            margins=[(m, _margin(m, factors, lines), told[m.name]) for m in kinematics.margins],
+            margins=[(m, _margin(m, factors, lines), told.get(m.name)) for m in kinematics.margins],
             singularity=_program(kinematics.singularity, "singularity", "", lines),
             workspace=[f"{bound}." for bound in workspace(kinematics)],
-            maps=list(maps(found)) if has_maps else [],
+            maps=[] if found is None else list(maps(found)),
             measured=list(tables.measured(kinematics)),
             cost_head=tables.COST_HEAD,
             operations=list(tables.operations(kinematics)),

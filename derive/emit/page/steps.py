@@ -56,6 +56,8 @@ class ShownStep:
     determinant: tuple[str, ...]
     """The determinant, over its scale, one element a line; none of a step with one root."""
     branches: tuple[str, ...]
+    only: str
+    """The sign of the determinant, where the machine has one of the two solutions alone; else empty."""
     free: str
     """The unknown that is free where a value vanishes; empty where there is none."""
     free_where: tuple[str, ...]
@@ -91,10 +93,9 @@ _DEEPEST = 3
 
 def route_of(route: Route, mechanism: Mechanism, lines: Lines) -> ShownRoute:
     """A solved problem on the page."""
-    equations = () if route.closure is None else route.closure.equations
     return ShownRoute(
         title=route.title,
-        equations=tuple(_stated(e, lines) for e in equations),
+        equations=tuple(_stated(e, lines) for e in route.equations),
         known=tuple(lines.of(_needed(route))),
         steps=tuple(_step(step, mechanism, lines) for step in route.steps),
         held=", ".join(j.name for j in route.frozen),
@@ -104,8 +105,7 @@ def route_of(route: Route, mechanism: Mechanism, lines: Lines) -> ShownRoute:
 
 def _needed(route: Route) -> list[Statement]:
     """What is bound before the first step and read in it or later."""
-    told = [e.expression for e in (route.closure.equations if route.closure else ())]
-    wanted = {s for value in told for s in names_in(value)}
+    wanted = {s for e in route.equations for s in names_in(e.expression)}
     for step in route.steps:
         wanted |= {s for e in step.equations for s in names_in(e.expression)}
         wanted |= {s for statement in step.statements for s in reads(statement)}
@@ -136,6 +136,7 @@ def _step(step: ToldStep, mechanism: Mechanism, lines: Lines) -> ShownStep:
         lines=tuple(lines.of(step.statements)),
         determinant=() if made is None else lines.math.lines(_over(made.value, made.scale)),
         branches=tuple(_of_branch(a) for a in step.assignments),
+        only={0: "", 1: "positive", -1: "negative"}[step.only],
         free="" if partial is None else _axis(mechanism, partial.angle),
         free_where=() if partial is None else lines.math.equation(partial.value, sp.Integer(0)),
         refused=tuple(lines.math.equation(c, sp.Integer(0)) for c in step.conditions),
