@@ -45,7 +45,8 @@ def report(options: argparse.Namespace) -> int:
         pages.append(made)
     progress.end()
     if pages:
-        print(f"{len(pages)} page{'' if len(pages) == 1 else 's'}, listed in {_write(options.out, _INDEX, index_of(pages))}")
+        index = _write(options.out, _INDEX, index_of(pages))
+        print(f"{len(pages)} page{'' if len(pages) == 1 else 's'}, listed in {index}")
     return 1 if faults else 0
 
 

@@ -225,7 +225,8 @@ def test_names_are_those_of_the_block(name: str) -> None:
         spelling(name)(n) for n in _of_loops(kinematics)
     }
     checked = 0
-    for anchor in ("inverse-program", "forward-program", "singularities", "jacobian"):
+    shared_by_methods = [f"shared-{p.name}" for p in kinematics.shared if _is_written(p)]
+    for anchor in ("inverse-program", "forward-program", "singularities", "jacobian", *shared_by_methods):
         own = names_of(_program(name, anchor))
         results = {spelling(name)(o.name) for o in (*kinematics.forward.outputs, *kinematics.singularity.outputs)}
         for one in own:
@@ -234,6 +235,11 @@ def test_names_are_those_of_the_block(name: str) -> None:
             assert one in words or one in places, f"{name}: {one}"
             checked += 1
     assert checked or not kinematics.margins
+
+
+def _is_written(program: Program) -> bool:
+    """Whether the block has a method with its statements: a search for roots is written in the block by itself."""
+    return not any(isinstance(s, FindRoot) for s in program.body)
 
 
 def _of_loops(kinematics: Kinematics) -> list[str]:

@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from derive.emit.page.mathml import WIDTH, MathML, element
 from derive.emit.page.names import Spelling
+from derive.emit.st.shared import method_name
 from derive.ir.primitives import Select
 from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve, Statement
 from derive.ir.tree import If, Item
@@ -77,9 +78,11 @@ class Lines:
         elif isinstance(item, Iterate):
             yield from self._loop(item)
         elif isinstance(item, Call):
-            given = [line for name, value in item.given for line in self.math.equation(name, value)]
+            pairs = [(name, value) for name, value in item.given if name != value]
+            given = [line for name, value in pairs for line in self.math.equation(name, value)]
             names = ", ".join(self._spelling(n.name) for n in item.names)
-            note = f"{item.note or 'a program that several methods share'}: {item.program.name}, which gives {names}"
+            what = item.note or "a program that several methods share"
+            note = f"{what}: {method_name(item.program)}, which gives {names}{', with' if given else ''}"
             yield Line("call", math=tuple(given), note=note)
         else:
             yield from self._search(item)

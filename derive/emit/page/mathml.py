@@ -114,7 +114,7 @@ class MathML:
         if isinstance(node, sp.Mul | sp.Pow):
             return self._product(node)
         if isinstance(node, Relational):
-            sign = operator(_RELATIONS[node.rel_op], _WELL)
+            sign = operator(_RELATIONS[node.rel_op], _BADLY)
             return (*self._row(node.lhs, _SUM), sign, *self._row(node.rhs, _SUM)), _COMPARE
         if isinstance(node, sp.And):
             return self._joined(node.args, "and"), _AND

@@ -18,10 +18,10 @@ from derive.emit.page.names import Spelling, has_block, spelling_of
 from derive.emit.page.pictures import maps, pictured, singularities
 from derive.emit.page.steps import Stated, product_of, route_of, tree_of
 from derive.emit.st.names import input_name
+from derive.emit.st.shared import method_name
 from derive.ir.passes import needed_for
 from derive.ir.program import Let, Program
 from derive.ir.symbols import real
-from derive.ir.tree import statements_in
 from derive.kinematics.differential import Factor
 from derive.kinematics.kinematics import Kinematics, Margin
 from derive.lowering.scheduling import structured
@@ -30,6 +30,7 @@ from derive.report.derived import Derived, derived_of
 from derive.report.reasons import workspace
 
 _FOLDER = "html"
+_SHARED = "A program that others call"
 _BESIDE = 54
 """The letters of a line beside a picture."""
 
@@ -175,17 +176,17 @@ def _programs(kinematics: Kinematics, lines: Lines) -> list[ShownProgram]:
     bound = {s.name.name for s in constants}
     own = [Let(real(o.name), o.value) for o in wanted if o.name not in bound and o.value != real(o.name)]
     solved = [Let(real(o.name), o.value) for o in kinematics.branch.outputs if o.value != real(o.name)]
-    found = [
-        ShownProgram("constants", "Constants", tuple(lines.of((*constants, *own)))),
-        ShownProgram("inverse-program", "Inverse kinematics", tuple(lines.of(items)), tuple(lines.of(solved))),
-    ]
+    found = [ShownProgram("constants", "Constants", tuple(lines.of((*constants, *own))))]
+    for inner in kinematics.shared:
+        shown = _program(inner, f"shared-{inner.name}", f"{inner.summary or _SHARED}: {method_name(inner)}", lines)
+        found.append(shown)
+    found.append(ShownProgram("inverse-program", "Inverse kinematics", tuple(lines.of(items)), tuple(lines.of(solved))))
     return [*found, _program(kinematics.forward, "forward-program", "Forward kinematics", lines)]
 
 
 def _program(program: Program, anchor: str, title: str, lines: Lines) -> ShownProgram:
     items = structured(program)
-    bound = {n.name for s in statements_in(items) if isinstance(s, Let) for n in (s.name,)}
-    outputs = [Let(real(o.name), o.value) for o in program.outputs if str(o.value) != o.name or o.name not in bound]
+    outputs = [Let(real(o.name), o.value) for o in program.outputs if str(o.value) != o.name]
     outputs = [let for let in outputs if not let.value.is_number]
     return ShownProgram(anchor, title, tuple(lines.of(items)), tuple(lines.of(outputs)))
 
