@@ -149,8 +149,8 @@ def _over(value: sp.Expr, scale: sp.Expr) -> sp.Expr:
 
 def _of_branch(found: Assignment) -> str:
     first, second = found.branch.names
-    sign = "the sign of the determinant" if found.orientation > 0 else "the opposite sign of the determinant"
-    return f"branch {found.branch.name}: byte 1 is {first}, byte 2 is {second}; +1 of {sign} is {first}"
+    sign = "positive" if found.orientation > 0 else "negative"
+    return f"branch {found.branch.name}: byte 1 is {first}, where the determinant is {sign}; byte 2 is {second}"
 
 
 def _axis(mechanism: Mechanism, unknown: sp.Symbol) -> str:
