@@ -15,7 +15,7 @@ READY := $(ENVIRONMENT)/ready
 
 BENCH := .venv-bench
 
-.PHONY: generate check test quick bench javascript
+.PHONY: generate check test quick report bench javascript
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -32,6 +32,9 @@ test: $(READY)
 
 quick: $(READY)
 	$(RUN) -m pytest -n 2 --dist loadgroup -m quick tests/unit tests/harness tests/catalogue tests/text
+
+report: $(READY)
+	$(RUN) -m derive report
 
 bench: $(READY) $(BENCH)/ready
 	PYTHONPATH=generated/python $(RUN) -m bench.blocks

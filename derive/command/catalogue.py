@@ -63,7 +63,7 @@ def _files(options: argparse.Namespace, entries: tuple[Entry, ...]) -> tuple[dic
     outputs = languages(options.profile, wanted=options.language or WRITTEN)
     cache = None if options.fresh else Cache(Path(f"{OUTPUT if options.language else options.output}.cache"))
     before = foundation(options.profile) if cache else ""
-    work = work_of(_chosen(entries, options.only), cache, before)
+    work = work_of(chosen(entries, options.only), cache, before)
     built, keys, faults = _derived(work, options.profile, cache, before)
     is_unchanged = cache is not None and foundation(options.profile) == before
     files = files_of(built, outputs, cache, keys if is_unchanged else ()) if built else {}
@@ -102,7 +102,8 @@ def _line(one: Built) -> str:
     return f"{one.derived} {time:>8}   {one.measured}{warning}{notes}"
 
 
-def _chosen(entries: tuple[Entry, ...], names: Sequence[str]) -> tuple[Entry, ...]:
+def chosen(entries: tuple[Entry, ...], names: Sequence[str]) -> tuple[Entry, ...]:
+    """The mechanisms of these names, or all. Raises `GenerationError` for a name that none has."""
     known = [mechanism.name for _, mechanism in entries]
     for name in names:
         if name not in known:

@@ -1,4 +1,6 @@
-"""`explain`: the derivation of a machine, step by step, in plain text; where nobody named a branch, how to name it."""
+"""`explain`: the derivation of a machine, step by step, in plain text, or as a page; where nobody named a branch, how
+to name it.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +11,8 @@ from pathlib import Path
 import sympy as sp
 
 from derive.command.own import described, each
+from derive.command.report import written
 from derive.command.stages import Stages
-from derive.command.used import equations_of
 from derive.description.catalogue import load
 from derive.description.mechanism import Mechanism
 from derive.description.places import in_place
@@ -25,6 +27,7 @@ from derive.kinematics.scan.choice import with_search
 from derive.kinematics.scan.derivations import without_search
 from derive.pipeline import GenerationError, reason_of
 from derive.plate.passive import solve_passive
+from derive.report.used import equations_of
 from derive.solver.solve import Step, Unsolved
 
 _FORMS = {
@@ -47,10 +50,13 @@ _LONGEST = 160
 
 
 def explain(options: argparse.Namespace) -> int:
-    """Print the derivation of every machine; 2 where one of them cannot be derived."""
+    """Print the derivation of every machine, or write its page; 2 where one of them cannot be derived."""
 
     def told(path: Path, stages: Stages) -> None:
         mechanism = load(path)
+        if options.html:
+            written(path, mechanism, options.out, stages)
+            return
         try:
             for line in explanation(mechanism):
                 stages.line(line)
@@ -115,7 +121,7 @@ def _step(mechanism: Mechanism, number: int, step: Step, assignments: Sequence[A
     binding = step.recorded
     unknowns = ", ".join(_name(mechanism, u) for u in binding.unknowns) or "no unknown"
     others = "the sum and its other angles" if binding.rule == "sum" else "the equations above"
-    used = " and ".join(equations_of(step)) or others
+    used = " and ".join(e.label for e in equations_of(step)) or others
     yield f"  {number}. {unknowns} <- {binding.rule} <- {used}"
     yield f"       form: {_FORMS.get(binding.rule, binding.rule)}"
     if binding.determinant is not None:

@@ -2,6 +2,7 @@
 
 softkin new my_machine.py                  write a commented description to start from
 softkin explain my_machine.py              print each step of its derivation, and its branches to be named
+softkin explain --html my_machine.py       the same as a page, with pictures, its Jacobian and its singularities
 softkin check my_machine.py                derive and measure it, and write nothing
 softkin derive my_machine.py --out build   derive it: Python package, Structured Text, PLCopenXML, picture
 softkin live --machine my_machine.json     show it in the browser, moved by the axis values of its controller
@@ -16,7 +17,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from derive.command import catalogue, explain, live, new, own
+from derive.command import catalogue, explain, live, new, own, report
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
 from derive.importing import line as importing
@@ -29,7 +30,7 @@ _WRONG, _STALE, _INTERRUPTED = 2, 1, 130
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; 0 where it succeeded, else one message a fault on stderr, and 1 or 2."""
     options = _options(arguments)
-    is_catalogue = options.run in (catalogue.generate, catalogue.compare)
+    is_catalogue = options.run in (catalogue.generate, catalogue.compare, report.report)
     try:
         return int(options.run(options))
     except (DescriptionError, GenerationError, ForeignFolder, OSError) as problem:
@@ -86,6 +87,8 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     text = "print each step of the derivation, its determinant, and the branch that it makes"
     explained = commands.add_parser("explain", help=text, description=text)
     explained.add_argument("files", nargs="+", type=Path, metavar="FILE", help="a description, or a folder of them")
+    explained.add_argument("--html", action="store_true", help="write it as a page, with pictures, and name the file")
+    explained.add_argument("--out", type=Path, default=report.OUTPUT, metavar="DIR", help=_PAGES)
     explained.set_defaults(run=explain.explain)
     text = "write a commented description to start from"
     fresh = commands.add_parser("new", help=text, description=text)
@@ -109,6 +112,7 @@ def _languages(command: argparse.ArgumentParser) -> None:
 
 
 _PROFILE = "a profile of templates/st/softmotion.toml, for an older library or flat blocks; several are joined by +"
+_PAGES = f"the folder of pages (default: {report.OUTPUT})"
 
 
 def _catalogue_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -127,6 +131,12 @@ def _catalogue_commands(commands: argparse._SubParsersAction[argparse.ArgumentPa
         help="write the mechanisms that can be derived; without it, one fault leaves the output folder as it was",
     )
     generate.set_defaults(run=catalogue.generate)
+    text = "write a page for every mechanism of a folder: its derivation, step by step, with pictures and maps"
+    pages = commands.add_parser("report", help=text, description=text)
+    pages.add_argument("--out", type=Path, default=report.OUTPUT, metavar="DIR", help=_PAGES)
+    pages.add_argument("--mechanisms", type=Path, default=MECHANISMS, metavar="DIR", help="the folder of descriptions")
+    pages.add_argument("--only", nargs="+", default=[], metavar="NAME", help="these mechanisms alone")
+    pages.set_defaults(run=report.report)
 
 
 def _catalogue_options(parser: argparse.ArgumentParser) -> None:

@@ -127,10 +127,10 @@ class ExpressionPrinter(ABC):
         return (f"-{text}", _UNARY) if value < 0 else (text, ATOM)
 
     def _sum(self, node: sp.Add) -> str:
-        terms = _terms(node)
+        terms = terms_of(node)
         text = self._text(terms[0], _SUM)
         for term in terms[1:]:
-            if _is_negative(term):
+            if is_negative(term):
                 text += f" - {self._text(-term, PRODUCT)}"
             else:
                 text += f" + {self._text(term, PRODUCT)}"
@@ -190,7 +190,7 @@ def _is_whole(node: sp.Basic) -> bool:
 
 
 @cache
-def _terms(node: sp.Add) -> tuple[sp.Expr, ...]:
+def terms_of(node: sp.Add) -> tuple[sp.Expr, ...]:
     """The terms of a sum in the order in which they are written; those that rank alike stay in the order of SymPy."""
     orders = {_term_order(term) for term in node.args}
     terms = node.args if len(orders) == len(node.args) else node.as_ordered_terms()  # which takes long
@@ -198,17 +198,17 @@ def _terms(node: sp.Add) -> tuple[sp.Expr, ...]:
 
 
 @cache
-def _is_negative(term: sp.Expr) -> bool:
+def is_negative(term: sp.Expr) -> bool:
     return bool(term.could_extract_minus_sign()) if not term.is_Add else False
 
 
 def _term_order(term: sp.Expr) -> tuple[bool, int]:
     """Positive terms first, then the shorter: `link_length_1 + link_length_2*cos_a2`."""
-    return _is_negative(term), sum(len(side) for side in _fraction(term.as_coeff_Mul()[1]))
+    return is_negative(term), sum(len(side) for side in _fraction(term.as_coeff_Mul()[1]))
 
 
 @cache
-def _factor_order(factor: sp.Expr) -> tuple[bool, str]:
+def factor_order(factor: sp.Expr) -> tuple[bool, str]:
     """The sort key of a factor: sines and cosines come last, as in a textbook."""
     name = factor.name if isinstance(factor, sp.Symbol) else str(factor)
     return name.startswith(("sin_", "cos_", "Sin", "Cos")), name
@@ -219,7 +219,7 @@ def _fraction(node: sp.Expr) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
     """The factors of numerator and denominator, with integer powers written out."""
     above: list[sp.Expr] = []
     below: list[sp.Expr] = []
-    for factor in sorted(sp.Mul.make_args(node), key=_factor_order):
+    for factor in sorted(sp.Mul.make_args(node), key=factor_order):
         base, exponent = factor.as_base_exp()
         if isinstance(factor, sp.Pow):
             side = above if exponent > 0 else below

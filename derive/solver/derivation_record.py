@@ -31,6 +31,8 @@ class DerivationRecord:
         self._determinants: list[StepDeterminant] = []
         self._conditionings: list[Conditioning] = []
         self._residuals: list[sp.Expr] = []
+        self.renamed: Mapping[sp.Symbol, sp.Symbol] = {}
+        """The names of the last binding that stand under others in the record."""
 
     @property
     def statements(self) -> tuple[Statement, ...]:
@@ -56,6 +58,7 @@ class DerivationRecord:
         """Record a binding. Returns it with the names under which its values are recorded."""
         own = {f(u) for u in binding.unknowns for f in (sine, cosine)}
         names = self._write(binding.statements, keep=own | {*binding.unknowns})
+        self.renamed = names
         binding = replace(
             binding,
             determinant=None if binding.determinant is None else _renamed(binding.determinant, names),

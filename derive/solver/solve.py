@@ -100,6 +100,10 @@ class Step:
     problem: Problem
     found: Binding
     recorded: Binding
+    span: tuple[int, int] = (0, 0)
+    """Where the statements of the step begin and end among those of the derivation that are `plain`."""
+    names: tuple[tuple[sp.Symbol, sp.Symbol], ...] = ()
+    """The names in `found` that stand under others in `recorded`, each with the other."""
 
 
 class Undetermined(Unsolved):
@@ -146,12 +150,13 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         if problem.is_overdetermined and not problem.equations and not left:
             left += _residuals(problem, record)
         problem, binding, sums = _next_after(steps, problem, sums, arguments)
-        found, binding = binding, record.commit(binding)
-        steps.append(Step(problem, found, binding))
+        begin, found, binding = len(record.statements), binding, record.commit(binding)
+        names = tuple(record.renamed.items())
         rules.append(binding.rule)
         not_zero += binding.conditions
         for angle in _read_plainly(problem, binding.unknowns):
             record.append(resolve_angle(angle))
+        steps.append(Step(problem, found, binding, (begin, len(record.statements)), names))
         problem = _without(problem, binding, record)
     if problem.is_overdetermined and not problem.turns:
         left = [residual / problem.scale**2 for residual in record.residuals[:1]]  # it implies those that follow

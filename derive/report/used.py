@@ -15,15 +15,15 @@ _MOST = {1: 80, 2: 24, 3: 9}
 """How many equations are combined at most: alone, in pairs, by three."""
 
 
-def equations_of(step: Step) -> tuple[str, ...]:
-    """The labels of the equations; empty where they are not found again."""
+def equations_of(step: Step) -> tuple[Equation, ...]:
+    """The equations, in the names that their rule was given; empty where they are not found again."""
     if not step.found.unknowns:
         return ()
     for problem in (step.problem, replace(step.problem, fixed=step.problem.parameters)):
         for tier in TIERS:
             found = next(_again(step, problem, tier(problem)), None)
             if found is not None:
-                return tuple(e.label for e in found)
+                return found
     return ()
 
 

@@ -1,0 +1,93 @@
+"""`report`: a page for every mechanism of the catalogue, and an index; and the page of a machine of the user's own."""
+
+from __future__ import annotations
+
+import gc
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+from derive.command.catalogue import chosen
+from derive.command.own import complain
+from derive.command.stages import Stages
+from derive.description.catalogue import Entry, catalogue
+from derive.description.mechanism import Mechanism
+from derive.description.places import in_place
+from derive.pipeline import PROCESSES, Failure, GenerationError, Told, derive_and_measure, reason_of
+from derive.progress import Progress
+
+if TYPE_CHECKING:
+    import argparse
+
+    from derive.emit.page.page import Page
+
+OUTPUT = Path("build/report")
+_INDEX = "index.html"
+
+
+def report(options: argparse.Namespace) -> int:
+    """Write the pages and their index; 1 where a mechanism could not be derived."""
+    from derive.emit.page.page import index_of
+
+    entries = chosen(catalogue(options.mechanisms), options.only)
+    pages: list[Page] = []
+    progress, faults = Progress(len(entries), sys.stdout), 0
+    for made in _pages(entries):
+        if isinstance(made, Failure):
+            complain(made.message)
+            faults += 1
+            continue
+        path = _write(options.out, made.file, made.text)
+        progress.step(f"{path}  {path.stat().st_size // 1000} kB", took_time=True)
+        pages.append(made)
+    progress.end()
+    if pages:
+        index = _write(options.out, _INDEX, index_of(pages))
+        print(f"{len(pages)} page{'' if len(pages) == 1 else 's'}, listed in {index}")
+    return 1 if faults else 0
+
+
+def written(path: Path, mechanism: Mechanism, folder: Path, stages: Stages) -> None:
+    """Write the page of a machine, and name its file. Raises `GenerationError` with file, line and remedy."""
+    try:
+        page = _page(mechanism, stages.told)
+    except Exception as problem:
+        raise GenerationError(in_place(path, reason_of(problem))) from None
+    target = _write(folder, page.file, page.text)
+    stages.line(f"  {target}  {target.stat().st_size // 1000} kB")
+
+
+def _page(mechanism: Mechanism, told: Told) -> Page:
+    from derive.emit.page.page import page_of
+
+    kinematics = derive_and_measure(mechanism, told)
+    told("page", "")
+    page = page_of(mechanism, kinematics)
+    ElementTree.fromstring(page.text)  # what is not well-formed, some readers show in part
+    told("page", f"{len(page.text.encode()) // 1000} kB")
+    return page
+
+
+def _pages(entries: tuple[Entry, ...]) -> Iterator[Page | Failure]:
+    """The pages in the order of the catalogue."""
+    with ProcessPoolExecutor(max_workers=min(PROCESSES, len(entries)), initializer=gc.disable) as pool:
+        yield from pool.map(_attempt, entries)
+
+
+def _attempt(entry: Entry) -> Page | Failure:
+    """A page made in a worker process: a problem comes back as text, because not every exception can travel."""
+    path, mechanism = entry
+    try:
+        return _page(mechanism, lambda stage, found: None)
+    except Exception as problem:
+        return Failure(in_place(path, reason_of(problem)))
+
+
+def _write(folder: Path, name: str, text: str) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    target = folder / name
+    target.write_text(text, encoding="utf-8")
+    return target

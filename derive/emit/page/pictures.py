@@ -1,0 +1,143 @@
+"""The pictures of a page: the machine as it is drawn, and in the poses where a margin vanishes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from markupsafe import Markup
+
+from derive.description.mechanism import DescriptionError
+from derive.drawing.drawing import Drawing, drawing_of, scene_at
+from derive.drawing.pose import Pose, drawn_pose, nominal_machine, pose_at
+from derive.drawing.scene import Scene
+from derive.emit.page.svg import drawn, mapped
+from derive.emit.picture.canvas import WIDTH
+from derive.emit.picture.machine import Machine as Sketch
+from derive.emit.picture.page import page
+from derive.emit.picture.view import Box
+from derive.kinematics.kinematics import Kinematics
+from derive.report.derived import Derived
+from derive.report.reference_calls import Machine, margins
+from derive.report.singular_poses import SingularPose, singular_pose
+from derive.report.workspace_map import slices
+
+_SIZE = (440.0, 340.0)
+_TURNED = (25.0, 40.0, -30.0, 35.0, 50.0, 20.0)
+"""Added to the drawn pose where that is singular itself: a map is of no use there."""
+_SINGULAR = 1e-3
+
+
+@dataclass(frozen=True)
+class Pictured:
+    """The machine, drawn."""
+
+    machine: Machine
+    pose: Pose | None
+    drawing: Drawing | None
+    picture: Markup
+    undrawn: str
+    """Why there is no picture; empty where there is one."""
+
+
+def pictured(kinematics: Kinematics, names: Mapping[str, str]) -> Pictured:
+    """The picture of a mechanism, as beside its block. names: the spelling of parameters."""
+    machine = nominal_machine(kinematics)
+    try:
+        pose: Pose | None = drawn_pose(machine)
+    except DescriptionError:
+        pose = None
+    try:
+        drawing = drawing_of(kinematics)
+        sheet = page(drawing, kinematics.mechanism.block_name, names)
+    except Exception as problem:  # whatever a drawing meets, the formulas are proven without it
+        return Pictured(machine, pose, None, Markup(""), " ".join(str(problem).split()))
+    title = f"{kinematics.mechanism.block_name}: joints, axes and dimensions"
+    return Pictured(machine, pose, drawing, drawn(sheet.marks, WIDTH, sheet.height, title), "")
+
+
+@dataclass(frozen=True)
+class Singularity:
+    """A pose of the machine in which a margin vanishes, and its picture."""
+
+    found: SingularPose | None
+    picture: Markup
+    axes: str
+
+
+def singularities(found: Pictured, derived: Derived, names: Mapping[str, str]) -> Iterator[tuple[str, Singularity]]:
+    """The margins by name, each with its pose."""
+    kinematics = found.machine.kinematics
+    start = found.pose.axes if found.pose is not None else tuple(j.nominal for j in kinematics.mechanism.joints)
+    for margin in kinematics.margins:
+        at = singular_pose(found.machine, derived, margin.name, start)
+        picture = Markup("") if at is None or found.drawing is None else _singular(found, at, names)
+        told = "" if at is None else ", ".join(_axes(kinematics, at))
+        yield margin.name, Singularity(at, picture, told)
+
+
+def _axes(kinematics: Kinematics, at: SingularPose) -> Iterator[str]:
+    for joint, value in zip(kinematics.mechanism.joints, at.axes, strict=True):
+        yield f"{joint.name} = {round(value, 2) + 0.0:g}{'°' if joint.in_degrees else ''}"
+
+
+def _singular(found: Pictured, at: SingularPose, names: Mapping[str, str]) -> Markup:
+    scene = _scene(found.machine, at)
+    if scene is None or found.drawing is None:
+        return Markup("")
+    turns = tuple(replace(t, zero=None) for t in scene.turns)
+    bare = replace(scene, dimensions=(), arcs=(), spots=(), hidden=(), turns=turns)
+    drawing = replace(found.drawing, scene=bare, choices=(), assembly=None)
+    width, height = _SIZE
+    marks = Sketch(drawing, Box(6.0, 6.0, width - 6.0, height - 6.0), names).drawn()
+    return drawn(marks, width, height, f"the machine where {at.margin} is zero")
+
+
+def _scene(machine: Machine, at: SingularPose) -> Scene | None:
+    """The machine there; where a bar has no direction, a hair beside."""
+    for axes in (at.axes, at.beside):
+        pose = pose_at(machine, axes) if at.frame is None else Pose(axes, at.frame, ())
+        try:
+            with np.errstate(invalid="ignore", divide="ignore"):
+                if pose is not None:
+                    return scene_at(machine, pose)
+        except DescriptionError:
+            continue
+    return None
+
+
+@dataclass(frozen=True)
+class Map:
+    """A slice of the workspace, in words and as a picture."""
+
+    caption: str
+    picture: Markup
+
+
+def maps(found: Pictured) -> Iterator[Map]:
+    """The maps of the workspace; none where the machine has no pose that is drawn, or commands too little."""
+    if found.pose is None:
+        return
+    pose = _regular(found.machine, found.pose)
+    for part in slices(found.machine, pose.frame, pose.axes):
+        where = ", ".join(f"{c} = {round(v, 3) + 0.0:g}" for c, v in part.at)
+        plane = f"plane {part.along[0]}, {part.along[1]}{f' at {where}' if where else ''}"
+        axes = ", ".join(
+            f"{j.name} = {round(v, 3) + 0.0:g}"
+            for j, v in zip(found.machine.kinematics.mechanism.joints, pose.axes, strict=True)
+        )
+        turned = f"with the rotation of the tool at {axes}" if found.machine.kinematics.reads_rotation else ""
+        if part.is_everywhere and not found.machine.kinematics.margins:
+            yield Map(f"{plane}: every point is reached, with one solution.", Markup(""))
+        else:
+            yield Map(f"{plane} {turned}".rstrip() + ".", mapped(part, f"workspace, {plane}"))
+
+
+def _regular(machine: Machine, pose: Pose) -> Pose:
+    """The pose, or one that is turned where that is singular."""
+    if not machine.kinematics.margins or float(np.abs(margins(machine, [pose.axes])).min()) > _SINGULAR:
+        return pose
+    joints = machine.kinematics.mechanism.joints
+    shifts = [_TURNED[k % len(_TURNED)] if j.is_angle else 0.0 for k, j in enumerate(joints)]
+    return pose_at(machine, tuple(a + s for a, s in zip(pose.axes, shifts, strict=True))) or pose

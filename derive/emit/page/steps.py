@@ -1,0 +1,201 @@
+"""The derivation on a page: its closure, what is known, its steps, and the tree of its branches."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.description.mechanism import Branch, Mechanism
+from derive.emit.page.lines import Line, Lines
+from derive.emit.page.mathml import Row, element, operator, word
+from derive.equations.problem import Equation
+from derive.geometry.frames import LETTERS, Factor, Motion
+from derive.ir.program import Let, Statement, reads
+from derive.ir.symbols import names_in
+from derive.kinematics.branch_assignment import Assignment
+from derive.report.derived import Derived, Route, ToldStep
+
+FORMS = {
+    "affine": "linear in the unknown",
+    "affine pair": "two equations, linear in both unknowns",
+    "affine along": "two or three equations of a length along a known direction",
+    "affine along or free": "linear in it in several of them, along the direction of its slide, where it has one",
+    "affine across": "linear in it, where its slide does not point across",
+    "affine triple": "three equations, linear in all three unknowns",
+    "pair": "cosine and sine are linear in two equations: the rotation that takes one vector to another",
+    "polar": "two equations that are its cosine and its sine, times one unknown radius: two solutions",
+    "trigonometric": "a cos u + b sin u = c, the law of cosines: two solutions",
+    "lateral": "a cos u + b sin u = c for a point beside the axis: two solutions",
+    "quadratic": "a square: two solutions",
+    "spheres": "circles or spheres about known points: two solutions",
+    "sum": "the sum of parallel angles, less those that are known",
+}
+"""What each rule solves."""
+
+
+@dataclass(frozen=True)
+class Stated:
+    """An equation with its label, one element a line."""
+
+    label: str
+    math: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class ShownStep:
+    """One step of the derivation on the page."""
+
+    number: int
+    unknowns: str
+    rule: str
+    form: str
+    used: tuple[Stated, ...]
+    lines: tuple[Line, ...]
+    determinant: tuple[str, ...]
+    """The determinant, over its scale, one element a line; none of a step with one root."""
+    branches: tuple[str, ...]
+    only: str
+    """The sign of the determinant, where the machine has one of the two solutions alone; else empty."""
+    free: str
+    """The unknown that is free where a value vanishes; empty where there is none."""
+    free_where: tuple[str, ...]
+    """That this value is zero."""
+    refused: tuple[tuple[str, ...], ...]
+    """What Initialize refuses."""
+
+
+@dataclass(frozen=True)
+class ShownRoute:
+    """One solved problem on the page."""
+
+    title: str
+    equations: tuple[Stated, ...]
+    known: tuple[Line, ...]
+    steps: tuple[ShownStep, ...]
+    held: str
+    residuals: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """A node of the tree of branches: a byte with its meaning, and the nodes below."""
+
+    text: str
+    meaning: str
+    below: tuple[Leaf, ...] = ()
+
+
+_DEEPEST = 3
+"""Branches up to this number are a tree; of more, every byte is told by itself."""
+
+
+def route_of(route: Route, mechanism: Mechanism, lines: Lines) -> ShownRoute:
+    """A solved problem on the page."""
+    return ShownRoute(
+        title=route.title,
+        equations=tuple(_stated(e, lines) for e in route.equations),
+        known=tuple(lines.of(_needed(route))),
+        steps=tuple(_step(step, mechanism, lines) for step in route.steps),
+        held=", ".join(j.name for j in route.frozen),
+        residuals=tuple(lines.math.equation(r, sp.Integer(0)) for r in route.residuals),
+    )
+
+
+def _needed(route: Route) -> list[Statement]:
+    """What is bound before the first step and read in it or later."""
+    wanted = {s for e in route.equations for s in names_in(e.expression)}
+    for step in route.steps:
+        wanted |= {s for e in step.equations for s in names_in(e.expression)}
+        wanted |= {s for statement in step.statements for s in reads(statement)}
+    kept: list[Statement] = []
+    for statement in reversed(route.known):
+        if not isinstance(statement, Let) or statement.name in wanted:
+            kept.insert(0, statement)
+            wanted |= reads(statement)
+    return kept
+
+
+def _stated(equation: Equation, lines: Lines) -> Stated:
+    return Stated(equation.label, lines.math.equation(equation.expression, sp.Integer(0)))
+
+
+def _step(step: ToldStep, mechanism: Mechanism, lines: Lines) -> ShownStep:
+    used = tuple(_stated(e, lines) for e in step.equations)
+    if step.total is not None:
+        terms = sp.Add(*(sign * angle for angle, sign in step.total.terms))
+        used = (Stated("sum of parallel angles", lines.math.equation(step.total.symbol, terms)),)
+    made, partial = step.determinant, step.conditioning
+    return ShownStep(
+        number=step.number,
+        unknowns=", ".join(_axis(mechanism, u) for u in step.unknowns) or "no unknown",
+        rule=step.rule,
+        form=FORMS.get(step.rule, step.rule),
+        used=used,
+        lines=tuple(lines.of(step.statements)),
+        determinant=() if made is None else lines.math.lines(_over(made.value, made.scale)),
+        branches=tuple(_of_branch(a) for a in step.assignments),
+        only={0: "", 1: "positive", -1: "negative"}[step.only],
+        free="" if partial is None else _axis(mechanism, partial.angle),
+        free_where=() if partial is None else lines.math.equation(partial.value, sp.Integer(0)),
+        refused=tuple(lines.math.equation(c, sp.Integer(0)) for c in step.conditions),
+    )
+
+
+def _over(value: sp.Expr, scale: sp.Expr) -> sp.Expr:
+    return value if scale == 1 else sp.Mul(value, sp.Pow(scale, -1, evaluate=False), evaluate=False)
+
+
+def _of_branch(found: Assignment) -> str:
+    first, second = found.branch.names
+    sign = "positive" if found.orientation > 0 else "negative"
+    return f"branch {found.branch.name}: byte 1 is {first}, where the determinant is {sign}; byte 2 is {second}"
+
+
+def _axis(mechanism: Mechanism, unknown: sp.Symbol) -> str:
+    return next((j.name for j in mechanism.joints if j.symbol == unknown), str(unknown))
+
+
+def tree_of(derived: Derived) -> tuple[Leaf, ...]:
+    """The tree of branches, in the order in which the steps choose; of many branches a list."""
+    assignments = [a for route in derived.inverse for a in route.assignments]
+    order = list(dict.fromkeys(a.branch.name for a in assignments))
+    known = {b.name: (k, b) for k, b in enumerate(derived.mechanism.branches)}
+    names = [n for n in order if n in known] + [n for n in known if n not in order]
+    if len(names) <= _DEEPEST:
+        return tuple(_below(names, known))
+    return tuple(leaf for name in names for leaf in _below([name], known))
+
+
+def _below(names: Sequence[str], known: Mapping[str, tuple[int, Branch]]) -> Iterator[Leaf]:
+    if not names:
+        return
+    place, branch = known[names[0]]
+    for byte in (0, 1):
+        text = f"byte {place} = {byte + 1}: {names[0]} {branch.names[byte]}"
+        meaning = branch.meanings[byte]
+        yield Leaf(text, meaning, tuple(_below(names[1:], known)))
+
+
+def product_of(factors: Sequence[Factor], lines: Lines) -> tuple[str, ...]:
+    """The product of a chain as the description has it, a line for every few factors."""
+    rows: list[Row] = [_factor(f, lines) for f in factors]
+    found: list[str] = []
+    line: Row = ()
+    for row in rows:
+        piece = (operator("⋅"), *row) if line or found else row
+        if line and sum(t.width for t in (*line, *piece)) > 90:
+            found.append(element(line))
+            line = ()
+        line = (*line, *piece)
+    return (*found, element(line)) if line else tuple(found)
+
+
+def _factor(factor: Factor, lines: Lines) -> Row:
+    head = word("F" if factor.motion is Motion.FLIP else LETTERS[factor.motion])
+    named = f"<msub>{head.text}<mi>{'xyz'[factor.axis]}</mi></msub>"
+    inside = lines.math.row(factor.amount)
+    opening, closing = (f'<mo stretchy="false">{sign}</mo>' for sign in "()")
+    text = named + opening + "".join(t.text for t in inside) + closing
+    return (type(head)(text, 4 + sum(t.width for t in inside)),)

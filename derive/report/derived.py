@@ -1,0 +1,229 @@
+"""The derivation of a mechanism as it is told to a reader: its closure, its steps with the equations that they use,
+the branches that they make, and the margins.
+
+It is made again from the description, by the functions that the build calls in the same order: they keep what they have
+solved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.algebra.normal_form import cancelled, reduce_units
+from derive.description.mechanism import Joint, Mechanism, Parameter
+from derive.equations.closure import fixed_lets
+from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
+from derive.ir.primitives import Root
+from derive.ir.program import Let, Statement, rewritten
+from derive.ir.symbols import ASSEMBLY_SIGN, cosine, sine
+from derive.kinematics.assembly import Assembled, assembled, with_derived_assembly
+from derive.kinematics.branch_assignment import Assignment, assign, with_branch_signs
+from derive.kinematics.build import prepared
+from derive.kinematics.derived_branches import with_derived_branches
+from derive.kinematics.differential import Factor, factor_of
+from derive.kinematics.forward import pose_at_axes, solve_for_position
+from derive.kinematics.inverse import Inverse, solve_pose
+from derive.kinematics.scan.choice import with_search
+from derive.kinematics.scan.derivations import solve_both
+from derive.plate.passive import GUIDES, guides_determinant, solve_passive
+from derive.report.used import equations_of
+from derive.solver.parallel_axes import Sum
+from derive.solver.positive_steps import known_signs
+from derive.solver.solve import Derivation, Step
+
+_WORTH_A_NAME = 3
+"""Operations of a value that is put by its name into an equation of many operations."""
+MANY = 40
+"""An equation with more operations is written in the names that its step binds."""
+
+
+@dataclass(frozen=True)
+class ToldStep:
+    """One step: unknowns ← rule ← equations, and what it binds."""
+
+    number: int
+    unknowns: tuple[sp.Symbol, ...]
+    rule: str
+    equations: tuple[Equation, ...]
+    """In the names of the derivation."""
+    statements: tuple[Statement, ...]
+    determinant: StepDeterminant | None
+    assignments: tuple[Assignment, ...]
+    """The branches that its sign makes."""
+    conditioning: Conditioning | None
+    conditions: tuple[sp.Expr, ...]
+    """What Initialize refuses where it is zero."""
+    total: Sum | None = None
+    """The sum of angles that it takes apart."""
+    only: int = 0
+    """The sign of the determinant, where this machine has one of the two solutions alone."""
+
+
+@dataclass(frozen=True)
+class Route:
+    """One solved problem: its closure and its steps."""
+
+    title: str
+    equations: tuple[Equation, ...]
+    """The closure, in the names of the derivation."""
+    known: tuple[Statement, ...]
+    """What is bound before the first step."""
+    steps: tuple[ToldStep, ...]
+    frozen: tuple[Joint, ...] = ()
+    residuals: tuple[sp.Expr, ...] = ()
+    """What is left of a trial: zero at a root."""
+    assignments: tuple[Assignment, ...] = ()
+
+
+@dataclass(frozen=True)
+class Derived:
+    """The derivation of a mechanism."""
+
+    mechanism: Mechanism
+    """As it is derived: its numbers named, its gears at the joints."""
+    inverse: tuple[Route, ...]
+    forward: Route | None
+    """Of a closed loop whose forward kinematics has a closed form."""
+    factors: tuple[Factor, ...]
+    """What the margins are."""
+    searched: Joint | None = None
+    where: Parameter | None = None
+    """The parameter without which nothing is searched."""
+
+
+def derived_of(mechanism: Mechanism) -> Derived:
+    """The derivation of a mechanism that the build derives. Raises what the build raises."""
+    mechanism = with_derived_assembly(with_search(prepared(mechanism)))
+    if mechanism.search is not None:
+        return _searched(mechanism)
+    inverse, closed = solve_pose(mechanism), assembled(mechanism, pose_at_axes(mechanism))
+    whole = with_derived_branches(mechanism, inverse, closed.forward)
+    assignments = assign(whole, inverse, closed.forward)
+    routes = [_route("Inverse kinematics", mechanism, inverse, assignments)]
+    if mechanism.passive:
+        derivation = solve_passive(mechanism)
+        steps = _Told(derivation, {}).steps()
+        title = f"What the task does not command: {', '.join(mechanism.passive)}"
+        routes.insert(0, Route(title, (), (), steps))
+    return Derived(whole, tuple(routes), _forward(mechanism), tuple(_factors(whole, inverse, assignments, closed)))
+
+
+def _searched(mechanism: Mechanism) -> Derived:
+    both = solve_both(mechanism)
+    search = mechanism.search
+    assert search is not None
+    routes = [_route(f"A trial: {search.joint.name} is known", mechanism, both.trial, both.trial_branches)]
+    if both.closed is not None and search.where is not None:
+        title = f"Where {search.where.name} is 0: in closed form"
+        routes.insert(0, _route(title, mechanism, both.closed, both.closed_branches))
+    return Derived(mechanism, tuple(routes), None, (), search.joint, search.where)
+
+
+def _route(title: str, mechanism: Mechanism, inverse: Inverse, assignments: Sequence[Assignment]) -> Route:
+    derivation = inverse.derivation
+    signs = with_branch_signs((), assignments)
+    told = _Told(derivation, {a.determinant.sigma: a.orientation * a.factor for a in assignments}, assignments)
+    left = tuple(told.signed(r) for r in derivation.residuals)
+    known = (*inverse.naming, *signs)
+    equations = tuple(_recorded(e, derivation) for e in inverse.closure.equations)
+    return Route(title, equations, known, told.steps(), inverse.frozen, left, tuple(assignments))
+
+
+def _recorded(equation: Equation, derivation: Derivation) -> Equation:
+    """An equation in the names under which its values are recorded: values that are equal have one name."""
+    names = {s.value: s.name for s in reversed(derivation.plain) if isinstance(s, Let)}
+    table: dict[sp.Symbol, sp.Symbol] = {}
+    for let in equation.lets:
+        table[let.name] = names.get(let.value.xreplace(table), let.name)
+    return Equation(equation.label, equation.expression.xreplace(table))
+
+
+def _forward(mechanism: Mechanism) -> Route | None:
+    if mechanism.chain is not None or mechanism.is_platform:
+        return None
+    derivation = solve_for_position(mechanism)
+    sides = {s.sigma: ASSEMBLY_SIGN for s in derivation.determinants}
+    return Route("Forward kinematics", (), fixed_lets(mechanism), _Told(derivation, sides).steps())
+
+
+class _Told:
+    """The steps of a derivation, in the signs of branches."""
+
+    def __init__(
+        self, derivation: Derivation, signs: Mapping[sp.Symbol, sp.Expr], assignments: Sequence[Assignment] = ()
+    ) -> None:
+        made = [s.recorded.determinant for s in derivation.steps if s.recorded.determinant is not None]
+        single = known_signs(derivation.steps[-1].problem, made) if made else {}
+        self._derivation, self._assignments = derivation, assignments
+        self._known = {step.step: sign for step, sign in single.items()}
+        self._signs = {**signs, **{step.sigma: sp.Integer(sign) for step, sign in single.items()}}
+
+    def signed(self, value: sp.Expr) -> sp.Expr:
+        """An expression in the signs of branches."""
+        return value.xreplace(self._signs)
+
+    def steps(self) -> tuple[ToldStep, ...]:
+        """All of them, in their order."""
+        return tuple(self._step(number, step) for number, step in enumerate(self._derivation.steps, 1))
+
+    def _step(self, number: int, step: Step) -> ToldStep:
+        binding, names = step.recorded, dict(step.names)
+        own = tuple(rewritten(s, lambda e: e.xreplace(self._signs)) for s in self._derivation.plain[slice(*step.span)])
+        equations = [Equation(e.label, self.signed(e.expression.xreplace(names))) for e in equations_of(step)]
+        made, partial = binding.determinant, binding.conditioning
+        is_sum = binding.rule == "sum"
+        return ToldStep(
+            number=number,
+            unknowns=binding.unknowns,
+            rule=binding.rule,
+            equations=tuple(Equation(e.label, _in_names(e.expression, own, step.problem, binding)) for e in equations),
+            statements=own,
+            determinant=None if made is None else replace(made, value=self.signed(made.value)),
+            assignments=tuple(a for a in self._assignments if made is not None and a.determinant.step == made.step),
+            conditioning=None if partial is None else replace(partial, value=self.signed(partial.value)),
+            conditions=binding.conditions,
+            total=next((t for t in self._derivation.sums if is_sum and t.replaced in binding.unknowns), None),
+            only=0 if made is None else self._known.get(made.step, 0),
+        )
+
+
+def _in_names(value: sp.Expr, statements: Sequence[Statement], problem: Problem, binding: Binding) -> sp.Expr:
+    """An equation of many operations, collected by its unknowns, in the names that the step has for coefficients."""
+    if sp.count_ops(value) <= MANY:
+        return value
+    atoms = [a for u in binding.unknowns for a in (u, cosine(u), sine(u)) if value.has(a)]
+    lets = [s for s in statements if isinstance(s, Let) and s.value.free_symbols]
+    parts = sp.collect(sp.expand(value), atoms, evaluate=False)
+    terms = [(atom, _named(sp.together(c), lets, problem)) for atom, c in parts.items()]
+    return sp.Add(*(c if atom == 1 else sp.Mul(c, atom, evaluate=False) for atom, c in terms))
+
+
+def _named(value: sp.Expr, lets: Sequence[Let], problem: Problem) -> sp.Expr:
+    """A coefficient as a multiple of a value that has a name, or as the square of a root that has one, and the rest."""
+    best = value
+    for let in lets:
+        if isinstance(let.value, Root):
+            values = {other.name: other.value for other in lets if other.name in let.value.free_symbols}
+            square = let.value.args[0].xreplace(values)
+            rest = reduce_units(sp.expand(value - square), problem.units, problem.signs)
+            if sp.count_ops(rest) < sp.count_ops(best) / 2:
+                best = let.name**2 + rest
+        elif sp.count_ops(let.value) >= _WORTH_A_NAME and let.value.is_rational_function():
+            ratio = cancelled(value / let.value)
+            if sp.count_ops(ratio) < sp.count_ops(best) / 3 and not ratio.is_Add:
+                best = ratio * let.name
+    return best
+
+
+def _factors(
+    mechanism: Mechanism, inverse: Inverse, assignments: Sequence[Assignment], closed: Assembled
+) -> Iterator[Factor]:
+    told: list[Assignment | Conditioning] = [*assignments, *inverse.derivation.conditionings]
+    yield from (factor_of(mechanism, found) for found in told)
+    if mechanism.passive:
+        yield Factor(GUIDES, guides_determinant(mechanism))
+    if closed.margin is not None:
+        yield Factor(closed.name, closed.margin)

@@ -1,0 +1,233 @@
+"""Poses in which one margin of the nominal machine vanishes: found by Newton's method from regular poses.
+
+A margin is a function of the axis values; of a loop that turns its platform, whose forward kinematics iterates and ends
+where its margin does, it is taken at the pose instead, and the inverse has the axis values. A step goes along the
+gradient, as far as the margin would be zero there if it were linear; it is halved until the machine has that pose, and
+its margin is smaller. So it also ends on the boundary of what a loop can reach, where the margin falls as a root.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.description.mechanism import Mechanism
+from derive.equations.axes import axis_lets
+from derive.ir.interpret import evaluate, run
+from derive.ir.passes import normalise
+from derive.ir.program import Let, Output, Program, Require, Statement, Status
+from derive.ir.reason import Why
+from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, cosine, sine
+from derive.kinematics.reference_cases import Reals
+from derive.kinematics.sampling import sample_axes, size_of
+from derive.plate.legs import angles, by_angles
+from derive.plate.passive import commanded, spelled
+from derive.plate.plate import home_flag, platform_checks
+from derive.report.derived import Derived
+from derive.report.reference_calls import FRAME, Machine
+
+SINGULAR = 1e-6
+"""A margin of at most this is zero to the eye."""
+_PASSES, _HALVES, _STEP = 80, 24, 1e-6
+_SAMPLES, _STARTS, _ENOUGH = 600, 60, 3
+_DEGREES = 90.0
+"""A turn by so much counts as a motion by the length of the machine."""
+_TURNS = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0)
+_STUCK = 0.95
+"""A step after which more than this share of the margin is left leads nowhere."""
+_BESIDE = 1e-6
+_CLEAR = 0.05
+"""Another margin that is larger than this is no singularity of the same pose."""
+
+Array = NDArray[np.float64]
+Measure = Callable[[Array], Array]
+"""From rows of coordinates to the margins, a column for every row; NaN where the machine has no pose."""
+
+
+@dataclass(frozen=True)
+class SingularPose:
+    """A pose in which a margin vanishes."""
+
+    margin: str
+    axes: Reals
+    value: float
+    """The margin there."""
+    beside: Reals
+    """Axis values so near that no eye tells them apart, for what has no direction in the pose itself."""
+    frame: Reals | None = None
+    """The frame, of a loop that turns its platform."""
+
+
+def singular_pose(machine: Machine, derived: Derived, name: str, start: Reals) -> SingularPose | None:
+    """A pose in which the margin of that name vanishes, as near to the start as one is found; None where none is.
+
+    start: axis values, from which the search begins.
+    """
+    if machine.kinematics.mechanism.is_platform:
+        return _of_platform(machine, derived, name)
+    place = [m.name for m in machine.kinematics.margins].index(name)
+
+    def measure(rows: Array) -> Array:
+        return _measured(machine, rows)
+
+    found = _clearest(measure, place, _starts(machine, np.array(start), measure, place), _scales(machine))
+    if found is None:
+        return None
+    at, begun = found
+    beside = at + _BESIDE * (begun - at)
+    return SingularPose(name, tuple(at.tolist()), float(measure(at[None])[place, 0]), tuple(beside.tolist()))
+
+
+def _clearest(measure: Measure, place: int, starts: Iterable[Array], scales: Array) -> tuple[Array, Array] | None:
+    """Of a few poses in which the margin vanishes one in which no other does, if there is one, and its start."""
+    found: list[tuple[float, Array, Array]] = []
+    for start in starts:
+        at = _descended(measure, place, start, scales)
+        if at is None:
+            continue
+        others = np.delete(measure(at[None])[:, 0], place)
+        found.append((min(float(np.min(others)) if others.size else 1.0, _CLEAR), at, start))
+        if found[-1][0] >= _CLEAR or len(found) >= _ENOUGH:
+            break
+    return max(found, key=lambda one: one[0])[1:] if found else None
+
+
+def _smallest_first(rows: Array, measured: Array, place: int) -> Iterator[Array]:
+    """The rows where the margin is smallest beside the others."""
+    own, others = measured[place], np.delete(measured, place, axis=0)
+    share = own / np.clip(np.min(others, axis=0, initial=1.0), SINGULAR, 1.0)
+    order = np.argsort(np.where(np.isfinite(share), share, np.inf), kind="stable")
+    yield from (rows[k] for k in order[:_STARTS] if np.isfinite(share[k]))
+
+
+def _measured(machine: Machine, rows: Array) -> Array:
+    """The sizes of all margins at axis values; of one that has a unit, its length in lengths of the machine."""
+    kinematics = machine.kinematics
+    size = size_of(kinematics.mechanism, machine.values)
+    axes = {j.axis.name: rows[:, k] for k, j in enumerate(kinematics.mechanism.joints)}
+    found, status = run(kinematics.singularity, {**machine.values, **axes})
+    told = [np.broadcast_to(found[m.factor], (len(rows),)) / (size if m.length else 1.0) for m in kinematics.margins]
+    good = np.asarray(np.broadcast_to(status == Status.OK, (len(rows),)), dtype=bool)
+    return np.where(good, np.abs(np.stack(told)), np.nan)
+
+
+def _scales(machine: Machine) -> Array:
+    """How far each axis moves in a step of one."""
+    mechanism = machine.kinematics.mechanism
+    size = size_of(mechanism, machine.values)
+    return np.array([_DEGREES if j.in_degrees else size for j in mechanism.joints])
+
+
+def _starts(machine: Machine, start: Array, measure: Measure, place: int) -> Iterator[Array]:
+    """Where the search begins: the start, near it, and sampled poses, those with small margins first."""
+    mechanism = machine.kinematics.mechanism
+    turned = np.array([_TURNS[k % 6] if j.is_angle else 0.0 for k, j in enumerate(mechanism.joints)])
+    near = [start + part * turned for part in (0.4, 1.0, -0.4, 0.0)]
+    good = measure(np.stack(near))[place]
+    yield from (row for row, value in zip(near, good, strict=True) if np.isfinite(value) and value > SINGULAR)
+    drawn = sample_axes(mechanism, dict(machine.values), _SAMPLES, 7)
+    rows = np.stack([drawn[j.axis.name] for j in mechanism.joints], axis=1)
+    yield from _smallest_first(rows, measure(rows), place)
+
+
+def _descended(measure: Measure, place: int, start: Array, scales: Array) -> Array | None:
+    """Where the margin vanishes, from a start; None where it does not."""
+    at = start.copy()
+    value = float(measure(at[None])[place, 0])
+    for _ in range(_PASSES):
+        if value <= SINGULAR * 1e-3:
+            break
+        gradient = _gradient(measure, place, at, scales)
+        square = float(gradient @ gradient)
+        if not square > 0.0:
+            break
+        parts = 0.5 ** np.arange(_HALVES)
+        trials = at - np.outer(parts, scales * gradient * value / square)
+        found = measure(trials)[place]
+        better = np.flatnonzero(found < value)
+        if not better.size:
+            break
+        first, before = int(better[np.argmin(found[better])]), value
+        at, value = trials[first], float(found[first])
+        if value > _STUCK * before:
+            break
+    return at if value <= SINGULAR else None
+
+
+def _gradient(measure: Measure, place: int, at: Array, scales: Array) -> Array:
+    """The slopes of the margin, on whichever side the machine has a pose."""
+    steps = np.diag(scales * _STEP)
+    values = measure(np.concatenate([at + steps, at - steps, at[None]]))[place]
+    ahead, behind, here = values[: len(at)], values[len(at) : -1], values[-1]
+    both = (ahead - behind) / 2
+    one = np.where(np.isfinite(ahead), ahead - here, here - behind)
+    slopes = np.where(np.isfinite(both), both, one) / _STEP
+    return np.asarray(np.where(np.isfinite(slopes), slopes, 0.0))
+
+
+def _of_platform(machine: Machine, derived: Derived, name: str) -> SingularPose | None:
+    """The same by the pose of the platform, in the branches of the home pose."""
+    mechanism = derived.mechanism
+    program, width = _program_at_pose(derived), len(mechanism.motion.position)
+    home = np.array([float(evaluate(v, machine.values)) for v in mechanism.home])
+    size = size_of(mechanism, machine.values)
+    scales = np.array([size if k < width else 1.0 for k in range(len(home))])
+    kept = [m.name for m in machine.kinematics.margins]
+    place = kept.index(name)
+    ways = {b.name: machine.given.get(home_flag(b), 0.0) for b in mechanism.branches}
+    signs = {f"sigma_{name}": np.asarray(1.0 - 2.0 * way) for name, way in ways.items()}
+
+    def solved(rows: Array) -> tuple[Array, dict[str, Array]]:
+        values = {**machine.values, **signs, **_named_frames(mechanism, rows)}
+        values |= {s.name: np.asarray(0.0) for s in program.inputs if s.name not in values}
+        found, status = run(program, values)
+        every = {n: np.broadcast_to(v, (len(rows),)) for n, v in found.items()}
+        good = np.asarray(np.broadcast_to(status == Status.OK, (len(rows),)), dtype=bool)
+        return np.where(good, np.abs(np.stack([every[one] for one in kept])), np.nan), every
+
+    def measure(rows: Array) -> Array:
+        return solved(rows)[0]
+
+    spread = scales * np.random.default_rng(3).uniform(-1.0, 1.0, (_SAMPLES, len(home)))
+    rows = np.concatenate([home + 0.05 * spread[:1], home + 0.45 * spread])
+    at, _ = _clearest(measure, place, _smallest_first(rows, measure(rows), place), scales) or (None, None)
+    if at is None:
+        return None
+    measured, found = solved(at[None])
+    axes = tuple(float(found[j.axis.name][0]) for j in mechanism.joints)
+    named = _named_frames(mechanism, at[None])
+    frame = tuple(float(named[n][0]) for n in FRAME)
+    return SingularPose(name, axes, float(measured[place, 0]), axes, frame)
+
+
+def _program_at_pose(derived: Derived) -> Program:
+    """The margins of a platform whose pose is known, by the inverse and the lines of the legs, and its axis values."""
+    mechanism, route = derived.mechanism, derived.inverse[-1]
+    statements = (*route.known, *(s for step in route.steps for s in step.statements))
+    lets = [let for factor in derived.factors for let in factor.lets]
+    own = {s.name for s in statements if isinstance(s, Let)}
+    axes = [let for j in mechanism.joints for let in axis_lets(j) if let.name not in own]
+    body = spelled((*statements, *platform_checks(mechanism, statements), *lets, *axes), commanded(mechanism))
+    kept = [s for s in body if not _is_far_from_type_2(s)]
+    margins_told = [Output(f.name, f.lets[-1].name) for f in derived.factors]
+    return normalise("margins", kept, [*margins_told, *(Output(j.axis.name, j.axis) for j in mechanism.joints)])
+
+
+def _is_far_from_type_2(statement: Statement) -> bool:
+    """Whether it refuses a pose that is close to a type 2 singularity, which is what is looked for."""
+    return isinstance(statement, Require) and statement.reason is not None and statement.reason.why is Why.NEAR_TYPE_2
+
+
+def _named_frames(mechanism: Mechanism, rows: Array) -> dict[str, Array]:
+    """The frames at coordinates of the platform (positions, then heading, or roll, pitch and yaw), by names."""
+    width, count = len(mechanism.motion.position), len(rows)
+    values = {c: np.zeros(count) for c in COORDINATE_NAMES}
+    values |= {c: rows[:, k] for k, c in enumerate(mechanism.motion.position)}
+    turns = dict(zip(angles(mechanism), rows[:, width:].T, strict=True))
+    named = {f"{w}_{a}": f(v) for a, v in turns.items() for w, f in (("cos", np.cos), ("sin", np.sin))}
+    for name, entry in zip(ROTATION_ENTRIES, by_angles(angles(mechanism)), strict=True):
+        values[name.name] = np.asarray(np.broadcast_to(evaluate(entry, named), (count,)))
+    return values | {cosine(HEADING).name: values["r11"], sine(HEADING).name: values["r21"]}

@@ -1,0 +1,59 @@
+"""`softkin explain --html` and `report`: pages for machines of the user's own, and for a catalogue."""
+
+from __future__ import annotations
+
+import re
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from derive.command.new import description
+from tests.command.files import RAIL, SCARA, Folder
+
+
+def test_the_page_of_ones_own_machine(folder: Folder) -> None:
+    """It is written and named; it holds what was measured, and the names of the machine's package."""
+    path = folder.write("scara.py", SCARA)
+    said = folder.run("explain", "--html", path)
+    assert said.status == 0, said.err
+    target = folder.path / "build/report/MyScara.html"
+    assert "build/report/MyScara.html" in said.out and target.is_file()
+    text = target.read_text(encoding="utf-8")
+    ET.fromstring(text)
+    assert "<h1>MyScara</h1>" in text and ": A2 ← trigonometric ← x² + y²" in text
+    assert re.search(r"largest residual 1e-\d\d", text)
+    assert text.count("<figure") == 4  # the drawing, the elbow, two maps
+    assert len(text.encode()) < 400_000
+
+
+def test_a_folder_of_its_own(folder: Folder) -> None:
+    """Several files, one of them wrong: the others have their pages; no page says that it is singular."""
+    folder.write("machines/rail.py", RAIL)
+    folder.write("machines/wrong.py", RAIL.replace("Ty(A2)", "Tz(A2)"))
+    said = folder.run("explain", "--html", "machines", "--out", "pages")
+    assert said.status == 2 and "wrong.py" in said.err
+    assert folder.names("pages") == {"Rail.html"}
+    text = (folder.path / "pages/Rail.html").read_text(encoding="utf-8")
+    assert "<p>None.</p>" in text and "every point is reached" in text.lower()
+
+
+def test_the_pages_of_a_catalogue(folder: Folder) -> None:
+    """Every machine of a folder, with an index; a name that is none is refused."""
+    folder.write("machines/rail.py", RAIL)
+    folder.write("machines/scara.py", description("scara.py", "MyScara"))
+    said = folder.run("report", "--mechanisms", "machines", "--only", "Rail", "--out", "pages")
+    assert said.status == 0, said.err
+    assert folder.names("pages") == {"Rail.html", "index.html"}
+    assert 'href="Rail.html"' in (folder.path / "pages/index.html").read_text(encoding="utf-8")
+    assert "1 page, listed in pages/index.html" in said.out
+    wrong = folder.run("report", "--mechanisms", "machines", "--only", "Nobody")
+    assert wrong.status == 1 and "no mechanism is called 'Nobody'" in wrong.err
+
+
+@pytest.mark.parametrize("way", [("--html",), ()])
+def test_what_cannot_be_derived_is_told(folder: Folder, way: tuple[str, ...]) -> None:
+    """A page says no more than the text does: the same refusal."""
+    wrong = folder.write("wrong.py", RAIL.replace("Ty(A2)", "Tx(A2)"))
+    said = folder.run("explain", *way, wrong)
+    assert said.status == 2 and "wrong.py" in said.err
+    assert not (folder.path / "build").exists()
