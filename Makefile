@@ -14,7 +14,7 @@ READY := $(ENVIRONMENT)/ready
 
 BENCH := .venv-bench
 
-.PHONY: generate check test quick bench javascript
+.PHONY: generate check test quick bench javascript view
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -22,6 +22,11 @@ generate: $(READY)
 # The modules of the catalogue, into build/javascript; what is derived already is taken from generated.cache/.
 javascript: $(READY)
 	$(RUN) -m derive generate --language javascript --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
+
+# One page with all machines, build/softkin.html, which opens in a browser from disk; MECHANISM=my_machine.py: that machine alone.
+view: $(READY)
+	$(RUN) -m pip install --quiet --editable '.[view]'
+	$(RUN) -m derive view $(MECHANISM) --out $(OUT)
 
 check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)

@@ -4,6 +4,7 @@ softkin new my_machine.py                  write a commented description to star
 softkin explain my_machine.py              print each step of its derivation, and its branches to be named
 softkin check my_machine.py                derive and measure it, and write nothing
 softkin derive my_machine.py --out build   derive it: Python package, Structured Text, PLCopenXML, picture
+softkin view my_machine.py                 write a page that shows it in a browser
 
 Status 0 is success; 2 a machine, or a command, that cannot be right; 1 a catalogue that is not as it should be.
 """
@@ -15,7 +16,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from derive.command import catalogue, explain, new, own
+from derive.command import catalogue, explain, new, own, view
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
 from derive.importing import line as importing
@@ -86,6 +87,7 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     explained = commands.add_parser("explain", help=text, description=text)
     explained.add_argument("files", nargs="+", type=Path, metavar="FILE", help="a description, or a folder of them")
     explained.set_defaults(run=explain.explain)
+    _view_command(commands)
     text = "write a commented description to start from"
     fresh = commands.add_parser("new", help=text, description=text)
     fresh.add_argument("file", type=Path, nargs="?", default=Path("my_machine.py"), metavar="FILE")
@@ -94,6 +96,26 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     imported = commands.add_parser("import", help=text, description=text)
     importing.add_arguments(imported)
     imported.set_defaults(run=importing.run)
+
+
+def _view_command(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    text = "write a page that shows machines in a browser, from disk; without a file: the whole catalogue in one page"
+    shown = commands.add_parser("view", help=text, description=text)
+    shown.add_argument("files", nargs="*", type=Path, metavar="FILE", help="a description, or a folder of them")
+    shown.add_argument(
+        "--out", type=Path, default=Path("build"), metavar="DIR", help="the folder of the page (default: build)"
+    )
+    shown.add_argument(
+        "--model",
+        action="append",
+        default=[],
+        metavar="BODY=FILE.glb[*SCALE]",
+        help="a mesh (binary glTF) in the place of a body: base, the axes that move it (A1), plate, tool; of one machine",
+    )
+    shown.set_defaults(
+        run=view.view, mechanisms=MECHANISMS, only=[], profile=None, fresh=False, language=["javascript"],
+        output=catalogue.OUTPUT,
+    )  # fmt: skip
 
 
 def _languages(command: argparse.ArgumentParser) -> None:
