@@ -54,8 +54,10 @@ def _broken(line: str) -> Iterator[str]:
 
 def _place(text: str, width: int) -> int | None:
     """The best place to break within a width: the least nested one, among equals the last."""
-    fitting = [(depth, -at) for at, depth in _places(text) if width // 4 < at <= width]
-    return -min(fitting)[1] if fitting else next((at for at, _ in _places(text) if at > width // 4), None)
+    places = [(depth, -at) for at, depth in _places(text)]
+    fitting = [place for place in places if -place[1] <= width]
+    far = [place for place in fitting if -place[1] > width // 4]
+    return -min(far or fitting or places)[1] if places else None
 
 
 def _places(text: str) -> Iterator[tuple[int, float]]:

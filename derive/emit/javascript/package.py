@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping, Sequence
 from functools import cache
+from textwrap import wrap
 from typing import Any
 
 from jinja2 import Environment
@@ -44,13 +44,18 @@ from derive.report.reasons import reasons_of, reasons_of_rotation
 
 name = "javascript"
 _VERSION = "0.1.0"
-_RUNTIME = ("configuration.js", "input.js", "limits.js", "numbers.js", "package.json", "refusal.js", "roots.js",
-            "rotation.js", "scene.js", "softkin.js")  # fmt: skip
-"""The files that no mechanism changes."""
+_RUNTIME = tuple(
+    f"softkin/{name}.js"
+    for name in ("configuration", "input", "limits", "numbers", "refusal", "roots", "rotation", "scene", "softkin")
+)
+"""The files that no mechanism changes; a machine may have the name of one of them."""
+_AROUND = ("index.js", "package.json")
 _OF_THE_SEARCH = (
     *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
     *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
 )
+_TEXT = 90
+"""The most columns of a text; a longer one is a sum of several."""
 _MEANINGS = {
     Status.OK: "no error",
     Status.NOT_INITIALIZED: "a parameter is not allowed",
@@ -76,7 +81,7 @@ def files(parts: Sequence[Part]) -> dict[str, str]:
     """All files: path → text."""
     index = sorted((part["index"] for part in parts), key=lambda entry: str(entry["module"]))
     known = {"index": index}
-    found = {path: _templates().get_template(f"{path}.j2").render(known) for path in (*_RUNTIME, "index.js")}
+    found = {path: _templates().get_template(f"{path}.j2").render(known) for path in (*_RUNTIME, *_AROUND)}
     for one in parts:
         found |= one["files"]
     return found
@@ -85,7 +90,8 @@ def files(parts: Sequence[Part]) -> dict[str, str]:
 def module_name(mechanism: str) -> str:
     """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`, as in the Python package."""
     short = mechanism.removeprefix("Kin_").removeprefix("Softkin_")
-    return (short if short.isidentifier() else mechanism).lower()
+    module = (short if short.isidentifier() else mechanism).lower()
+    return f"{module}_machine" if f"{module}.js" in _AROUND else module
 
 
 @cache
@@ -225,4 +231,6 @@ def _flat(value: Any) -> str:
         return list_of(map(_flat, value))
     if isinstance(value, float):
         return PRINTER.number(value)
-    return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, str):
+        return " + ".join(map(text, wrap(value, _TEXT, drop_whitespace=False))) or text(value)
+    return text(value)

@@ -81,7 +81,8 @@ class JavaScript(ExpressionPrinter):
         return symbol.name if symbol == DEGREE else spelled(symbol.name)
 
     def number(self, value: float) -> str:
-        return repr(value).removesuffix(".0")
+        mantissa, letter, exponent = repr(value).removesuffix(".0").partition("e")
+        return f"{mantissa}e{int(exponent)}" if letter else mantissa
 
     def call(self, key: str, arguments: Sequence[str]) -> str:
         if key == "select":

@@ -1,0 +1,1 @@
+"""JavaScript, executed under Node.js: what it answers is what the Python package answers."""

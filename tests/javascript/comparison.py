@@ -1,0 +1,201 @@
+"""What JavaScript answers, held against the Python package that is asked the same.
+
+Statuses, bytes, slots, reasons, units and turns are equal. Reals are equal within 1e-12 of their scale over the
+smallest margin of the pose. Where that margin is below `SINGULAR`, axes are not known to that: both bring the machine
+to one frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from math import isfinite
+from typing import Any
+
+import softkin
+
+from tests.corpus.comparison import ROUNDED, SINGULAR
+from tests.corpus.robots import Robot
+
+SAME = 1e-12
+FRAME = 1e-11
+"""Of two solutions of a singular pose, as a part of its size."""
+Answer = dict[str, Any]
+Call = list[Any]
+
+
+def calls_of(question: Answer) -> list[Call]:
+    """The calls that a question of the corpus asks for; none where it asks for what JavaScript has not."""
+    if question["call"] == "forward":
+        start = [_frame(question["start"])] if "start" in question else []
+        axes = question["axes"]
+        return [["forward", axes, *start], ["singularity", axes], ["jacobian", axes]]
+    if question["call"] == "inverse":
+        frame, reference = _frame(question["frame"]), question["reference"]
+        named = [["inverse", frame, given, reference] for given in question["configurations"]]
+        return [["inverseAll", frame, reference], *named]
+    return []
+
+
+def _frame(frame: Sequence[Any]) -> Answer:
+    return {"position": frame[0], "rotation": frame[1]}
+
+
+@dataclass
+class Comparison:
+    """The differences of one machine."""
+
+    robot: Robot
+    found: list[str] = field(default_factory=list)
+    regular: int = 0
+    """The solutions that were compared axis by axis."""
+    refused: int = 0
+
+    def compare(self, question: Answer, answers: Iterator[Answer]) -> None:
+        """Compare the answers to the calls of a question."""
+        before = len(self.found)
+        if question["call"] == "forward":
+            self._forward(question, next(answers))
+            self._singularity(question["axes"], next(answers))
+            self._jacobian(question, next(answers))
+        elif question["call"] == "inverse":
+            self._slots(question, next(answers))
+            for given in question["configurations"]:
+                self._named(question, given, next(answers))
+        self.found[before:] = [f"{found}; asked of {self.robot.made!r}: {question}" for found in self.found[before:]]
+
+    def _forward(self, question: Answer, answer: Answer) -> None:
+        axes = question["axes"]
+        start = {"start": question["start"]} if "start" in question else {}
+        expected = _asked(lambda: self.robot.made.forward(axes, **start))
+        if not self._same_status("forward", expected, answer):
+            return
+        frame, configuration = expected
+        margin = self._margin(axes)
+        size = self.robot.reach + max(map(abs, frame.position))
+        self._reals("position", frame.position, answer["frame"]["position"], size, margin)
+        for row, other in zip(frame.rotation, answer["frame"]["rotation"], strict=True):
+            self._reals("rotation", row, other, 1.0, margin)
+        if margin > ROUNDED:
+            self._equal("configuration", list(configuration), answer["configuration"])
+
+    def _singularity(self, axes: Any, answer: Answer) -> None:
+        expected = _asked(lambda: self.robot.made.singularity(axes))
+        if isinstance(expected, softkin.KinematicsError):
+            self._same_status("singularity", expected, answer)
+            return
+        known = list(expected.margins.values())
+        is_possible = all(map(isfinite, known)) if known else not expected.is_singular
+        self._equal("singularity: status is 0", is_possible, answer["status"] == 0)
+        if abs(self._margin(axes) - 1e-3) > ROUNDED:
+            self._equal("is singular", expected.is_singular, answer["isSingular"])
+        if is_possible and answer["status"] == 0:
+            self._equal("margins", list(expected.margins), list(answer["margins"]))
+            values = list(answer["margins"].values())
+            self._reals("margins", list(expected.margins.values()), values, 1.0, self._margin(axes))
+
+    def _jacobian(self, question: Answer, answer: Answer) -> None:
+        """A singular pose is found with an error over the margin, and the Jacobian divides by that again."""
+        axes = question["axes"]
+        expected = _asked(lambda: self.robot.made.jacobian(axes))
+        is_refused = isinstance(expected, softkin.KinematicsError)
+        if not is_refused and answer["status"] == 4 and self._margin(axes) < ROUNDED:
+            return  # rounding decides whether a pose next to the singularity is one
+        if not self._same_status("jacobian", expected, answer):
+            return
+        size = max((1.0, self.robot.reach, *(abs(entry) for row in expected for entry in row)))
+        self._equal("rows", len(expected), len(answer["rows"]))
+        margin = self._margin(axes) ** (2 if question["kind"] == "singular" else 1)
+        for row, other in zip(expected, answer["rows"], strict=True):
+            self._reals("jacobian", row, other, size, margin)
+
+    def _slots(self, question: Answer, answer: Answer) -> None:
+        frame, reference = question["frame"], question["reference"]
+        expected = _asked(lambda: self.robot.made.inverse_all(frame, reference))
+        if not self._same_status("inverseAll", expected, answer):
+            return
+        self._equal("slots", len(expected), len(answer["slots"]))
+        for number, (one, other) in enumerate(zip(expected, answer["slots"], strict=True)):
+            place = f"slot {number}"
+            self._equal(f"{place}, status", int(one.status), other["status"])
+            self._equal(f"{place}, configuration", list(one.configuration), other["configuration"])
+            if one.axes is None:
+                self._reason(place, question, one.configuration, other)
+            elif other["status"] == 0:
+                self._axes(place, one.axes, other["axes"])
+                self._equal(f"{place}, others", len(one.others), len(other["others"]))
+                for further, found in zip(one.others, other["others"], strict=False):
+                    self._axes(f"{place}, further", further, found)
+
+    def _named(self, question: Answer, given: Any, answer: Answer) -> None:
+        place = f"configuration {given}"
+        expected = _asked(lambda: self.robot.made.inverse(question["frame"], given, question["reference"]))
+        if self._same_status(place, expected, answer):
+            self._axes(place, expected, answer["axes"])
+        elif isinstance(expected, softkin.KinematicsError):
+            self._reason(place, question, given, answer)
+
+    def _reason(self, place: str, question: Answer, configuration: Any, answer: Answer) -> None:
+        """The reason of a refusal; what has not the form of a call is told in other words."""
+        why = _asked(lambda: self.robot.made.diagnose(question["frame"], configuration, question["reference"]))
+        if isinstance(why, softkin.KinematicsError) or why.status is softkin.Status.OK or answer["status"] == 0:
+            return
+        self.refused += 1
+        reason, unit = why.reason, ""
+        for known in ("u", "deg"):
+            if reason.endswith(f" [{known}]"):
+                reason, unit = reason.removesuffix(f" [{known}]"), known
+        told = (int(why.status), reason, unit, why.turn)
+        self._equal(place, told, tuple(answer[key] for key in ("status", "reason", "unit", "turn")))
+        scale = {"u": self.robot.reach, "deg": 180.0}.get(unit, 1.0)
+        if not abs(why.missing - answer["missing"]) <= 10.0 * SAME * max(scale, abs(why.missing)):
+            self.found.append(f"{place}: missing {answer['missing']!r}, expected {why.missing!r}")
+
+    def _axes(self, place: str, expected: Sequence[float], found: Sequence[float]) -> None:
+        margin = self._margin(expected)
+        if margin < SINGULAR:
+            self._one_frame(place, expected, found)
+            return
+        self.regular += 1
+        for angle, a, b in zip(self.robot.is_angle, expected, found, strict=True):
+            self._reals(place, [a], [b], 180.0 if angle else self.robot.reach + abs(a), margin)
+
+    def _one_frame(self, place: str, expected: Sequence[float], found: Sequence[float]) -> None:
+        one, other = (_asked(lambda axes=axes: self.robot.made.forward(axes)) for axes in (expected, found))
+        if isinstance(one, softkin.KinematicsError) or isinstance(other, softkin.KinematicsError):
+            self._equal(place, type(one), type(other))
+            return
+        size = self.robot.reach + max(map(abs, one[0].position))
+        pairs = [(a / size, b / size) for a, b in zip(one[0].position, other[0].position, strict=True)]
+        rows = zip(one[0].rotation, other[0].rotation, strict=True)
+        pairs += [pair for a, b in rows for pair in zip(a, b, strict=True)]
+        if not all(abs(a - b) <= FRAME for a, b in pairs):
+            self.found.append(f"{place}: axes {found} lead elsewhere than {expected}")
+
+    def _margin(self, axes: Sequence[float]) -> float:
+        """The smallest margin in size; 1 where there is none, and where the axes allow no pose."""
+        margins = [abs(m) for m in self.robot.made.singularity(axes).margins.values()]
+        return min((1.0, *margins)) if all(map(isfinite, margins)) else 1.0
+
+    def _reals(self, place: str, expected: Sequence[float], found: Sequence[float], size: float, margin: float) -> None:
+        allowed = SAME * size / max(margin, 1e-300)
+        for a, b in zip(expected, found, strict=True):
+            if not abs(a - b) <= allowed:
+                self.found.append(f"{place}: {b!r}, expected {a!r}, margin {margin:.1e}")
+
+    def _same_status(self, place: str, expected: Any, answer: Answer) -> bool:
+        """Whether both succeed; a difference is noted."""
+        status = int(expected.status) if isinstance(expected, softkin.KinematicsError) else 0
+        self._equal(f"{place}: status", status, answer["status"])
+        return status == answer["status"] == 0
+
+    def _equal(self, place: str, expected: Any, found: Any) -> None:
+        if expected != found:
+            self.found.append(f"{place}: {found!r}, expected {expected!r}")
+
+
+def _asked(call: Callable[[], Any]) -> Any:
+    try:
+        return call()
+    except softkin.KinematicsError as error:
+        return error

@@ -1,0 +1,101 @@
+"""What is written: its width, its imports, the same bytes every time, and what it says of a machine."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+import softkin
+
+from derive.command.line import main
+from derive.emit.javascript import package
+from tests.corpus.dimensions import DIMENSIONS
+from tests.javascript.modules import files_of, module_of, part_of
+from tests.javascript.node import ask
+from tests.mechanisms import named
+
+
+@pytest.mark.parametrize("name", DIMENSIONS)
+def test_lines_and_imports(name: str) -> None:
+    """No line is wider than a page; what is imported is there, is used, and is a file beside the module."""
+    files = files_of(part_of(name))
+    for path, text in files.items():
+        wide = [line for line in text.splitlines() if len(line) > 120]
+        assert not wide, (path, wide[0])
+        assert "\t" not in text and text.endswith("\n") and " \n" not in text
+        for names, source in re.findall(r"^import \{([^}]*)\} from \"(.*)\";$", text, re.MULTILINE):
+            assert source.startswith("./") and f"{Path(path).parent / source}" in files
+            rest = text.replace(names, "", 1)
+            unused = [word for word in re.findall(r"\w+", names) if not re.search(rf"\b{word}\b", rest)]
+            assert not unused, (path, unused)
+        newer = (
+            r"\?\?=|\|\|=|&&=|this\.#|static \{|\.at\(|replaceAll|Object\.hasOwn\b|structuredClone|\.findLast|toSorted"
+        )
+        assert not re.search(newer, text), path  # than ES2020
+        assert not re.search(r"Math\.random|Date|require\(|eval\(|import\(\"[^.]|fetch", text), path
+
+
+@pytest.mark.parametrize("name", DIMENSIONS)
+def test_the_description_is_that_of_the_class(name: str) -> None:
+    """Axes, parameters, bytes, rows, margins, limits: what the class of the package says."""
+    told = ask(module_of(name), [])["description"]
+    made = softkin.catalogue()[name]
+    assert [(a["name"], a["kind"], a["unit"], a["meaning"], a["multiTurn"]) for a in told["axes"]] == [
+        (a.name, a.kind, a.unit, a.meaning, a.multi_turn) for a in made.AXES
+    ]
+    assert [_parameter(p) for p in told["parameters"]] == [
+        (p.name, p.kind, p.unit, p.meaning, p.low, p.high, p.low_is_open, p.default) for p in made.PARAMETERS
+    ]
+    assert [(b["name"], b["kind"], tuple(b["branches"]), b["default"]) for b in told["configuration"]] == [
+        (b.name, b.kind, b.branches, b.default) for b in made.CONFIGURATION
+    ]
+    assert [told[key] for key in ("jacobianRows", "defaultConfiguration", "periodAxes", "distanceAxes")] == [
+        list(v) for v in (made.JACOBIAN_ROWS, made.DEFAULT_CONFIGURATION, made.PERIOD_AXES, made.DISTANCE_AXES)
+    ]
+    assert [m["name"] for m in told["margins"]] == list(made.MARGINS)
+    assert {m["kind"] for m in told["margins"]} <= {"type 1", "type 2"}
+    assert [told[key] for key in ("freedom", "readsRotation", "role", "branchCount", "module")] == [
+        made.FREEDOM, made.READS_ROTATION, made.ROLE, made.BRANCHES, made.__module__.rpartition(".")[2]
+    ]  # fmt: skip
+    assert [one["key"] for one in told["limits"]] == list(made.LIMIT_KEYS)
+    nominal = {p["name"]: p["nominal"] for p in told["parameters"]}
+    assert ask(module_of(name), [{"parameters": nominal, "calls": []}])["answers"][0]["made"] == {"status": 0}
+
+
+def _parameter(p: dict[str, Any]) -> tuple[Any, ...]:
+    keys = ("name", "kind", "unit", "meaning", "low", "high", "lowIsOpen", "default")
+    return tuple(p[key] for key in keys)
+
+
+def test_a_machine_may_be_called_as_a_file() -> None:
+    """The files of the runtime have a folder of their own, and no machine takes the place of the list."""
+    assert package.module_name("Kin_Index") == "index_machine"
+    assert package.module_name("Kin_Numbers") == "numbers"
+    assert "softkin/numbers.js" in files_of(part_of("Kin_CAxis"))
+
+
+def test_the_command_writes_it_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`softkin derive … --language javascript` writes its folder, and leaves what stands beside it."""
+    description = Path(__file__).parents[2] / "derive" / "mechanisms" / "kin_caxis.py"
+    beside = tmp_path / "out" / "mine.txt"
+    beside.parent.mkdir()
+    beside.write_text("mine")
+    command = ["derive", str(description), "--out", str(beside.parent), "--language", "javascript"]
+    assert main(command) == 0
+    assert beside.read_text() == "mine"
+    assert {path.name for path in beside.parent.iterdir()} == {"mine.txt", "javascript"}
+    written = {str(p.relative_to(beside.parent / "javascript")) for p in (beside.parent / "javascript").rglob("*.*")}
+    assert written == set(files_of(part_of("Kin_CAxis")))
+    first = (beside.parent / "javascript" / "caxis.js").read_text()
+    assert main(command) == 0 and (beside.parent / "javascript" / "caxis.js").read_text() == first
+    assert package.files([part_of("Kin_CAxis")])["caxis.js"] == first
+    assert f"{named('Kin_CAxis').name}: " in first
+    capsys.readouterr()
+
+
+def test_the_catalogue_needs_another_folder(capsys: pytest.CaptureFixture[str]) -> None:
+    """The output folder of the project holds every language that is committed, and nothing else."""
+    assert main(["generate", "--language", "javascript"]) == 1
+    assert "--language needs --output" in capsys.readouterr().err
