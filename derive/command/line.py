@@ -110,7 +110,7 @@ def _view_command(commands: argparse._SubParsersAction[argparse.ArgumentParser])
         action="append",
         default=[],
         metavar="BODY=FILE.glb[*SCALE]",
-        help="a mesh (binary glTF) in the place of a body: base, the axes that move it (A1), plate, tool; of one machine",
+        help="a mesh (binary glTF) in the place of a body of one machine: base, the axes that move it, plate, tool",
     )
     shown.set_defaults(
         run=view.view, mechanisms=MECHANISMS, only=[], profile=None, fresh=False, language=["javascript"],

@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from derive.command import own
 from derive.command.catalogue import machine_files
 from derive.command.stages import Stages
-from derive.description.catalogue import MECHANISMS, catalogue, load
+from derive.description.catalogue import MECHANISMS, Entry, catalogue, load
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.emit.python.entries import class_name
 from derive.output import write_file
@@ -20,6 +21,8 @@ from derive.view.page import Content, Model, page
 
 _LANGUAGE = "javascript"
 _ROOT = MECHANISMS.parents[1]
+PACKAGES = _ROOT / ".view" if (_ROOT / "pyproject.toml").is_file() else Path.home() / ".cache" / "softkin" / "view"
+"""Where npm puts what the page is made of, once."""
 
 
 def view(options: argparse.Namespace) -> int:
@@ -27,10 +30,8 @@ def view(options: argparse.Namespace) -> int:
     if not options.files:
         if options.model:
             raise GenerationError("--model names a body of one machine: give its file")
-        entries = catalogue(options.mechanisms)
-        files = machine_files(options)
-        classes = {mechanism.name: _class(mechanism) for _, mechanism in entries}
-        _write(options.out / "softkin.html", Content("Softkin", _modules(files), "softkin", classes))
+        modules = _modules(machine_files(options))
+        _write(options.out / "softkin.html", content_of(catalogue(options.mechanisms), modules))
         return 0
     files_given = own.described(options.files)
     if options.model and len(files_given) > 1:
@@ -39,20 +40,25 @@ def view(options: argparse.Namespace) -> int:
     return own.each(files_given, lambda path, stages: _own(path, stages, options, models), keep_going=True)
 
 
+def content_of(entries: Sequence[Entry], modules: Mapping[str, bytes]) -> Content:
+    """What stands in the page of a catalogue."""
+    return Content("Softkin", modules, "softkin", {mechanism.name: _class(mechanism) for _, mechanism in entries})
+
+
 def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[Model, ...]) -> None:
     """The page of one machine of a user."""
     mechanism = load(path)
     package = own.package_of(path, None)
     built = derive_one(mechanism, None, stages.told)
     files = files_of([built], languages(None, package, [_LANGUAGE]))
-    content = Content(f"{mechanism.name}: Softkin", _modules(files), package, {mechanism.name: _class(mechanism)}, models)
+    classes = {mechanism.name: _class(mechanism)}
+    content = Content(f"{mechanism.name}: Softkin", _modules(files), package, classes, models)
     _write(options.out / f"{package}.html", content)
 
 
 def _write(path: Path, content: Content) -> None:
-    packages = (_ROOT if (_ROOT / "pyproject.toml").is_file() else Path.home() / ".cache" / "softkin") / ".view"
     try:
-        text = page(content, packages)
+        text = page(content, PACKAGES)
     except MissingTool as problem:
         raise GenerationError(str(problem)) from None
     write_file(path, text.encode())
@@ -64,9 +70,9 @@ def _class(mechanism: Mechanism) -> str:
 
 
 def _modules(files: dict[str, bytes]) -> dict[str, bytes]:
-    """The modules alone, by their names."""
-    found = {Path(path).name: data for path, data in sorted(files.items())}
-    return {name: data for name, data in found.items() if name.endswith(".js")}
+    """The modules alone, by their paths below the folder of the language."""
+    names = sorted(name for name in files if name.endswith(".js"))
+    return {str(Path(name).relative_to(_LANGUAGE)): files[name] for name in names}
 
 
 def _model(text: str) -> Model:

@@ -51,7 +51,7 @@ def installed(packages: Path, folder: Path) -> Path:
     command = [node(), _npm(), "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--loglevel=error"]
     done = run([str(part) for part in command], folder)
     if done.returncode:
-        raise MissingTool(f"npm could not bring what the viewer is made of, which it needs once:\n{done.stderr.strip()}")
+        raise MissingTool(f"npm could not install what the viewer is made of:\n{done.stderr.strip()}")
     mark.write_text(wanted)
     return modules
 

@@ -37,7 +37,7 @@ class Content:
 
     title: str
     modules: Mapping[str, bytes]
-    """The machines in JavaScript: file name → text."""
+    """The machines in JavaScript: path below their folder → text."""
     package: str
     """The Python package of the machines."""
     classes: Mapping[str, str]
@@ -71,9 +71,10 @@ def _program(machines: Mapping[str, bytes], modules: Path) -> str:
         folder = Path(name)
         for path in sorted(_SOURCE.glob("*.js")):
             (folder / path.name).write_bytes(path.read_bytes())
-        (folder / "machines").mkdir()
         for file, data in machines.items():
-            (folder / "machines" / file).write_bytes(data)
+            target = folder / "machines" / file
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(data)
         esbuild = modules / "esbuild" / "bin" / "esbuild"
         command = [str(_binary(modules) or esbuild), "main.js", "--bundle", "--minify", "--format=iife"]
         options = [f"--target={_TARGET}", "--legal-comments=none", "--charset=utf8", "--log-level=error"]

@@ -45,7 +45,8 @@ class Page {
     const shown = [new AxesPanel(model), new ToolPanel(model), new ConfigurationPanel(model), new MarginsPanel(model), this.solutions, dimensions];
     const line = new LinePanel(model, stage);
     this.line = line;
-    const rest = [{ element: dimensions.second }, line, new SlicePanel(model, stage), new CopyPanel(model, this.data)];
+    this.slice = new SlicePanel(model, stage);
+    const rest = [{ element: dimensions.second }, line, this.slice, new CopyPanel(model, this.data)];
     this.parts.panel.append(...[...shown, ...rest].map((one) => one.element), this.#about());
   }
 

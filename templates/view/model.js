@@ -67,9 +67,9 @@ export class Model {
     else this.#stand(found.axes, target);
   }
 
-  /** Stand at axes that are known to be an answer. */
-  take(axes) {
-    this.#stand(axes, this.target);
+  /** Stand at axes that are known to be an answer for a frame, by default for the one that is wanted. */
+  take(axes, target = this.target) {
+    this.#stand(axes, target);
     this.#tell("pose");
   }
 

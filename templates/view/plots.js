@@ -90,7 +90,7 @@ export class LinePanel {
   #show(at) {
     const sample = this.#samples[Math.round(at * (this.#samples.length - 1))];
     if (!sample) return;
-    if (sample.axes) this.model.take(sample.axes);
+    if (sample.axes) this.model.take(sample.axes, sample.frame);
     else this.model.moveTo(sample.frame, this.ends.A.bytes);
     this.#cursor(at);
   }

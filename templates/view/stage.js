@@ -15,6 +15,8 @@ const FLOOR = { light: [0xb9c2cc, 0xdde3ea], dark: [0x3c4652, 0x2a323b] };
 /** The direction from which one looks at first, of length one, and the room around the ball of the machine. */
 const FROM = [0.605, -0.658, 0.447];
 const ROOM = 1.12;
+/** Width and height of a label in pixels: two do not stand closer. */
+const LABEL = [36, 14];
 
 export class Stage {
   #ghosts = [];
@@ -258,12 +260,17 @@ export class Stage {
     const box = this.canvas.getBoundingClientRect();
     const joints = this.labels.hidden || !this.joints ? [] : this.joints;
     while (this.labels.children.length < joints.length) this.labels.append(document.createElement("span"));
+    const taken = [];
     [...this.labels.children].forEach((label, i) => {
       label.hidden = i >= joints.length;
       if (label.hidden) return;
       const point = this.handle.position.clone().set(...joints[i].at).project(this.camera);
       label.textContent = joints[i].joints.join(" ");
-      label.style.transform = `translate(${((point.x + 1) / 2) * box.width + 8}px, ${((1 - point.y) / 2) * box.height - 22}px)`;
+      const x = ((point.x + 1) / 2) * box.width + 8;
+      let y = ((1 - point.y) / 2) * box.height - 22;
+      while (taken.some((other) => Math.abs(other[0] - x) < LABEL[0] && Math.abs(other[1] - y) < LABEL[1])) y -= LABEL[1];
+      taken.push([x, y]);
+      label.style.transform = `translate(${x}px, ${y}px)`;
     });
   }
 

@@ -10,7 +10,7 @@ export class ToolPanel {
   constructor(model) {
     this.model = model;
     this.fields = NAMES.map((name) => element("input", { type: "number", step: "any", id: `tool-${name}`, keydown: stepped,
-      input: () => this.#typed() }));
+      input: ({ target }) => this.#typed(target) }));
     const labels = NAMES.map((name, i) => element("label", { for: `tool-${name}` }, name, this.fields[i]));
     this.reached = element("p", { class: "soft" });
     this.element = section("Tool frame", true, element("div", { class: "six", role: "group", "aria-label": "Frame of the tool" }, ...labels),
@@ -18,17 +18,21 @@ export class ToolPanel {
     model.onChange((what) => what !== "refused parameter" && this.#update());
   }
 
-  #typed() {
-    const values = this.fields.map(numberIn);
-    if (!values.includes(null)) this.model.moveTo(frameOf(values));
+  /** One number is typed; the others stay as they are, with all their digits. */
+  #typed(field) {
+    const value = numberIn(field);
+    if (value === null) return;
+    const { pose, target, refusal } = this.model;
+    const values = numbersOf(refusal && target ? target : pose.frame);
+    values[this.fields.indexOf(field)] = value;
+    this.model.moveTo(frameOf(values));
   }
 
   #update() {
     const { pose, target, refusal, isCommanded, description } = this.model;
     if (!pose) return;
     const asked = refusal && target ? target : pose.frame;
-    const isTyped = this.fields.includes(document.activeElement);
-    if (!isTyped) numbersOf(asked).forEach((value, i) => write(this.fields[i], value));
+    numbersOf(asked).forEach((value, i) => write(this.fields[i], value));
     this.fields.forEach((field) => {
       field.disabled = !isCommanded;
       field.setAttribute("aria-invalid", String(Boolean(refusal && target)));
@@ -54,7 +58,13 @@ export class ConfigurationPanel {
 
   #build() {
     this.#bytes = this.model.description.configuration.map((byte, i) => (byte.kind === "branch" ? this.#branch(byte, i) : this.#turn(byte, i)));
-    this.list.replaceChildren(...this.#bytes.map((byte) => byte.element));
+    const ofKind = (kind) => this.#bytes.filter((byte) => byte.kind === kind).map((byte) => byte.element);
+    const turns = ofKind("period");
+    this.list.replaceChildren(...ofKind("branch"));
+    if (turns.length) {
+      this.list.append(element("div", { class: "six", role: "group", "aria-label": "Turns" }, ...turns),
+        element("p", { class: "soft" }, "Turns of the axes: 1 is −180° to 180°, 2 the one above, −1 the one below, 0 leaves it open."));
+    }
     if (!this.#bytes.length) this.list.append(element("p", { class: "soft" }, "There is one solution, and nothing to choose."));
   }
 
@@ -71,8 +81,7 @@ export class ConfigurationPanel {
       const number = numberIn(target);
       if (number !== null) this.#choose(i, Math.trunc(number));
     } });
-    const label = element("b", {}, element("label", { for: `byte-${i}` }, `turn of ${byte.name}`));
-    return { kind: "period", field, element: element("div", { class: "row" }, label, field, element("small", {}, "1: −180° to 180°, 0: open")) };
+    return { kind: "period", field, element: element("label", { for: `byte-${i}`, title: `Turn of ${byte.name}, byte ${i}` }, byte.name, field) };
   }
 
   #choose(i, byte) {
