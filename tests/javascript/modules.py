@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import shutil
 from collections.abc import Callable, Mapping
 from functools import cache
@@ -28,7 +29,7 @@ def part_of(name: str) -> Part:
 def written(part: Part, change: Callable[[str, str], str] = lambda path, text: text) -> Path:
     """The module of what is written. change: path and text of a file → its text."""
     folder = Path(mkdtemp(prefix="javascript-"))
-    _FOLDERS.append(folder)
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
     for path, text in files_of(part).items():
         (folder / path).parent.mkdir(exist_ok=True)
         (folder / path).write_text(change(path, text), encoding="utf-8")
@@ -38,12 +39,3 @@ def written(part: Part, change: Callable[[str, str], str] = lambda path, text: t
 def files_of(part: Part) -> Mapping[str, str]:
     """All files of one machine."""
     return package.files([part])
-
-
-_FOLDERS: list[Path] = []
-
-
-def remove() -> None:
-    """Remove all folders."""
-    while _FOLDERS:
-        shutil.rmtree(_FOLDERS.pop(), ignore_errors=True)

@@ -10,8 +10,8 @@ from typing import Any
 
 from jinja2 import Environment
 
-from derive.description.mechanism import DescriptionError
 from derive.drawing.parts import Parts, parts_of
+from derive.drawing.pose import drawn_pose, nominal_machine
 from derive.emit.javascript.description import description, inputs
 from derive.emit.javascript.functions import functions, rotation_function
 from derive.emit.javascript.layout import block, comment, laid_out
@@ -129,7 +129,7 @@ def _module(kin: Kinematics, module: str) -> str:
     setup = setup_lines(kin, read, inputs(kin))
     programs = [f"{f.key}: {f.name}," for f in found if f.key]
     texts = [laid_out(lines) for lines in (setup, *(function_lines(f, refusals) for f in found), *further)]
-    stated = description(kin, module) | {"parts": None if parts is None else parts.shape}
+    stated = description(kin, module) | {"drawn": _drawn(kin), "parts": None if parts is None else parts.shape}
     return _templates().get_template("mechanism.js.j2").render(
         head=[line.removeprefix("// ") for line in _head(kin)],
         imports=_imports([line for lines in texts for line in lines]),
@@ -144,7 +144,15 @@ def _parts(kin: Kinematics) -> Parts | None:
     """What is drawn of the machine; None where nothing can be drawn."""
     try:
         return parts_of(kin)
-    except DescriptionError:
+    except Exception:  # whatever a drawing meets, the formulas are proven without it
+        return None
+
+
+def _drawn(kin: Kinematics) -> list[float] | None:
+    """The axis values of the pose that a picture shows, with nominal parameters; None where there is none."""
+    try:
+        return list(map(float, drawn_pose(nominal_machine(kin)).axes))
+    except Exception:  # as above
         return None
 
 

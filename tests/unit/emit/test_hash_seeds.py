@@ -11,9 +11,9 @@ ROOT = Path(__file__).resolve().parents[3]
 _TEXT = """
 from derive.description.catalogue import MECHANISMS, load
 from derive.kinematics.build import build
-from derive.pipeline import languages
+from derive.pipeline import LANGUAGES, languages
 kin = build(load(MECHANISMS / "mc_kin_type_12_xy.py"))
-for language in languages():
+for language in languages(wanted=LANGUAGES):
     for name, text in sorted(language.files([language.part(kin)]).items()):
         print(name, text)
 """

@@ -1,0 +1,133 @@
+"""What is drawn of a machine: it follows the machine, rods keep their lengths, and lines are those of the drawing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import softkin
+from numpy.typing import NDArray
+
+from derive.drawing.drawing import nominal_machine, scene_at
+from derive.drawing.pose import Pose, drawn_pose
+from derive.drawing.scene import Scene
+from derive.ir.interpret import evaluate
+from tests.corpus.dimensions import DIMENSIONS
+from tests.corpus.recording import read
+from tests.javascript.modules import module_of
+from tests.javascript.node import ask
+from tests.mechanisms import kinematics_of, named
+
+Array = NDArray[np.float64]
+DRAWN = (
+    "Kin_Scara4_ZCcoupled_Type1", "Kin_Pos_RRR", "Kin_P2C_Type1", "Kin_Hexapod", "Kin_Wrist2", "Kin_Crane",
+    "Kin_Delta_P3C_Type3", "Kin_Tripod_Linear", "Softkin_Delta_C", "Kin_HGantry3",
+)  # fmt: skip
+"""A mechanism of each kind that is drawn in a way of its own."""
+
+
+def scenes(name: str, parameters: dict[str, Any], rows: list[list[float]]) -> list[Any]:
+    """The scenes at axis values, each with the answer of forward kinematics."""
+    calls = [[call, axes] for axes in rows for call in ("scene", "forward")]
+    found = ask(module_of(name), [{"parameters": parameters, "calls": calls}])["answers"][0]["found"]
+    return list(zip(found[::2], found[1::2], strict=True))
+
+
+@pytest.mark.parametrize("name", DIMENSIONS)
+def test_bodies_follow_the_machine(name: str) -> None:
+    """At random poses: the last body ends at the tool, frames are rotations, and no body changes its shape."""
+    part = read(name)[0]
+    parameters = part["recipe"][0]["parameters"]
+    rows = [q["axes"] for q in part["asked"] if q["call"] == "forward" and q["kind"] == "regular"][:5]
+    if not rows:
+        rows = [[0.0] * len(softkin.catalogue()[name].AXES)]
+    found = scenes(name, parameters, rows)
+    shapes = []
+    for scene, forward in found:
+        assert scene["status"] == forward["status"] == 0
+        bodies, joints = scene["bodies"], scene["joints"]
+        assert bodies[0]["kind"] == "base" and bodies[-1]["kind"] == "tool"
+        assert bodies[-1]["frame"] == forward["frame"]
+        for body in bodies:
+            rotation = np.array(body["frame"]["rotation"])
+            assert np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-9) and np.linalg.det(rotation) > 0.0
+        moved = {axis for joint in joints for axis in joint["joints"]}
+        assert moved == {axis.name for axis in softkin.catalogue()[name].AXES}
+        assert all(np.isclose(np.linalg.norm(joint["axis"]), 1.0) for joint in joints)
+        quill = any(joint["kind"] == "slide" and joint["body"] == len(bodies) - 1 for joint in joints)
+        changing = {"plate"} if quill else set()  # the quill shifts the tool against it
+        own = [b for b in bodies[:-1] if b["kind"] not in changing and not (b["kind"] == "rod" and b["joints"])]
+        shapes.append([sorted(_own_points(body)) for body in own])
+        if named(name).chain is not None:
+            last = bodies[-2]
+            end = last["lines"][-1][1] if last["lines"] else last["frame"]["position"]
+            assert end == pytest.approx(forward["frame"]["position"], abs=1e-9)
+    for shape in shapes[1:]:
+        for one, other in zip(shapes[0], shape, strict=True):
+            assert np.allclose(one, other, atol=1e-6, rtol=1e-9)
+
+
+def _own_points(body: dict[str, Any]) -> list[float]:
+    """The distances of the points of a body from the origin of its frame."""
+    return [
+        float(np.linalg.norm(np.subtract(point, body["frame"]["position"]))) for line in body["lines"] for point in line
+    ]
+
+
+@pytest.mark.parametrize("name", DIMENSIONS)
+def test_rods_are_as_long_as_stated(name: str) -> None:
+    """The ends of every bar are apart by its length."""
+    mechanism = named(name)
+    bars = mechanism.bars or mechanism.rods
+    machine = nominal_machine(kinematics_of(mechanism))
+    parameters = {p.name: p.nominal for p in kinematics_of(mechanism).parameters}
+    pose = drawn_pose(machine) if bars else None
+    if pose is None:
+        assert mechanism.chain is not None
+        return
+    ((scene, _),) = scenes(name, parameters, [ask(module_of(name), [])["description"]["drawn"]])
+    rods = [body for body in scene["bodies"] if body["kind"] == "rod"]
+    assert list(dict.fromkeys(rod["name"] for rod in rods)) == [bar.name for bar in bars]
+    values = dict(machine.values) | {
+        j.symbol.name: np.asarray(a * float(evaluate(j.unit, dict(machine.values))))
+        for j, a in zip(mechanism.joints, pose.axes, strict=True)
+    }
+    lengths = {bar.name: abs(float(evaluate(bar.length, values))) for bar in bars}
+    for rod in rods:
+        ((start, end),) = rod["lines"]
+        assert np.linalg.norm(np.subtract(start, end)) == pytest.approx(lengths[rod["name"]], abs=1e-4)
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_the_lines_are_those_of_the_drawing(name: str) -> None:
+    """Every line and every axis of the drawing is there, and no other."""
+    kinematics = kinematics_of(named(name))
+    machine = nominal_machine(kinematics)
+    pose: Pose = drawn_pose(machine)
+    drawn = scene_at(machine, pose)
+    parameters = {p.name: p.nominal for p in kinematics.parameters}
+    ((scene, _),) = scenes(name, parameters, [list(map(float, pose.axes))])
+    slides = [j for j in scene["joints"] if j["kind"] == "slide"]
+    ways = [(j["at"], np.subtract(j["at"], np.multiply(j["travel"], j["axis"]))) for j in slides]
+    lines = [line for body in scene["bodies"] for line in body["lines"]]
+    own, shown = {_key(*line) for line in lines}, _drawn_lines(drawn)
+    assert shown <= own | {_key(*way) for way in ways} and own <= shown
+    turns = {(_rounded(j["at"]), _rounded(j["axis"])) for j in scene["joints"] if j["kind"] == "turn"}
+    assert turns == {(_rounded(t.at), _rounded(t.axis)) for t in drawn.turns}
+
+
+def _drawn_lines(scene: Scene) -> set[Any]:
+    found = set()
+    for s in scene.segments:
+        sides = [(1, s.across), (-1, s.across)] if s.across is not None else [(0, (0.0, 0.0, 0.0))]
+        found |= {_key(np.add(s.start, np.multiply(k, a)), np.add(s.end, np.multiply(k, a))) for k, a in sides}
+    return found
+
+
+def _key(start: Any, end: Any) -> Any:
+    return tuple(sorted((_rounded(start), _rounded(end))))
+
+
+def _rounded(point: Any) -> tuple[float, ...]:
+    return tuple((np.round(np.array(point, dtype=float), 3) + 0.0).tolist())
