@@ -23,7 +23,7 @@ generate: $(READY)
 javascript: $(READY)
 	$(RUN) -m derive generate --language javascript --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
 
-# One page with all machines, build/softkin.html, which opens in a browser from disk; MECHANISM=my_machine.py: that machine alone.
+# One page with all machines, build/viewer.html, which opens in a browser from disk; MECHANISM=my_machine.py: that machine alone.
 view: $(READY)
 	$(RUN) -m pip install --quiet --editable '.[view]'
 	$(RUN) -m derive view $(MECHANISM) --out $(OUT)

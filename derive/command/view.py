@@ -31,7 +31,7 @@ def view(options: argparse.Namespace) -> int:
         if options.model:
             raise GenerationError("--model names a body of one machine: give its file")
         modules = _modules(machine_files(options))
-        _write(options.out / "softkin.html", content_of(catalogue(options.mechanisms), modules))
+        _write(options.out / "viewer.html", content_of(catalogue(options.mechanisms), modules))
         return 0
     files_given = own.described(options.files)
     if options.model and len(files_given) > 1:

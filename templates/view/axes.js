@@ -3,6 +3,9 @@
 import { element, numberIn, section, shown, unitOf, write } from "./element.js";
 import { lengthOf } from "./start.js";
 
+/** A limit farther away than so many times the way of an axis limits nothing that is looked at. */
+const FAR = 1000;
+
 export class AxesPanel {
   #rows = [];
 
@@ -44,15 +47,15 @@ export class AxesPanel {
     this.#rows.forEach((row, i) => {
       const { lower, upper } = machine.limits[i];
       const reach = row.axis.unit === "deg" ? (row.axis.multiTurn ? 540 : 180) : travel;
-      const [low, high] = [lower ?? Math.min(-reach, axes[i]), upper ?? Math.max(reach, axes[i])];
+      const [hasLower, hasUpper] = [lower, upper].map((end) => end !== null && Math.abs(end) < FAR * reach);
+      const [low, high] = [hasLower ? lower : Math.min(-reach, axes[i]), hasUpper ? upper : Math.max(hasLower ? lower + 2 * reach : reach, axes[i])];
       Object.assign(row.slider, { min: low, max: high });
       write(row.slider, axes[i], 6);
       write(row.number, axes[i]);
       const isBeyond = (lower !== null && axes[i] < lower) || (upper !== null && axes[i] > upper);
       row.number.setAttribute("aria-invalid", String(isBeyond));
-      const text = [lower, upper].map((end) => (end === null ? "no limit" : shown(end)));
-      row.range.hidden = lower === null && upper === null;
-      row.range.textContent = `limits ${text[0]} … ${text[1]}`;
+      row.range.hidden = !hasLower && !hasUpper;
+      row.range.textContent = `limits ${hasLower ? shown(lower) : "none"} … ${hasUpper ? shown(upper) : "none"}`;
       const byte = description.periodAxes.indexOf(i);
       const turn = byte < 0 || refusal ? 0 : this.model.pose?.configuration[description.branchCount + byte];
       row.turn.textContent = turn ? `turn ${turn}` : "";

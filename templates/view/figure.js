@@ -16,6 +16,7 @@ const THICK = { base: 0.02, link: 0.022, rod: 0.009, plate: 0.011, tool: 0.01 };
 const BARREL = { radius: 0.034, length: 0.1 };
 const CARRIAGE = 0.065;
 const RAIL = 0.012;
+const CYLINDER = 0.017;
 const LARGEST_PLATE = 24;
 /** A ghost is thinner, so that it does not shine through the machine where both are at one place. */
 const GHOST = 0.86;
@@ -71,7 +72,10 @@ export class Figure {
       if (body.kind === "plate" || body.kind === "base") plates += this.#face(plates, body, material);
       if (body.kind === "base" && !body.lines.length) this.#foot(body.frame.position, size);
       if (body.kind === "tool") this.#tool(body.frame, size, material);
-      scene.joints.filter((joint) => joint.body === i).forEach((joint) => this.#joint(joint, size, refused(body)));
+      for (const joint of scene.joints.filter((one) => one.body === i)) {
+        if (body.kind === "rod") this.#cylinder(body, joint, size, refused(body));
+        else this.#joint(joint, size, refused(body));
+      }
     });
     this.#plates.forEach((plate, i) => { plate.visible = i < plates; });
     for (const [geometry, meshes] of this.#pools) {
@@ -133,6 +137,12 @@ export class Figure {
     block.position.copy(at);
     block.quaternion.setFromUnitVectors(UP, axis);
     block.scale.setScalar(size * CARRIAGE);
+  }
+
+  /** A rod that grows: the cylinder of its drive around its first half. */
+  #cylinder({ lines: [[start]] }, { at }, size, isRefused) {
+    const thin = this.isGhost ? GHOST : 1;
+    this.#along(ROUND, new Vector3(...start), new Vector3(...at), thin * size * CYLINDER, isRefused ? "refused" : "joint");
   }
 
   #foot(position, size) {
@@ -203,7 +213,8 @@ export function quaternionFrom(frame) {
 /** The middle of all that is drawn, and the radius of a ball around it. */
 export function extentOf(scene) {
   const points = scene.bodies.flatMap((body) => [body.frame.position, ...body.lines.flat()]);
-  for (const joint of scene.joints) points.push(joint.at, joint.at.map((value, i) => value - joint.travel * joint.axis[i]));
+  const isGrown = (joint) => scene.bodies[joint.body].kind === "rod";
+  for (const joint of scene.joints.filter((one) => !isGrown(one))) points.push(joint.at, joint.at.map((value, i) => value - joint.travel * joint.axis[i]));
   const low = [0, 1, 2].map((k) => Math.min(...points.map((point) => point[k])));
   const high = [0, 1, 2].map((k) => Math.max(...points.map((point) => point[k])));
   const centre = low.map((value, k) => (value + high[k]) / 2);

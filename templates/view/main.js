@@ -4,6 +4,7 @@ import { fragmentOf, readFragment } from "./address.js";
 import { AxesPanel } from "./axes.js";
 import { CopyPanel } from "./copy.js";
 import { element } from "./element.js";
+import { Live, tokenOf } from "./live.js";
 import { meshesOf } from "./meshes.js";
 import { Model, inWords } from "./model.js";
 import { LinePanel } from "./plots.js";
@@ -23,7 +24,7 @@ class Page {
     this.data = JSON.parse(document.getElementById("page").textContent);
     this.model = new Model();
     const by = (id) => document.getElementById(id);
-    this.parts = Object.fromEntries(["machine", "state", "refusal", "canvas", "labels", "panel", "move", "turn", "ghosts", "names", "fit", "start"].map((id) => [id, by(id)]));
+    this.parts = Object.fromEntries(["machine", "state", "live", "refusal", "canvas", "labels", "panel", "move", "turn", "ghosts", "names", "fit", "start"].map((id) => [id, by(id)]));
     this.stage = new Stage(this.parts.canvas, this.parts.labels, {
       onDrag: (frame, isFinished) => (isFinished ? this.#show("pose") : this.model.moveTo(frame)),
       onGhost: (index) => this.model.take(this.ghosts[index].axes),
@@ -35,7 +36,18 @@ class Page {
     this.#theme();
     this.#listen();
     this.model.onChange((what) => this.#show(what));
+    const token = tokenOf(location.hash);
     this.#restore() || this.model.open(this.model.names[0]);
+    if (token) this.follow(token);
+  }
+
+  /** Follow a controller; the state of the connection stands in the head of the page. */
+  follow(token, Socket) {
+    this.isLive = true;
+    this.live = new Live(this.model, token, (words, isGood) => {
+      this.parts.live.textContent = words;
+      this.parts.live.className = isGood ? "good" : "bad";
+    }, Socket);
   }
 
   #panel() {
@@ -162,6 +174,7 @@ class Page {
 
   /** The state in the address, at most once in a while: browsers refuse to write it faster. */
   #remember() {
+    if (this.isLive) return; // the address names the run of the server, and the pose is over in a moment
     clearTimeout(this.remembering);
     this.remembering = setTimeout(() => {
       this.written = fragmentOf(this.model);

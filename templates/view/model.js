@@ -19,6 +19,11 @@ export class Model {
     this.#heard.push(listener);
   }
 
+  /** What is known of a machine without its parameters. */
+  describe(name) {
+    return catalogue[name].description;
+  }
+
   /** Show a machine. given: {parameters, axes, target, automatic}, each may be left out. */
   open(name, given = {}) {
     this.name = name;

@@ -16,7 +16,7 @@ const FLOOR = { light: [0xb9c2cc, 0xdde3ea], dark: [0x3c4652, 0x2a323b] };
 const FROM = [0.605, -0.658, 0.447];
 const ROOM = 1.12;
 /** Width and height of a label in pixels: two do not stand closer. */
-const LABEL = [36, 14];
+const LABEL = [36, 15];
 
 export class Stage {
   #ghosts = [];
@@ -42,6 +42,7 @@ export class Stage {
     this.origin = new AxesHelper(1);
     this.scene.add(this.triad, this.origin);
     this.orbit = new OrbitControls(this.camera, canvas);
+    this.orbit.listenToKeyEvents(canvas);
     this.orbit.addEventListener("change", () => this.ask());
     this.#handles();
     canvas.addEventListener("click", (event) => this.#clicked(event));
@@ -179,6 +180,7 @@ export class Stage {
   draw() {
     this.renderer.render(this.scene, this.camera);
     this.#label();
+    if (this.figure.group.children.length) this.firstPicture ??= performance.now();
   }
 
   /** Where the tool's handle is on the screen, in pixels of the page. */

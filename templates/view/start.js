@@ -1,4 +1,4 @@
-/** The machine as it stands at first: near its nominal axis values, and away from singular poses. */
+/** The machine as it stands at first: near the pose in which it is drawn, and away from singular poses. */
 
 const SWEEP = [27, 41, -33, 22, 48, 15, -19];
 const FACTORS = [1, 0.6, -1, 0.3, -0.6, 1.6, 0];
@@ -21,21 +21,31 @@ export function lengthOf(machine) {
 
 /** Axis values at which the machine stands, is not singular, and is inside its limits where such are found. */
 export function startOf(machine) {
-  const tried = FACTORS.map((factor) => swept(machine, factor));
   let best = null;
-  for (const axes of [...tried, ...fromFrames(machine)]) {
+  for (const axes of candidates(machine)) {
     const worth = worthOf(machine, axes);
     if (worth !== null && (best === null || worth > best.worth)) best = { axes, worth };
     if (best && best.worth >= GOOD) break;
   }
-  return best ? best.axes : machine.description.axes.map((axis) => axis.nominal);
+  return best ? best.axes : drawnOf(machine);
+}
+
+function* candidates(machine) {
+  for (const factor of FACTORS) yield swept(machine, factor);
+  yield* fromFrames(machine);
+}
+
+/** The axis values of its drawing, else the nominal ones. */
+function drawnOf({ description }) {
+  return description.drawn ?? description.axes.map((axis) => axis.nominal);
 }
 
 function swept(machine, factor) {
   const travel = 0.25 * lengthOf(machine);
-  return machine.description.axes.map(({ nominal, unit }, i) => {
+  const drawn = drawnOf(machine);
+  return machine.description.axes.map(({ unit }, i) => {
     const part = (factor * SWEEP[i % SWEEP.length]) / (unit === "deg" ? 1 : 40);
-    return inside(machine.limits[i], nominal + (unit === "deg" ? part : part * travel));
+    return inside(machine.limits[i], drawn[i] + (unit === "deg" ? part : part * travel));
   });
 }
 
@@ -61,7 +71,7 @@ function openTurns(machine, bytes) {
 /** Axis values of level frames around the origin, for a machine that does not stand near its nominal axis values. */
 function* fromFrames(machine) {
   const step = 0.35 * lengthOf(machine);
-  const reference = machine.description.axes.map((axis) => axis.nominal);
+  const reference = drawnOf(machine);
   const rotation = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
   const numbers = [0, 1, -1, 2, -2];
   for (const z of machine.description.task.position.includes("z") ? numbers : [0]) {

@@ -10,10 +10,10 @@ import { launched } from "./browser.mjs";
 
 const [cataloguePage, ownPage, pictures, result, which] = process.argv.slice(2);
 const LAPTOP = { width: 1366, height: 768 };
-const SMALL = { width: 640, height: 480 };
+const SMALL = { width: 560, height: 420 };
 const TABLET = { width: 820, height: 1180 };
 const { browser, name } = await launched(which);
-const seen = { browser: name, errors: [] };
+const seen = { browser: name, errors: [], firstPictures: [] };
 
 /** A page at a fragment; what its console complains of is kept. */
 async function opened(fragment, { size = SMALL, theme = "light", file = cataloguePage } = {}) {
@@ -23,7 +23,8 @@ async function opened(fragment, { size = SMALL, theme = "light", file = catalogu
   page.on("pageerror", (error) => seen.errors.push(`${fragment}: ${error}`));
   page.on("request", (request) => /^(file|blob|data):/.test(request.url()) || seen.errors.push(`${fragment} asks for ${request.url()}`));
   await page.goto(`${pathToFileURL(file)}${fragment}`);
-  await page.waitForFunction(() => globalThis.softkinPage?.model.pose && globalThis.softkinPage.stage.renderer.info.render.frame > 0);
+  await page.waitForFunction(() => globalThis.softkinPage?.model.pose && globalThis.softkinPage.stage.firstPicture);
+  seen.firstPictures.push(await page.evaluate(() => softkinPage.stage.firstPicture));
   return page;
 }
 
@@ -253,9 +254,7 @@ async function slice() {
 
 /** The page of one machine, with a mesh of its own in the place of a body. */
 async function own() {
-  const start = performance.now();
   const page = await opened("", { size: TABLET, file: ownPage });
-  seen.opening = performance.now() - start;
   await page.waitForFunction(() => softkinPage.stage.scene.getObjectByName("own") !== undefined);
   await settled(page);
   seen.own = await page.evaluate(() => ({
@@ -267,7 +266,39 @@ async function own() {
   await page.context().close();
 }
 
-for (const work of [everyMachine, dragged, typed, line, slice, own]) {
+/** A controller, played by a socket that the page is given: its machine, axes that move it, axes that must not. */
+async function live() {
+  const page = await opened("#machine=Kin_Gantry2");
+  await page.evaluate(() => {
+    softkinPage.follow("abc", class {
+      constructor(address, protocols) {
+        globalThis.asked = { address, protocols };
+        globalThis.send = (message) => this.onmessage({ data: JSON.stringify(message) });
+        globalThis.lose = () => this.onclose();
+      }
+    });
+    send({ type: "machine", protocol: 1, name: "Kin_Scara4_ZCcoupled_Type1", source: { kind: "OPC UA" },
+      machine: { mechanism: "Kin_Scara4_ZCcoupled_Type1", link_length_1: 300, link_length_2: 200, pitch_zc: 10, limits: { A1: [-170, 170] } } });
+  });
+  const told = (axes, quality) => page.evaluate(([values, words]) => {
+    send({ type: "axes", status: "live", message: "", complete: values.every((value) => value !== null), axes: values, quality: words, reasons: values.map(() => "") });
+    return document.getElementById("live").textContent;
+  }, [axes, quality]);
+  const good = ["good", "good", "good", "good"];
+  const before = await page.evaluate(() => softkinPage.model.pose.scene.bodies.map((body) => body.frame));
+  seen.liveWords = [await told([10, 20, -30, 40], good)];
+  seen.live = await state(page);
+  const after = await page.evaluate(() => softkinPage.model.pose.scene.bodies.map((body) => body.frame));
+  seen.liveBodies = { before, after };
+  seen.liveWords.push(await told([50, null, -30, 40], ["good", "bad", "good", "good"]));
+  seen.liveKept = await state(page);
+  seen.liveAsked = await page.evaluate(() => asked);
+  await page.evaluate(() => lose());
+  seen.liveWords.push(await page.locator("#live").textContent());
+  await page.context().close();
+}
+
+for (const work of [live, everyMachine, dragged, typed, line, slice, own]) {
   try {
     await work();
   } catch (error) {

@@ -244,9 +244,24 @@ def test_a_mesh_of_ones_own(seen: Seen) -> None:
     assert seen["own"]["licence"]
 
 
+def test_a_controller_moves_it(seen: Seen) -> None:
+    """The machine of the greeting stands where the axes say; a value that is not good moves nothing; a loss is told."""
+    live = seen["live"]
+    assert live["axes"] == [10, 20, -30, 40] == seen["liveKept"]["axes"]
+    assert (live["parameters"]["link_length_1"], live["parameters"]["upper_a1"]) == (300, 170)
+    confirm(live)
+    arm = np.array(seen["liveBodies"]["after"][1]["rotation"])  # the body that A1 turns
+    assert np.allclose(arm[:2, 0], [np.cos(np.radians(10)), np.sin(np.radians(10))])
+    assert seen["liveAsked"]["protocols"] == ["softkin.live.1", "token.abc"]
+    assert seen["liveWords"][0] == "live"
+    assert seen["liveWords"][1] == "live, axis 2 bad"
+    assert "no connection" in seen["liveWords"][2]
+
+
 def test_it_is_fast(seen: Seen) -> None:
     """A frame with all ghosts is 16 ms of script; all branches are 0.2 ms in closed form, and 5 ms where searched."""
     for found in seen["times"].values():
         assert found["frame"] < 16
         assert found["all"] < (5 if found["isSearched"] else 0.2)
     assert seen["times"][ARM]["ghosts"] == 7
+    assert min(seen["firstPictures"]) < 1000  # of nine pages, on a machine that does other things as well
