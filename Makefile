@@ -25,7 +25,6 @@ javascript: $(READY)
 
 # One page with all machines, build/viewer.html, which opens in a browser from disk; MECHANISM=my_machine.py: that machine alone.
 view: $(READY)
-	$(RUN) -m pip install --quiet --editable '.[view]'
 	$(RUN) -m derive view $(MECHANISM) --out $(OUT)
 
 check: $(READY)

@@ -66,7 +66,8 @@ class Page {
     this.summary = element("p", { class: "soft" });
     const licence = element("pre", { class: "soft", style: "white-space: pre-wrap" }, this.data.licences);
     const keys = element("p", { class: "soft" }, "Keys: T move, R turn, G ghosts, N names, F fit, 0 start; in a number, arrows step by 1, with Shift by 10, with Alt by 0.1.");
-    return element("details", {}, element("summary", {}, "About"), this.summary, keys, licence);
+    const report = element("p", { class: "soft" }, element("a", { href: "report/index.html" }, "The derivations"), ", where they have been written beside this page.");
+    return element("details", {}, element("summary", {}, "About"), this.summary, this.model.names.length > 1 ? report : null, keys, licence);
   }
 
   #theme() {
@@ -85,7 +86,7 @@ class Page {
       move: () => this.#handle("translate"), turn: () => this.#handle("rotate"),
       ghosts: () => { this.hasGhosts = !this.hasGhosts; this.#press("ghosts", this.hasGhosts); this.#show("pose"); },
       names: () => { parts.labels.hidden = !parts.labels.hidden; this.#press("names", !parts.labels.hidden); this.stage.ask(); },
-      fit: () => this.stage.fit(model.pose.scene), start: () => model.moveAxes(model.start),
+      fit: () => model.pose.scene.status || this.stage.fit(model.pose.scene), start: () => model.moveAxes(model.start),
     };
     const keys = { t: "move", r: "turn", g: "ghosts", n: "names", f: "fit", 0: "start" };
     Object.entries(actions).forEach(([name, action]) => parts[name].addEventListener("click", action));
@@ -133,9 +134,10 @@ class Page {
       this.#meshes();
       this.#handles();
     }
-    const isWhole = pose && !pose.scene.status;
+    const isWhole = Boolean(pose) && !pose.scene.status;
     if (isWhole && (what === "machine" || what === "dimensions")) stage.fit(pose.scene);
-    const said = refusal ?? pose?.beyond;
+    const said = refusal ?? pose?.beyond ?? (isWhole ? null : pose?.scene);
+    stage.figure.group.visible = isWhole;
     if (isWhole) {
       stage.show(pose.scene, refusal ? model.target : null, { refused: (body) => Boolean(said) && refuses(said.reason, body) });
       stage.figure.mark(refusal ? "refused" : stateOf(pose, 0));
@@ -189,5 +191,17 @@ function refuses(reason, body) {
   return body.joints.includes(named) || body.name === named;
 }
 
+/** The page, or in a sentence why there is none: a browser without WebGL 2 cannot draw it. */
+function shown() {
+  try {
+    return new Page();
+  } catch (error) {
+    const place = document.getElementById("refusal");
+    place.hidden = false;
+    place.textContent = `The viewer could not start: ${error.message}`;
+    throw error;
+  }
+}
+
 if (typeof document === "undefined") serve();
-else globalThis.softkinPage = new Page();
+else globalThis.softkinPage = shown();

@@ -50,7 +50,7 @@ export class SlicePanel {
   #begin() {
     const { model } = this;
     const height = numberIn(this.height);
-    if (!model.pose || height === null) return;
+    if (!model.pose || !this.stage.extent || height === null) return;
     const [along, up, across] = PLANES[this.plane.value];
     const { centre, size } = this.stage.extent;
     const half = 1.25 * size;

@@ -129,6 +129,13 @@ async function dragged() {
   seen.address = await page.evaluate(() => location.hash);
   const other = await opened(seen.address);
   seen.restored = await state(other);
+  await other.locator("#canvas").press("r");
+  const [u, v] = await other.evaluate(() => softkinPage.stage.placeOf(softkinPage.model.pose.frame.position));
+  await other.mouse.move(u, v);
+  await other.mouse.down();
+  for (let i = 1; i <= 4; i += 1) await other.mouse.move(u + 3 * i, v + 2 * i);
+  await other.mouse.up();
+  seen.turned = await state(other);
   await other.context().close();
   await clickGhost(page);
   await page.screenshot({ path: `${pictures}/laptop_light.png` });
