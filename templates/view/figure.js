@@ -55,9 +55,10 @@ export class Figure {
     this.colours = colours;
   }
 
-  /** The tool in the colour of a state: good, near to a singular pose, singular. */
+  /** The tool in the colour of a state: good, near to a singular pose, singular, refused; joints, where one is near. */
   mark(state) {
     this.materials.tool.color.set(STATES[state] ?? this.colours.tool);
+    this.materials.joint.color.set((state !== "refused" && STATES[state]) || this.colours.joint);
   }
 
   /** Stand as a scene says. hidden: names of bodies that a mesh of their own shows; refused: whether a body refuses. */

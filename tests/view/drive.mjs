@@ -238,6 +238,27 @@ async function line() {
   await page.context().close();
 }
 
+/** Lines that jump over a singular pose, and that end at a limit. */
+async function marks() {
+  const drawn = async (fragment, from, to) => {
+    const page = await opened(fragment);
+    const found = await page.evaluate(([start, end]) => {
+      const { model, line } = softkinPage;
+      const { rotation } = model.pose.frame;
+      [["A", start], ["B", end]].forEach(([letter, position]) => {
+        model.moveTo({ position, rotation });
+        line.set(letter);
+      });
+      const count = (kind) => document.querySelectorAll(`.plots ${kind}`).length;
+      return { jumps: count(".jump"), singular: count(".singular"), limits: count(".limit"), stops: count(".stop"), said: line.said.textContent };
+    }, [from, to]);
+    await page.context().close();
+    return found;
+  };
+  seen.jump = await drawn("#machine=Kin_Polar&axes=0,200", [200, 0, 0], [-200, 0, 0]);
+  seen.limit = await drawn("#machine=Kin_Scara2_Z&axes=10,40,0&with=lower_a1:-90,upper_a1:40", [400, -100, 0], [0, 430, 0]);
+}
+
 /** A slice of the workspace in a worker. */
 async function slice() {
   const page = await opened("#machine=Kin_Scara2_Z&axes=20,60,-20", { size: LAPTOP, theme: "dark" });
@@ -305,7 +326,7 @@ async function live() {
   await page.context().close();
 }
 
-for (const work of [live, everyMachine, dragged, typed, line, slice, own]) {
+for (const work of [live, everyMachine, dragged, typed, line, marks, slice, own]) {
   try {
     await work();
   } catch (error) {

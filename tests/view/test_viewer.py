@@ -231,6 +231,14 @@ def test_a_line(seen: Seen) -> None:
     confirm(seen["played"])
 
 
+def test_a_line_is_marked(seen: Seen) -> None:
+    """Through the centre of a polar machine its axis jumps by half a turn, there alone; a limit ends another line."""
+    assert (seen["jump"]["jumps"], seen["jump"]["singular"], seen["jump"]["stops"]) == (2, 2, 0)  # in both plots
+    assert seen["jump"]["said"].endswith("An axis jumps.")
+    assert (seen["limit"]["limits"], seen["limit"]["stops"], seen["limit"]["jumps"]) == (1, 3, 0)
+    assert "A1: above its upper limit, missing" in seen["limit"]["said"]
+
+
 def test_a_slice(seen: Seen) -> None:
     """Every cell has the number of solutions, and the margin, that Python has there."""
     pose, found = seen["slicePose"], np.array(seen["slice"]["values"])
