@@ -17,7 +17,7 @@ from derive.emit.python.entries import class_name
 from derive.output import write_file
 from derive.pipeline import GenerationError, derive_one, files_of, languages
 from derive.view.node import MissingTool
-from derive.view.page import Content, Model, page
+from derive.view.page import BrokenPage, Content, Model, page
 
 _LANGUAGE = "javascript"
 _ROOT = MECHANISMS.parents[1]
@@ -59,7 +59,7 @@ def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[
 def _write(path: Path, content: Content) -> None:
     try:
         text = page(content, PACKAGES)
-    except MissingTool as problem:
+    except (MissingTool, BrokenPage) as problem:
         raise GenerationError(str(problem)) from None
     write_file(path, text.encode())
     print(f"{path}: {len(text.encode()) / 1e6:.2f} MB, opens in a browser", file=sys.stdout)

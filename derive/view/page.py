@@ -12,11 +12,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from derive.emit.language import TEMPLATES
-from derive.view.node import MissingTool, installed, run
+from derive.view.node import installed, run
 
 _SOURCE = TEMPLATES / "view"
 _TARGET = "es2022"
 _FIELDS = re.compile(r"\{\{ (\w+) \}\}")
+
+
+class BrokenPage(Exception):
+    """The bundler refuses the source; the message is the bundler's."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +50,7 @@ class Content:
 
 
 def page(content: Content, packages: Path) -> str:
-    """The page. packages: the folder into which npm installs. Raises `MissingTool`."""
+    """The page. packages: the folder into which npm installs. Raises `MissingTool`, and `BrokenPage`."""
     modules = installed(_SOURCE, packages)
     licences = _licences(modules)
     data = {
@@ -80,8 +84,8 @@ def _program(machines: Mapping[str, bytes], modules: Path) -> str:
         options = [f"--target={_TARGET}", "--legal-comments=none", "--charset=utf8", "--log-level=error"]
         done = run([*command, *options], folder, NODE_PATH=str(modules))
     if done.returncode:
-        raise MissingTool(f"the viewer could not be put together:\n{done.stderr.strip()}")
-    return done.stdout.strip().replace("</script", "<\\/script").replace("<!--", "<\\!--")
+        raise BrokenPage(f"the viewer could not be put together:\n{done.stderr.strip()}")
+    return re.sub(r"<(/script|!--)", r"<\\\1", done.stdout.strip(), flags=re.IGNORECASE)
 
 
 def _binary(modules: Path) -> Path | None:

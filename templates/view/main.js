@@ -37,8 +37,9 @@ class Page {
     this.#listen();
     this.model.onChange((what) => this.#show(what));
     const token = tokenOf(location.hash);
+    this.isLive = token !== null; // the address stays that of the run
     this.#restore() || this.model.open(this.model.names[0]);
-    if (token) this.follow(token);
+    if (this.isLive) this.follow(token);
   }
 
   /** Follow a controller; the state of the connection stands in the head of the page. */

@@ -12,7 +12,10 @@ const [cataloguePage, ownPage, pictures, result, which] = process.argv.slice(2);
 const LAPTOP = { width: 1366, height: 768 };
 const SMALL = { width: 560, height: 420 };
 const TABLET = { width: 820, height: 1180 };
-const { browser, name } = await launched(which);
+const { browser, name } = await launched(which).catch((error) => {
+  writeFileSync(result, JSON.stringify({ missing: error.message }));
+  process.exit(0);
+});
 const seen = { browser: name, errors: [], firstPictures: [] };
 
 /** A page at a fragment; what its console complains of is kept. */

@@ -30,7 +30,8 @@ def driven(catalogue: Path, own: Path, folder: Path, which: str = "") -> dict[st
     result.unlink(missing_ok=True)
     command = [node(), PACKAGES / "drive.mjs", catalogue, own, folder, result, *([which] if which else [])]
     done = run([str(part) for part in command], folder)
-    if not result.is_file():
-        raise MissingTool(f"no browser: {done.stderr.strip()}")
+    assert result.is_file(), done.stderr
     found: dict[str, Any] = json.loads(result.read_text(encoding="utf-8"))
+    if "missing" in found:
+        raise MissingTool(f"no browser: {found['missing']}")
     return found
