@@ -64,6 +64,15 @@ async function settled(page) {
   await page.waitForTimeout(150); // the address is written after 120 ms
 }
 
+/** A picture at a size; what comes before it is drawn smaller, which takes a software renderer less. */
+async function pictured(page, size, name) {
+  await page.setViewportSize(size);
+  await settled(page);
+  await page.evaluate(() => document.getElementById("fit").click());
+  await settled(page);
+  await page.screenshot({ path: `${pictures}/${name}.png` });
+}
+
 /** Every machine in turn: how many pixels its figure alone covers, and what stands in it. */
 async function everyMachine() {
   const page = await opened("");
@@ -120,12 +129,12 @@ async function everyMachine() {
 
 /** The tool dragged by the mouse, at the middle of its handles; then the address opened elsewhere. */
 async function dragged() {
-  const page = await opened("#machine=Kin_ArticulatedRobot_6DOF", { size: LAPTOP });
+  const page = await opened("#machine=Kin_ArticulatedRobot_6DOF");
   seen.before = await state(page);
   const [x, y] = await page.evaluate(() => softkinPage.stage.placeOf(softkinPage.model.pose.frame.position));
   await page.mouse.move(x, y);
   await page.mouse.down();
-  for (let i = 1; i <= 6; i += 1) await page.mouse.move(x + 8 * i, y - 5 * i);
+  for (let i = 1; i <= 6; i += 1) await page.mouse.move(x + 4 * i, y - 2 * i);
   await page.mouse.up();
   await settled(page);
   seen.dragged = await state(page);
@@ -141,7 +150,7 @@ async function dragged() {
   seen.turned = await state(other);
   await other.context().close();
   await clickGhost(page);
-  await page.screenshot({ path: `${pictures}/laptop_light.png` });
+  await pictured(page, LAPTOP, "laptop_light");
   await unfold(page);
   const click = (name) => page.locator("#panel").getByRole("button", { name, exact: true }).evaluate((button) => button.click());
   seen.copied = { pose: await state(page) };
@@ -206,7 +215,7 @@ async function typed() {
 
 /** A line that crosses the inside of a SCARA, where nothing reaches; then one that is reached. */
 async function line() {
-  const page = await opened("#machine=Kin_Scara4_ZCcoupled_Type1&axes=10,40,5,30", { size: TABLET, theme: "dark" });
+  const page = await opened("#machine=Kin_Scara4_ZCcoupled_Type1&axes=10,40,5,30", { theme: "dark" });
   await unfold(page);
   const end = (letter) => page.getByRole("button", { name: `${letter} = this pose` }).evaluate((button) => button.click());
   const to = async (x, y) => {
@@ -236,8 +245,7 @@ async function line() {
   await page.getByRole("button", { name: "Pause" }).evaluate((button) => button.click());
   seen.played = await state(page);
   await unfold(page, "^(Axes|Line)");
-  await settled(page);
-  await page.screenshot({ path: `${pictures}/tablet_dark.png` });
+  await pictured(page, TABLET, "tablet_dark");
   await page.context().close();
 }
 
@@ -264,7 +272,7 @@ async function marks() {
 
 /** A slice of the workspace in a worker. */
 async function slice() {
-  const page = await opened("#machine=Kin_Scara2_Z&axes=20,60,-20", { size: LAPTOP, theme: "dark" });
+  const page = await opened("#machine=Kin_Scara2_Z&axes=20,60,-20", { theme: "dark" });
   await unfold(page, "^(Slice|Singul)");
   const computed = async (what) => {
     await page.locator("#slice-what").selectOption(what);
@@ -278,8 +286,7 @@ async function slice() {
   seen.slice = await computed("number");
   seen.slicePose = await state(page);
   seen.margin = await computed("elbow");
-  await settled(page);
-  await page.screenshot({ path: `${pictures}/laptop_dark.png` });
+  await pictured(page, LAPTOP, "laptop_dark");
   await page.context().close();
 }
 
