@@ -126,7 +126,8 @@ def _sources(root: Path) -> Iterator[Path]:
         if path.parent != root / "derive" / "mechanisms" or path.name.startswith("_"):
             yield path
     templates = root / TEMPLATES.relative_to(ROOT)
-    yield from (path for path in templates.rglob("*") if path.is_file() and path.suffix != ".pyc")
+    kept = (path for path in templates.rglob("*") if path.is_file() and path.suffix != ".pyc")
+    yield from (path for path in kept if templates / "view" not in path.parents)  # the viewer reads what is generated
     yield from root.glob("pyproject.toml")
 
 

@@ -57,6 +57,15 @@ def replace_parts(folder: Path, files: Mapping[str, bytes]) -> None:
             replace_folder(folder / part, own)
 
 
+def write_file(path: Path, data: bytes) -> None:
+    """Write one file, whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f"{path.name}.", dir=path.parent) as workshop:
+        new = Path(workshop) / path.name
+        new.write_bytes(data)
+        new.replace(path)
+
+
 def _refuse_foreign(folder: Path, files: Mapping[str, bytes]) -> None:
     own = {Path(name).parts[0] for name in files}
     if folder.exists():

@@ -15,7 +15,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from tests.fresh import Generation, generated
 from tests.mechanisms import catalogue
+from tests.view.driver import BROWSER
 
 settings.register_profile("softkin", deadline=None, derandomize=True)
 settings.load_profile("softkin")
@@ -73,6 +75,8 @@ SHARED_BY_A_FILE = (
 )
 """Tests that share more with those of their file than with those of their mechanism: all units compiled together, a
 grammar."""
+OF_A_GENERATION = ("test_generated_is_fresh.py", "view/test_viewer.py")
+"""Tests that share a fresh generation of the whole catalogue."""
 WITH_THEIR_MECHANISM = ("unit/drawing/",)
 """Units that need all programs of a mechanism, which its other tests have built."""
 PATHS = {
@@ -84,6 +88,24 @@ PATHS = {
     "Kin_Wrist2": "orientation kinematics, and couplings with it",
 }
 """The paths through the compiler, and a mechanism that goes along each."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Forget which browser showed the viewer in an earlier run."""
+    if not hasattr(config, "workerinput"):
+        BROWSER.unlink(missing_ok=True)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say in one line which browser showed the viewer, or that none could be had."""
+    if BROWSER.is_file():
+        terminalreporter.line(BROWSER.read_text(encoding="utf-8").splitlines()[0])
+
+
+@pytest.fixture(scope="session")
+def generation(tmp_path_factory: pytest.TempPathFactory) -> Generation:
+    """A fresh generation of the whole catalogue."""
+    return generated(tmp_path_factory.mktemp("generation"))
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -98,6 +120,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if is_quick and item.get_closest_marker("slow") is None and not place.startswith(SWEEPS):
             item.add_marker("quick")
         if is_shared_out:
+            if place.startswith(OF_A_GENERATION):
+                item.add_marker(pytest.mark.xdist_group(OF_A_GENERATION[0]))
+                continue
             shared = [] if not folders or _is_shared_by_its_file(place) else names or machines_of(item, folders)
             item.add_marker(pytest.mark.xdist_group(shared[0] if shared else str(item.path.relative_to(ROOT))))
 

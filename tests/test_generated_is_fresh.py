@@ -5,44 +5,15 @@ The generation asks the witness about every mechanism; what it found is held aga
 
 from __future__ import annotations
 
-import os
-import pickle
-import subprocess
-import sys
-from collections.abc import Mapping
-from dataclasses import dataclass
-
 import pytest
 
 from derive.__main__ import OUTPUT
 from derive.description.catalogue import Entry
-from derive.kinematics.kinematics import Evidence
 from derive.output import differences
+from tests.fresh import Generation
 from tests.mechanisms import catalogue
 
 pytestmark = pytest.mark.slow
-
-
-@dataclass(frozen=True)
-class Generation:
-    """What a fresh generation gives."""
-
-    files: Mapping[str, bytes]
-    evidence: Mapping[str, Evidence]
-    """By mechanism."""
-
-
-@pytest.fixture(scope="module")
-def generation(tmp_path_factory: pytest.TempPathFactory) -> Generation:
-    """In the order of hashing of one seed; `make generate` and `make check` each have one that nobody chose."""
-    folder = tmp_path_factory.mktemp("generation")
-    output, evidence = folder / "generated", folder / "evidence"
-    command = [sys.executable, "-m", "tests.generation", str(output), str(evidence)]
-    environment = {**os.environ, "PYTHONHASHSEED": "1"}
-    done = subprocess.run(command, cwd=OUTPUT.parent, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    files = {str(p.relative_to(output)): p.read_bytes() for p in output.rglob("*") if p.is_file()}
-    return Generation(files, pickle.loads(evidence.read_bytes()))
 
 
 def test_generated_is_fresh(generation: Generation) -> None:

@@ -47,15 +47,21 @@ def generate(options: argparse.Namespace) -> int:
 
 def compare(options: argparse.Namespace) -> int:
     """Compare the output folder; raises `GenerationError` where it is not what the descriptions give."""
-    files, faults = _files(options, catalogue(options.mechanisms))
-    if faults:
-        raise GenerationError(faults[0])
+    files = machine_files(options)
     found = list(differences(options.output, files))
     if found:
         more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
         raise GenerationError(f"{found[0]}{more}: run `make generate`")
     print(f"{options.output} is up to date")
     return 0
+
+
+def machine_files(options: argparse.Namespace) -> dict[str, bytes]:
+    """The files of all mechanisms in the languages that are asked for. Raises `GenerationError` at the first fault."""
+    files, faults = _files(options, catalogue(options.mechanisms))
+    if faults:
+        raise GenerationError(faults[0])
+    return files
 
 
 def _files(options: argparse.Namespace, entries: tuple[Entry, ...]) -> tuple[dict[str, bytes], list[str]]:

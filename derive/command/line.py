@@ -5,6 +5,7 @@ softkin explain my_machine.py              print each step of its derivation, an
 softkin explain --html my_machine.py       the same as a page, with pictures, its Jacobian and its singularities
 softkin check my_machine.py                derive and measure it, and write nothing
 softkin derive my_machine.py --out build   derive it: Python package, Structured Text, PLCopenXML, picture
+softkin view my_machine.py                 write a page that shows it in a browser
 softkin live --machine my_machine.json     show it in the browser, moved by the axis values of its controller
 
 Status 0 is success; 2 a machine, or a command, that cannot be right; 1 a catalogue that is not as it should be.
@@ -17,7 +18,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from derive.command import catalogue, explain, live, new, own, report
+from derive.command import catalogue, explain, live, new, own, report, view
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
 from derive.importing import line as importing
@@ -90,6 +91,7 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     explained.add_argument("--html", action="store_true", help="write it as a page, with pictures, and name the file")
     explained.add_argument("--out", type=Path, default=report.OUTPUT, metavar="DIR", help=_PAGES)
     explained.set_defaults(run=explain.explain)
+    _view_command(commands)
     text = "write a commented description to start from"
     fresh = commands.add_parser("new", help=text, description=text)
     fresh.add_argument("file", type=Path, nargs="?", default=Path("my_machine.py"), metavar="FILE")
@@ -100,6 +102,26 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     imported.set_defaults(run=importing.run)
     text = "serve the viewer on this computer, and move it with the axis values of a controller"
     live.add_arguments(commands.add_parser("live", help=text, description=text))
+
+
+def _view_command(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    text = "write a page that shows machines in a browser, from disk; without a file: the whole catalogue in one page"
+    shown = commands.add_parser("view", help=text, description=text)
+    shown.add_argument("files", nargs="*", type=Path, metavar="FILE", help="a description, or a folder of them")
+    shown.add_argument(
+        "--out", type=Path, default=Path("build"), metavar="DIR", help="the folder of the page (default: build)"
+    )
+    shown.add_argument(
+        "--model",
+        action="append",
+        default=[],
+        metavar="BODY=FILE.glb[*SCALE]",
+        help="a mesh (binary glTF) in the place of a body of one machine: base, the axes that move it, plate, tool",
+    )
+    shown.set_defaults(
+        run=view.view, mechanisms=MECHANISMS, only=[], profile=None, fresh=False, language=["javascript"],
+        output=catalogue.OUTPUT,
+    )  # fmt: skip
 
 
 def _languages(command: argparse.ArgumentParser) -> None:

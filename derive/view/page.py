@@ -1,0 +1,101 @@
+"""The page: modules and the viewer's own source become one program, and stand with style and licences in one file."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+import tempfile
+from base64 import b64encode
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from derive.emit.language import TEMPLATES
+from derive.view.node import installed, run
+
+_SOURCE = TEMPLATES / "view"
+_TARGET = "es2022"
+_FIELDS = re.compile(r"\{\{ (\w+) \}\}")
+
+
+class BrokenPage(Exception):
+    """The bundler refuses the source; the message is the bundler's."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A mesh of the user's own in the place of a body."""
+
+    body: str
+    """The name of the body, as the viewer calls it: "base", the axes that move it, "plate", "tool"."""
+    data: bytes
+    """The file, binary glTF."""
+    scale: float = 1.0
+    """The user's length units per unit of the file."""
+
+
+@dataclass(frozen=True)
+class Content:
+    """What stands in a page."""
+
+    title: str
+    modules: Mapping[str, bytes]
+    """The machines in JavaScript: path below their folder → text."""
+    package: str
+    """The Python package of the machines."""
+    classes: Mapping[str, str]
+    """The name of a machine → that of its class in Python."""
+    models: Sequence[Model] = field(default=())
+
+
+def page(content: Content, packages: Path) -> str:
+    """The page. packages: the folder into which npm installs. Raises `MissingTool`, and `BrokenPage`."""
+    modules = installed(_SOURCE, packages)
+    licences = _licences(modules)
+    data = {
+        "package": content.package,
+        "classes": dict(content.classes),
+        "models": [{"body": m.body, "scale": m.scale, "data": b64encode(m.data).decode()} for m in content.models],
+        "licences": licences,
+    }
+    values = {
+        "title": html.escape(content.title),
+        "style": (_SOURCE / "page.css").read_text(encoding="utf-8").strip(),
+        "licences": licences.replace("--", "- -"),
+        "data": json.dumps(data, ensure_ascii=False).replace("<", "\\u003c"),
+        "program": _program(content.modules, modules),
+    }
+    return _FIELDS.sub(lambda found: values[found[1]], (_SOURCE / "page.html").read_text(encoding="utf-8"))
+
+
+def _program(machines: Mapping[str, bytes], modules: Path) -> str:
+    """One script without imports. What would end its element is spelled another way."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for path in sorted(_SOURCE.glob("*.js")):
+            (folder / path.name).write_bytes(path.read_bytes())
+        for file, data in machines.items():
+            target = folder / "machines" / file
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(data)
+        esbuild = modules / "esbuild" / "bin" / "esbuild"
+        command = [str(_binary(modules) or esbuild), "main.js", "--bundle", "--minify", "--format=iife"]
+        options = [f"--target={_TARGET}", "--legal-comments=none", "--charset=utf8", "--log-level=error"]
+        done = run([*command, *options], folder, NODE_PATH=str(modules))
+    if done.returncode:
+        raise BrokenPage(f"the viewer could not be put together:\n{done.stderr.strip()}")
+    return re.sub(r"<(/script|!--)", r"<\\\1", done.stdout.strip(), flags=re.IGNORECASE)
+
+
+def _binary(modules: Path) -> Path | None:
+    """The bundler for this platform: npm brings it as a package of its own."""
+    found = sorted((modules / "@esbuild").glob("*/bin/esbuild")) + sorted((modules / "@esbuild").glob("*/esbuild.exe"))
+    return found[0] if found else None
+
+
+def _licences(modules: Path) -> str:
+    """The licence of what others wrote and the page carries."""
+    version = json.loads((modules / "three" / "package.json").read_text(encoding="utf-8"))["version"]
+    text = (modules / "three" / "LICENSE").read_text(encoding="utf-8").strip()
+    return f"This page carries three.js {version}.\n\n{text}"

@@ -1,0 +1,42 @@
+/** The state as the fragment of the address: a pose that can be sent to a colleague. */
+
+import { frameOf, numbersOf } from "./pose.js";
+
+/** The fragment of a model: machine, parameters that differ from the nominal ones, axes, a frame that was refused. */
+export function fragmentOf(model) {
+  const parts = [`machine=${encodeURIComponent(model.name)}`, `axes=${(model.pose?.axes ?? model.axes).join()}`];
+  const changed = Object.entries(model.parameters).filter(([name, value]) => Number(value) !== Number(model.nominal[name]));
+  if (changed.length) parts.push(`with=${changed.map(([name, value]) => `${encodeURIComponent(name)}:${Number(value)}`).join()}`);
+  if (model.automatic.size) parts.push(`automatic=${[...model.automatic].sort().join()}`);
+  if (model.refusal && model.target) parts.push(`target=${numbersOf(model.target).join()}`);
+  return parts.join("&");
+}
+
+/** What a fragment says; null where it names no machine that is known. Anything else that is wrong in it is left out. */
+export function readFragment(fragment, names) {
+  const parts = new Map(fragment.replace(/^#/, "").split("&").map((part) => part.split(/=(.*)/s)));
+  const name = decoded(parts.get("machine") ?? "");
+  if (!names.includes(name)) return null;
+  const given = { axes: numbersIn(parts.get("axes")) ?? undefined };
+  const target = numbersIn(parts.get("target"));
+  if (target?.length === 6) given.target = frameOf(target);
+  const parameters = (parts.get("with") ?? "").split(",").filter(Boolean).map((pair) => pair.split(":"));
+  const valid = parameters.filter(([, value]) => value && Number.isFinite(Number(value)));
+  given.parameters = Object.fromEntries(valid.map(([key, value]) => [decoded(key), Number(value)]));
+  given.automatic = numbersIn(parts.get("automatic")) ?? [];
+  return { name, given };
+}
+
+function numbersIn(text) {
+  if (text === undefined || text === "") return null;
+  const found = text.split(",").map(Number);
+  return found.every(Number.isFinite) ? found : null;
+}
+
+function decoded(text) {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return "";
+  }
+}

@@ -1,0 +1,223 @@
+/** A machine as solid bodies: rods along its lines, a barrel for every turn, a carriage for every slide, plates, the tool. */
+
+import {
+  BoxGeometry, BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Matrix4, Mesh,
+  MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
+} from "three";
+
+const ROUND = new CylinderGeometry(1, 1, 1, 24);
+const BALL = new SphereGeometry(1, 20, 14);
+const BLOCK = new BoxGeometry(1, 1, 1);
+const POINT = new ConeGeometry(1, 1, 24);
+const UP = new Vector3(0, 1, 0);
+
+/** Radii and sizes over the size of the machine. */
+const THICK = { base: 0.02, link: 0.022, rod: 0.009, plate: 0.011, tool: 0.01 };
+const BARREL = { radius: 0.034, length: 0.1 };
+const CARRIAGE = 0.065;
+const RAIL = 0.012;
+const CYLINDER = 0.017;
+const LARGEST_PLATE = 24;
+/** A ghost is thinner, so that it does not shine through the machine where both are at one place. */
+const GHOST = 0.86;
+
+export const COLOURS = {
+  light: { base: 0x8b95a3, link: 0xe08a2e, rod: 0x5b6b80, plate: 0x3f7fbf, joint: 0x39424f, tool: 0x1f9d61, ghost: 0x4d7cc9 },
+  dark: { base: 0x6d7886, link: 0xe59a45, rod: 0x9fb0c6, plate: 0x5b9be0, joint: 0xb6c0cc, tool: 0x35c47f, ghost: 0x86aef0 },
+};
+export const STATES = { good: null, near: 0xe0a100, singular: 0xd83a34, refused: 0xd83a34 };
+
+/** One figure. `solid`: the machine itself; else a ghost, which is seen through. */
+export class Figure {
+  #pools = new Map();
+  #used = new Map();
+  #plates = [];
+
+  constructor({ isGhost = false, colours = COLOURS.light } = {}) {
+    this.group = new Group();
+    this.isGhost = isGhost;
+    this.materials = {};
+    for (const kind of ["base", "link", "rod", "plate", "joint", "tool", "refused"]) {
+      this.materials[kind] = new MeshStandardMaterial({
+        roughness: 0.55, metalness: 0.15, transparent: isGhost, opacity: isGhost ? 0.2 : 1, depthWrite: !isGhost, side: DoubleSide,
+        polygonOffset: isGhost, polygonOffsetFactor: 2, polygonOffsetUnits: 8,
+      });
+    }
+    this.materials.refused.color.set(STATES.refused);
+    this.paint(colours);
+  }
+
+  /** The colours of a theme. */
+  paint(colours) {
+    for (const kind of ["base", "link", "rod", "plate", "joint", "tool"]) {
+      this.materials[kind].color.set(this.isGhost ? colours.ghost : colours[kind]);
+    }
+    this.colours = colours;
+  }
+
+  /** The tool in the colour of a state: good, near to a singular pose, singular, refused; joints, where one is near. */
+  mark(state) {
+    this.materials.tool.color.set(STATES[state] ?? this.colours.tool);
+    this.materials.joint.color.set((state !== "refused" && STATES[state]) || this.colours.joint);
+  }
+
+  /** Stand as a scene says. hidden: names of bodies that a mesh of their own shows; refused: whether a body refuses. */
+  show(scene, size, { hidden = new Set(), refused = () => false } = {}) {
+    this.#used.clear();
+    let plates = 0;
+    scene.bodies.forEach((body, i) => {
+      if (hidden.has(body.name) || (this.isGhost && body.kind === "base")) return;
+      const material = refused(body) ? "refused" : body.kind;
+      const thick = size * THICK[body.kind] * (this.isGhost ? GHOST : 1);
+      for (const [start, end] of body.lines) this.#rod(start, end, thick, material);
+      if (body.kind === "plate" || body.kind === "base") plates += this.#face(plates, body, material);
+      if (body.kind === "base" && !body.lines.length) this.#foot(body.frame.position, size);
+      if (body.kind === "tool") this.#tool(body.frame, size, material);
+      for (const joint of scene.joints.filter((one) => one.body === i)) {
+        if (body.kind === "rod") this.#cylinder(body, joint, size, refused(body));
+        else this.#joint(joint, size, refused(body));
+      }
+    });
+    this.#plates.forEach((plate, i) => { plate.visible = i < plates; });
+    for (const [geometry, meshes] of this.#pools) {
+      const count = this.#used.get(geometry) ?? 0;
+      meshes.forEach((mesh, i) => { mesh.visible = i < count; });
+    }
+  }
+
+  dispose() {
+    Object.values(this.materials).forEach((material) => material.dispose());
+    this.#plates.forEach((plate) => plate.geometry.dispose());
+  }
+
+  #mesh(geometry, kind) {
+    const meshes = this.#pools.get(geometry) ?? [];
+    const count = this.#used.get(geometry) ?? 0;
+    this.#pools.set(geometry, meshes);
+    this.#used.set(geometry, count + 1);
+    if (!meshes[count]) {
+      meshes[count] = new Mesh(geometry);
+      this.group.add(meshes[count]);
+    }
+    meshes[count].material = this.materials[kind];
+    return meshes[count];
+  }
+
+  #rod(start, end, radius, kind) {
+    const [a, b] = [new Vector3(...start), new Vector3(...end)];
+    this.#along(ROUND, a, b, radius, kind);
+    for (const place of [a, b]) {
+      const ball = this.#mesh(BALL, kind);
+      ball.position.copy(place);
+      ball.scale.setScalar(radius * (kind === "rod" ? 1.5 : 1));
+    }
+  }
+
+  #along(geometry, a, b, radius, kind) {
+    const way = b.clone().sub(a);
+    const length = way.length();
+    const mesh = this.#mesh(geometry, kind);
+    mesh.position.copy(a).addScaledVector(way, 0.5);
+    mesh.quaternion.setFromUnitVectors(UP, length > 0 ? way.normalize() : UP);
+    mesh.scale.set(radius, Math.max(length, 1e-6), radius);
+    return mesh;
+  }
+
+  #joint(joint, size, isRefused) {
+    const kind = isRefused ? "refused" : "joint";
+    const [at, axis] = [new Vector3(...joint.at), new Vector3(...joint.axis)];
+    if (joint.kind === "turn") {
+      const thin = this.isGhost ? GHOST : 1;
+      const half = (thin * size * BARREL.length) / 2;
+      this.#along(ROUND, at.clone().addScaledVector(axis, -half), at.clone().addScaledVector(axis, half), thin * size * BARREL.radius, kind);
+      return;
+    }
+    const from = at.clone().addScaledVector(axis, -joint.travel);
+    if (Math.abs(joint.travel) > 0) this.#along(ROUND, from, at, size * RAIL, kind);
+    const block = this.#mesh(BLOCK, kind);
+    block.position.copy(at);
+    block.quaternion.setFromUnitVectors(UP, axis);
+    block.scale.setScalar(size * CARRIAGE);
+  }
+
+  /** A rod that grows: the cylinder of its drive around its first half. */
+  #cylinder({ lines: [[start]] }, { at }, size, isRefused) {
+    const thin = this.isGhost ? GHOST : 1;
+    this.#along(ROUND, new Vector3(...start), new Vector3(...at), thin * size * CYLINDER, isRefused ? "refused" : "joint");
+  }
+
+  #foot(position, size) {
+    const foot = this.#mesh(ROUND, "base");
+    foot.position.set(...position);
+    foot.position.z -= size * 0.04;
+    foot.quaternion.setFromUnitVectors(UP, new Vector3(0, 0, 1));
+    foot.scale.set(size * 0.07, size * 0.06, size * 0.07);
+  }
+
+  #tool({ position, rotation }, size, kind) {
+    const z = new Vector3(rotation[0][2], rotation[1][2], rotation[2][2]);
+    const at = new Vector3(...position);
+    const cone = this.#along(POINT, at.clone().addScaledVector(z, -size * 0.07), at, size * 0.024, kind);
+    cone.scale.x = cone.scale.z = size * 0.024;
+  }
+
+  /** The face that the ring of a plate or base encloses; 1 where there is one. */
+  #face(place, body, kind) {
+    const ring = ringOf(body.lines);
+    if (ring.length < 3 || ring.length > LARGEST_PLATE) return 0;
+    if (!this.#plates[place]) {
+      const geometry = new BufferGeometry();
+      geometry.setAttribute("position", new BufferAttribute(new Float32Array(9 * LARGEST_PLATE), 3));
+      this.#plates[place] = new Mesh(geometry);
+      this.#plates[place].frustumCulled = false;
+      this.group.add(this.#plates[place]);
+    }
+    const mesh = this.#plates[place];
+    mesh.material = this.materials[kind];
+    const centre = ring.reduce((sum, point) => sum.map((value, i) => value + point[i] / ring.length), [0, 0, 0]);
+    const points = mesh.geometry.getAttribute("position");
+    ring.forEach((point, i) => {
+      [centre, point, ring[(i + 1) % ring.length]].forEach((corner, k) => points.setXYZ(3 * i + k, ...corner));
+    });
+    points.needsUpdate = true;
+    mesh.geometry.setDrawRange(0, 3 * ring.length);
+    mesh.geometry.computeVertexNormals();
+    return 1;
+  }
+}
+
+/** The points of a closed ring at the begin of lines. */
+function ringOf(lines) {
+  const points = [];
+  for (const [start, end] of lines) {
+    points.push(start);
+    if (points.length > 2 && isSame(end, points[0])) return points;
+    if (points.length > 1 && !isSame(points[points.length - 1], start)) return [];
+  }
+  return [];
+}
+
+function isSame(one, other) {
+  return one.every((value, i) => value === other[i]);
+}
+
+/** The matrix of a frame. */
+export function matrixOf({ position, rotation }) {
+  const [a, b, c] = rotation;
+  return new Matrix4().set(...a, position[0], ...b, position[1], ...c, position[2], 0, 0, 0, 1);
+}
+
+export function quaternionFrom(frame) {
+  return new Quaternion().setFromRotationMatrix(matrixOf(frame));
+}
+
+/** The middle of all that is drawn, and the radius of a ball around it. */
+export function extentOf(scene) {
+  const points = scene.bodies.flatMap((body) => [body.frame.position, ...body.lines.flat()]);
+  const isGrown = (joint) => scene.bodies[joint.body].kind === "rod";
+  for (const joint of scene.joints.filter((one) => !isGrown(one))) points.push(joint.at, joint.at.map((value, i) => value - joint.travel * joint.axis[i]));
+  const low = [0, 1, 2].map((k) => Math.min(...points.map((point) => point[k])));
+  const high = [0, 1, 2].map((k) => Math.max(...points.map((point) => point[k])));
+  const centre = low.map((value, k) => (value + high[k]) / 2);
+  return { centre, size: Math.max(Math.hypot(...high.map((value, k) => value - low[k])), 1e-3), low, high };
+}

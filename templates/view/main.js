@@ -1,0 +1,208 @@
+/** The page: the picture, the panel, and what keeps both at the same pose. Without a page it is the worker of a slice. */
+
+import { fragmentOf, readFragment } from "./address.js";
+import { AxesPanel } from "./axes.js";
+import { CopyPanel } from "./copy.js";
+import { element } from "./element.js";
+import { Live, tokenOf } from "./live.js";
+import { meshesOf } from "./meshes.js";
+import { Model, inWords } from "./model.js";
+import { LinePanel } from "./plots.js";
+import { DimensionsPanel, MarginsPanel, SolutionsPanel, stateOf } from "./said.js";
+import { SlicePanel } from "./slice.js";
+import { Stage } from "./stage.js";
+import { ConfigurationPanel, ToolPanel } from "./tool.js";
+import { serve } from "./worker.js";
+
+const STATES = { good: ["regular pose", "good"], near: ["near a singular pose", "warn"], singular: ["singular pose", "bad"] };
+/** Ghosts of more solutions would hide the machine. */
+const MOST_GHOSTS = 32;
+const REMEMBER_AFTER = 120;
+
+class Page {
+  constructor() {
+    this.data = JSON.parse(document.getElementById("page").textContent);
+    this.model = new Model();
+    const by = (id) => document.getElementById(id);
+    this.parts = Object.fromEntries(["machine", "state", "live", "refusal", "canvas", "labels", "panel", "move", "turn", "ghosts", "names", "fit", "start"].map((id) => [id, by(id)]));
+    this.stage = new Stage(this.parts.canvas, this.parts.labels, {
+      onDrag: (frame, isFinished) => (isFinished ? this.#show("pose") : this.model.moveTo(frame)),
+      onGhost: (index) => this.model.take(this.ghosts[index].axes),
+    });
+    this.mode = "translate";
+    this.ghosts = [];
+    this.hasGhosts = true;
+    this.#panel();
+    this.#theme();
+    this.#listen();
+    this.model.onChange((what) => this.#show(what));
+    const token = tokenOf(location.hash);
+    this.isLive = token !== null; // the address stays that of the run
+    this.#restore() || this.model.open(this.model.names[0]);
+    if (this.isLive) this.follow(token);
+  }
+
+  /** Follow a controller; the state of the connection stands in the head of the page. */
+  follow(token, Socket) {
+    this.isLive = true;
+    this.live = new Live(this.model, token, (words, isGood) => {
+      this.parts.live.textContent = words;
+      this.parts.live.className = isGood ? "good" : "bad";
+    }, Socket);
+  }
+
+  #panel() {
+    const { model, stage } = this;
+    this.solutions = new SolutionsPanel(model);
+    const dimensions = new DimensionsPanel(model);
+    const shown = [new AxesPanel(model), new ToolPanel(model), new ConfigurationPanel(model), new MarginsPanel(model), this.solutions, dimensions];
+    const line = new LinePanel(model, stage);
+    this.line = line;
+    this.slice = new SlicePanel(model, stage);
+    const rest = [{ element: dimensions.second }, line, this.slice, new CopyPanel(model, this.data)];
+    this.parts.panel.append(...[...shown, ...rest].map((one) => one.element), this.#about());
+  }
+
+  #about() {
+    this.summary = element("p", { class: "soft" });
+    const licence = element("pre", { class: "soft", style: "white-space: pre-wrap" }, this.data.licences);
+    const keys = element("p", { class: "soft" }, "Keys: T move, R turn, G ghosts, N names, F fit, 0 start; in a number, arrows step by 1, with Shift by 10, with Alt by 0.1.");
+    const report = element("p", { class: "soft" }, element("a", { href: "report/index.html" }, "The derivations"), ", where they have been written beside this page.");
+    return element("details", {}, element("summary", {}, "About"), this.summary, this.model.names.length > 1 ? report : null, keys, licence);
+  }
+
+  #theme() {
+    const dark = matchMedia("(prefers-color-scheme: dark)");
+    const paint = () => this.stage.paint(dark.matches ? "dark" : "light");
+    dark.addEventListener("change", paint);
+    paint();
+  }
+
+  #listen() {
+    const { parts, model } = this;
+    for (const name of model.names) parts.machine.append(element("option", { value: name }, name));
+    parts.machine.addEventListener("change", () => model.open(parts.machine.value));
+    addEventListener("hashchange", () => location.hash.slice(1) !== this.written && this.#restore());
+    const actions = {
+      move: () => this.#handle("translate"), turn: () => this.#handle("rotate"),
+      ghosts: () => { this.hasGhosts = !this.hasGhosts; this.#press("ghosts", this.hasGhosts); this.#show("pose"); },
+      names: () => { parts.labels.hidden = !parts.labels.hidden; this.#press("names", !parts.labels.hidden); this.stage.ask(); },
+      fit: () => model.pose.scene.status || this.stage.fit(model.pose.scene), start: () => model.moveAxes(model.start),
+    };
+    const keys = { t: "move", r: "turn", g: "ghosts", n: "names", f: "fit", 0: "start" };
+    Object.entries(actions).forEach(([name, action]) => parts[name].addEventListener("click", action));
+    addEventListener("keydown", (event) => {
+      const isTyping = event.target.matches("input, select, textarea") || event.ctrlKey || event.metaKey || event.altKey;
+      const name = keys[event.key.toLowerCase()];
+      if (name && !isTyping && model.pose) actions[name]();
+    });
+  }
+
+  #press(name, isPressed) {
+    this.parts[name].setAttribute("aria-pressed", String(isPressed));
+  }
+
+  /** One kind of handles, or none where it is chosen again. */
+  #handle(mode) {
+    this.mode = this.mode === mode ? "" : mode;
+    this.#handles();
+  }
+
+  #handles() {
+    const { task, readsRotation } = this.model.description;
+    this.#press("move", this.mode === "translate");
+    this.#press("turn", this.mode === "rotate");
+    const isAboutZ = task.turning === "about z";
+    const turns = [readsRotation && !isAboutZ, readsRotation && !isAboutZ, readsRotation];
+    const free = this.mode === "rotate" ? turns : [..."xyz"].map((name) => task.position.includes(name));
+    this.stage.handleAs(this.model.isCommanded && free.some(Boolean) ? this.mode : "", free);
+  }
+
+  #restore() {
+    const found = readFragment(location.hash, this.model.names);
+    if (found) this.model.open(found.name, found.given);
+    return found !== null;
+  }
+
+  #show(what) {
+    const { model, stage, parts } = this;
+    if (what === "refused parameter") return;
+    const { pose, refusal } = model;
+    if (what === "machine") {
+      parts.machine.value = model.name;
+      document.title = `${model.name}: Softkin`;
+      this.summary.textContent = `${model.description.summary} ${model.description.notes.join(" ")}`;
+      this.#meshes();
+      this.#handles();
+    }
+    const isWhole = Boolean(pose) && !pose.scene.status;
+    if (isWhole && (what === "machine" || what === "dimensions")) stage.fit(pose.scene);
+    const said = refusal ?? pose?.beyond ?? (isWhole ? null : pose?.scene);
+    stage.figure.group.visible = isWhole;
+    if (isWhole) {
+      stage.show(pose.scene, refusal ? model.target : null, { refused: (body) => Boolean(said) && refuses(said.reason, body) });
+      stage.figure.mark(refusal ? "refused" : stateOf(pose, 0));
+    }
+    parts.refusal.hidden = !said;
+    parts.refusal.textContent = said ? inWords(said) : "";
+    this.#state(said);
+    this.#others();
+    this.#remember();
+  }
+
+  #state(said) {
+    const [words, kind] = said ? ["refused", "bad"] : STATES[stateOf(this.model.pose, 0)];
+    this.parts.state.textContent = words;
+    this.parts.state.className = kind;
+    const { pose } = this.model;
+    this.parts.canvas.setAttribute("aria-label", `${this.model.name}, ${words}${pose ? `, tool at ${pose.frame.position.map((value) => value.toFixed(1)).join(", ")}` : ""}`);
+  }
+
+  /** The other solutions: in the list, and as ghosts. */
+  #others() {
+    const found = this.model.solutions();
+    this.solutions.show(found);
+    this.ghosts = this.hasGhosts ? found.filter((slot) => !slot.status && !slot.isPresent).slice(0, MOST_GHOSTS) : [];
+    const scenes = this.ghosts.map((slot) => this.model.machine.scene(slot.axes, this.model.pose.frame));
+    this.ghosts = this.ghosts.filter((_, i) => !scenes[i].status);
+    this.stage.showGhosts(scenes.filter((scene) => !scene.status));
+  }
+
+  async #meshes() {
+    this.stage.clearBodies();
+    if (!this.data.models.length || !this.model.pose) return;
+    for (const { body, mesh } of await meshesOf(this.data.models)) this.stage.replaceBody(body, mesh);
+    this.#show("pose");
+  }
+
+  /** The state in the address, at most once in a while: browsers refuse to write it faster. */
+  #remember() {
+    if (this.isLive) return; // the address names the run of the server, and the pose is over in a moment
+    clearTimeout(this.remembering);
+    this.remembering = setTimeout(() => {
+      this.written = fragmentOf(this.model);
+      history.replaceState(null, "", `#${this.written}`);
+    }, REMEMBER_AFTER);
+  }
+}
+
+/** Whether a reason speaks of a body: by an axis that moves it, or by its name. */
+function refuses(reason, body) {
+  const named = reason.split(/[:,]| cannot | where /)[0].trim();
+  return body.joints.includes(named) || body.name === named;
+}
+
+/** The page, or in a sentence why there is none: a browser without WebGL 2 cannot draw it. */
+function shown() {
+  try {
+    return new Page();
+  } catch (error) {
+    const place = document.getElementById("refusal");
+    place.hidden = false;
+    place.textContent = `The viewer could not start: ${error.message}`;
+    throw error;
+  }
+}
+
+if (typeof document === "undefined") serve();
+else globalThis.softkinPage = shown();

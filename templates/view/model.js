@@ -1,0 +1,176 @@
+/**
+ * What is shown: a machine with its parameters, its axes, the frame that is wanted, and what the machine says about it.
+ *
+ * Every number comes from the module of the machine. Whoever shows something asks to be told of changes.
+ */
+
+import { catalogue, inWords } from "./machines/index.js";
+import { nominalOf, startOf } from "./start.js";
+
+const SAME = 1e-6;
+
+export class Model {
+  #heard = [];
+
+  /** All names of machines, in the order of the catalogue. */
+  names = Object.keys(catalogue);
+
+  onChange(listener) {
+    this.#heard.push(listener);
+  }
+
+  /** What is known of a machine without its parameters. */
+  describe(name) {
+    return catalogue[name].description;
+  }
+
+  /** Show a machine. given: {parameters, axes, target, automatic}, each may be left out. */
+  open(name, given = {}) {
+    this.name = name;
+    this.module = catalogue[name];
+    this.description = this.module.description;
+    this.nominal = nominalOf(this.description);
+    this.automatic = new Set(given.automatic ?? []);
+    this.wrong = null;
+    const parameters = { ...this.nominal, ...given.parameters };
+    const made = this.module.create(parameters);
+    this.parameters = made.status ? { ...this.nominal } : parameters;
+    this.machine = made.status ? this.module.create(this.nominal).machine : made.machine;
+    if (made.status) this.wrong = { names: made.parameters, words: inWords(made), value: null };
+    this.start = startOf(this.machine);
+    const count = this.description.axes.length;
+    this.axes = given.axes?.length === count ? given.axes : this.start;
+    this.pose = null;
+    this.refusal = null;
+    this.target = null;
+    this.#stand(this.axes);
+    if (given.target) this.aim(given.target);
+    this.#tell("machine");
+  }
+
+  /** Whether the tool can be commanded at all. */
+  get isCommanded() {
+    return this.description.axes.length > 0;
+  }
+
+  /** Move the axes. Where the machine has no pose there, it is drawn in its last one, and the reason is shown. */
+  moveAxes(axes) {
+    this.#stand(axes);
+    this.#tell("pose");
+  }
+
+  /** Ask for a frame on the branches of the present pose, or on those that `bytes` name. */
+  moveTo(target, bytes = this.branches()) {
+    this.aim(target, bytes);
+    this.#tell("pose");
+  }
+
+  aim(target, bytes = this.branches()) {
+    this.target = target;
+    const found = this.machine.inverse(target, bytes, this.axes);
+    if (found.status) this.refusal = found;
+    else this.#stand(found.axes, target);
+  }
+
+  /** Stand at axes that are known to be an answer for a frame, by default for the one that is wanted. */
+  take(axes, target = this.target) {
+    this.#stand(axes, target);
+    this.#tell("pose");
+  }
+
+  /** Another value of a parameter. A value that the machine refuses is kept beside the machine as it was. */
+  setParameter(name, value) {
+    const made = this.module.create({ ...this.parameters, [name]: value });
+    if (made.status) {
+      this.wrong = { names: [name, ...made.parameters], words: inWords(made), value };
+      this.#tell("refused parameter");
+      return;
+    }
+    this.wrong = null;
+    this.parameters = { ...this.parameters, [name]: value };
+    this.machine = made.machine;
+    this.pose = null;
+    this.#stand(this.axes);
+    if (!this.pose) {
+      const refused = this.refusal;
+      this.#stand(startOf(this.machine));
+      this.refusal = this.pose ? null : refused;
+    }
+    this.#tell("dimensions");
+  }
+
+  /** The bytes that keep the branches of the present pose; turns are open, and so are automatic branches. */
+  branches() {
+    const bytes = this.pose?.configuration ?? this.description.defaultConfiguration;
+    const { branchCount } = this.description;
+    return bytes.map((byte, i) => (i >= branchCount || this.automatic.has(i) || byte === 3 ? 0 : byte));
+  }
+
+  /** All slots at the frame that is wanted, and whether each is the pose that is shown. */
+  solutions() {
+    if (!this.pose || !this.isCommanded) return [];
+    const found = this.machine.inverseAll(this.target ?? this.pose.frame, this.axes);
+    if (found.status) return [{ ...found, configuration: [], words: inWords(found), isPresent: false }];
+    const { branchCount } = this.description;
+    const known = [];
+    for (const slot of found.slots) {
+      const branches = slot.configuration.slice(0, branchCount);
+      if (slot.status) {
+        known.push({ ...slot, branches, words: inWords(slot), isPresent: false });
+        continue;
+      }
+      for (const axes of [slot.axes, ...slot.others]) {
+        if (known.some((one) => !one.status && this.#areSame(one.axes, axes))) continue;
+        const isPresent = !this.refusal && this.#areSame(axes, this.axes);
+        known.push({ ...slot, branches, axes, isPresent });
+      }
+    }
+    return known;
+  }
+
+  /** What a slot is called: the names of its branches. */
+  nameOf(branches) {
+    const words = branches.map((byte, i) => {
+      const { name, branches: names } = this.description.configuration[i];
+      return `${name.replaceAll("_", " ")} ${byte === 1 || byte === 2 ? names[byte - 1] : byte === 3 ? "where both meet" : "automatic"}`;
+    });
+    return words.join(", ") || "the one solution";
+  }
+
+  #areSame(one, other) {
+    return one.every((value, i) => {
+      const { period } = this.description.axes[i];
+      const away = Math.abs(value - other[i]);
+      return Math.min(away, period ? Math.abs(away - period * Math.round(away / period)) : away) < SAME * (1 + Math.abs(value));
+    });
+  }
+
+  /** Stand at axis values; without a pose there the last one stays drawn. */
+  #stand(axes, wanted = null) {
+    this.axes = axes;
+    const found = this.machine.forward(axes, this.#near());
+    if (found.status) {
+      this.refusal = found;
+      return;
+    }
+    const scene = this.machine.scene(axes, found.frame);
+    const limited = this.machine.limited(axes);
+    this.pose = {
+      ...found, axes, scene, limited, singularity: this.machine.singularity(axes),
+      beyond: limited.status ? limited : limited.beyond,
+    };
+    this.target = wanted;
+    this.refusal = null;
+  }
+
+  /** Where a search for the frame begins: at the last pose, which is nearby. */
+  #near() {
+    return this.description.startsForward && this.pose ? this.pose.frame : undefined;
+  }
+
+  #tell(what) {
+    this.#heard.forEach((listener) => listener(what));
+  }
+}
+
+export { inWords };

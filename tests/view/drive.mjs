@@ -1,0 +1,347 @@
+/**
+ * What a user does in the viewer, in one browser; what was seen is written as JSON, and judged in Python.
+ *
+ * node drive.mjs CATALOGUE_PAGE OWN_PAGE PICTURES RESULT [installed | npm]
+ */
+
+import { writeFileSync } from "node:fs";
+import { pathToFileURL } from "node:url";
+import { launched } from "./browser.mjs";
+
+const [cataloguePage, ownPage, pictures, result, which] = process.argv.slice(2);
+const LAPTOP = { width: 1366, height: 768 };
+const SMALL = { width: 560, height: 420 };
+const TABLET = { width: 820, height: 1180 };
+const { browser, name } = await launched(which).catch((error) => {
+  writeFileSync(result, JSON.stringify({ missing: error.message }));
+  process.exit(0);
+});
+const seen = { browser: name, errors: [], firstPictures: [] };
+
+/** A page at a fragment; what its console complains of is kept. */
+async function opened(fragment, { size = SMALL, theme = "light", file = cataloguePage } = {}) {
+  const context = await browser.newContext({ viewport: size, colorScheme: theme, offline: true });
+  const page = await context.newPage();
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && !isOfTheDriver(message) && seen.errors.push(`${fragment}: ${message.text()}`));
+  page.on("pageerror", (error) => seen.errors.push(`${fragment}: ${error}`));
+  page.on("request", (request) => /^(file|blob|data):/.test(request.url()) || seen.errors.push(`${fragment} asks for ${request.url()}`));
+  await page.goto(`${pathToFileURL(file)}${fragment}`);
+  await page.waitForFunction(() => globalThis.softkinPage?.model.pose && globalThis.softkinPage.stage.firstPicture);
+  seen.firstPictures.push(await page.evaluate(() => softkinPage.stage.firstPicture));
+  return page;
+}
+
+/** Reading pixels back makes the software renderer complain of its speed; the viewer itself reads none. */
+function isOfTheDriver(message) {
+  return /GPU stall due to ReadPixels|GL Driver Message/.test(message.text());
+}
+
+/** What the page shows and knows of its pose. */
+function state(page) {
+  return page.evaluate(() => {
+    const { model } = softkinPage;
+    const value = (id) => document.getElementById(id).value;
+    return {
+      machine: model.name, parameters: model.parameters, axes: model.axes, frame: model.pose.frame, configuration: model.pose.configuration,
+      branches: model.branches(), margins: model.pose.singularity.margins,
+      shownAxes: model.description.axes.map((_, i) => value(`axis-${i}`)), shownTool: [..."XYZABC"].map((letter) => value(`tool-${letter}`)),
+      refusal: document.getElementById("refusal").hidden ? null : document.getElementById("refusal").textContent,
+      isMarked: softkinPage.stage.figure.group.children.some((mesh) => mesh.visible && mesh.material === softkinPage.stage.figure.materials.refused),
+      ghosts: softkinPage.ghosts.map((slot) => slot.axes),
+    };
+  });
+}
+
+/** Open these sections of the panel, or all. */
+function unfold(page, names = "") {
+  return page.evaluate((pattern) => document.querySelectorAll("details").forEach((one) => {
+    one.open = new RegExp(pattern).test(one.querySelector("summary").textContent);
+  }), names);
+}
+
+async function settled(page) {
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await page.waitForTimeout(150); // the address is written after 120 ms
+}
+
+/** A picture at a size; what comes before it is drawn smaller, which takes a software renderer less. */
+async function pictured(page, size, name) {
+  await page.setViewportSize(size);
+  await settled(page);
+  await page.evaluate(() => document.getElementById("fit").click());
+  await settled(page);
+  await page.screenshot({ path: `${pictures}/${name}.png` });
+}
+
+/** Every machine in turn: how many pixels its figure alone covers, and what stands in it. */
+async function everyMachine() {
+  const page = await opened("");
+  seen.machines = await page.evaluate(async () => {
+    const { model, stage } = softkinPage;
+    const found = {};
+    for (const name of model.names) {
+      model.open(name);
+      const others = [stage.floor, stage.transformed, stage.triad, stage.origin];
+      const were = others.map((one) => one.visible);
+      others.forEach((one) => { one.visible = false; });
+      stage.showGhosts([]);
+      stage.draw();
+      const gl = stage.renderer.getContext();
+      const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+      gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      let covered = 0;
+      for (let i = 3; i < pixels.length; i += 4) covered += pixels[i] > 0;
+      others.forEach((one, i) => { one.visible = were[i]; });
+      found[name] = {
+        covered, refusal: model.refusal, axes: model.axes, frame: model.pose?.frame ?? null, configuration: model.pose?.configuration ?? [],
+        parameters: model.parameters, solutions: model.solutions().filter((slot) => !slot.status).length, margins: model.pose?.singularity.margins,
+        isLabelled: [...document.querySelectorAll("input, select, button")].every((one) => one.labels?.length || one.ariaLabel || one.getAttribute("aria-labelledby") || one.textContent.trim()),
+      };
+      await new Promise(requestAnimationFrame);
+    }
+    return found;
+  });
+  seen.times = await page.evaluate(() => {
+    const { model, stage } = softkinPage;
+    const least = (work, count = 25) => {
+      let best = Infinity;
+      for (let i = 0; i < count; i += 1) {
+        const start = performance.now();
+        work(i);
+        best = Math.min(best, performance.now() - start);
+      }
+      return best;
+    };
+    const found = {};
+    for (const name of ["Kin_ArticulatedRobot_6DOF", "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"]) {
+      model.open(name);
+      const { machine, pose, axes } = model;
+      found[name] = {
+        frame: least((i) => { model.moveAxes(axes.map((value) => value + 1e-3 * i)); stage.draw(); }),
+        all: least(() => { for (let i = 0; i < 50; i += 1) machine.inverseAll(pose.frame, axes); }, 10) / 50,
+        ghosts: softkinPage.ghosts.length, isSearched: machine.isSearched,
+      };
+    }
+    return found;
+  });
+  await page.context().close();
+}
+
+/** The tool dragged by the mouse, at the middle of its handles; then the address opened elsewhere. */
+async function dragged() {
+  const page = await opened("#machine=Kin_ArticulatedRobot_6DOF");
+  seen.before = await state(page);
+  const [x, y] = await page.evaluate(() => softkinPage.stage.placeOf(softkinPage.model.pose.frame.position));
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= 6; i += 1) await page.mouse.move(x + 4 * i, y - 2 * i);
+  await page.mouse.up();
+  await settled(page);
+  seen.dragged = await state(page);
+  seen.address = await page.evaluate(() => location.hash);
+  const other = await opened(seen.address);
+  seen.restored = await state(other);
+  await other.locator("#canvas").press("r");
+  const [u, v] = await other.evaluate(() => softkinPage.stage.placeOf(softkinPage.model.pose.frame.position));
+  await other.mouse.move(u, v);
+  await other.mouse.down();
+  for (let i = 1; i <= 4; i += 1) await other.mouse.move(u + 3 * i, v + 2 * i);
+  await other.mouse.up();
+  seen.turned = await state(other);
+  await other.context().close();
+  await clickGhost(page);
+  await pictured(page, LAPTOP, "laptop_light");
+  await unfold(page);
+  const click = (name) => page.locator("#panel").getByRole("button", { name, exact: true }).evaluate((button) => button.click());
+  seen.copied = { pose: await state(page) };
+  for (const kind of ["Python", "Structured Text", "CSV"]) {
+    await click(kind);
+    seen.copied[kind] = await page.locator("#panel textarea").inputValue();
+  }
+  await page.context().close();
+}
+
+/** A click on a ghost in the picture. */
+async function clickGhost(page) {
+  const places = await page.evaluate(() => {
+    const { stage, ghosts, model } = softkinPage;
+    return ghosts.flatMap((slot) => model.machine.scene(slot.axes).bodies.slice(1, -1).flatMap((body) => body.lines))
+      .map(([start, end]) => stage.placeOf(start.map((value, i) => 0.5 * (value + end[i]))));
+  });
+  for (const [x, y] of places) {
+    await page.mouse.click(x, y);
+    const now = await state(page);
+    if (now.axes.some((value, i) => Math.abs(value - seen.dragged.axes[i]) > 1)) {
+      seen.taken = now;
+      return;
+    }
+  }
+}
+
+/** What is typed: a frame out of reach, a dimension that is not allowed and one that is, an axis beyond its limit; keys. */
+async function typed() {
+  const page = await opened("#machine=Kin_Scara4_ZCcoupled_Type1&axes=20,40,5,30");
+  await page.locator("#tool-X").fill("700");
+  await settled(page);
+  seen.refused = await state(page);
+  seen.refusedAddress = await page.evaluate(() => location.hash);
+  const other = await opened(seen.refusedAddress);
+  seen.refusedRestored = await state(other);
+  await other.context().close();
+  await page.locator("#tool-X").fill("400");
+  seen.reached = await state(page);
+  await unfold(page);
+  const dimension = (label) => page.getByLabel(label, { exact: true });
+  await dimension("link length 1").fill("0");
+  seen.dimension = await page.evaluate(() => [...document.querySelectorAll(".wrong")].map((one) => one.textContent).filter(Boolean));
+  seen.afterWrong = await state(page);
+  await dimension("link length 1").fill("300");
+  seen.longer = await state(page);
+  await dimension("lower a1").fill("-20");
+  await dimension("upper a1").fill("25");
+  await page.locator("#axis-0").fill("30");
+  seen.beyond = await state(page);
+  await page.locator("#axis-0").press("ArrowDown");
+  await page.locator("#axis-0").press("Shift+ArrowDown");
+  seen.stepped = await state(page);
+  await page.getByRole("button", { name: "left", exact: true }).evaluate((button) => button.click());
+  seen.left = await state(page);
+  await page.locator("#canvas").press("g");
+  seen.withoutGhosts = await state(page);
+  seen.order = await page.evaluate(() => [...document.querySelectorAll("a, button, select, input, summary, canvas, textarea")]
+    .filter((one) => one.tabIndex >= 0 && !one.disabled).map((one) => one.id || one.textContent.trim() || one.ariaLabel));
+  await page.context().close();
+}
+
+/** A line that crosses the inside of a SCARA, where nothing reaches; then one that is reached. */
+async function line() {
+  const page = await opened("#machine=Kin_Scara4_ZCcoupled_Type1&axes=10,40,5,30", { theme: "dark" });
+  await unfold(page);
+  const end = (letter) => page.getByRole("button", { name: `${letter} = this pose` }).evaluate((button) => button.click());
+  const to = async (x, y) => {
+    await page.locator("#tool-X").fill(String(x));
+    await page.locator("#tool-Y").fill(String(y));
+    await page.locator("#tool-Y").blur();
+  };
+  const read = () => page.evaluate(() => ({
+    said: document.querySelector(".plots").closest("details").querySelector("p").textContent,
+    curves: document.querySelectorAll(".plots .curve").length, stops: document.querySelectorAll(".plots .stop").length,
+    singular: document.querySelectorAll(".plots .singular").length, jumps: document.querySelectorAll(".plots .jump").length,
+    path: softkinPage.stage.path?.geometry.getAttribute("position").count ?? 0,
+  }));
+  await to(300, -200);
+  await end("A");
+  seen.lineFrom = await state(page);
+  await to(-300, 10);
+  await end("B");
+  seen.crossing = await read();
+  await to(350, 250);
+  await end("B");
+  seen.line = await read();
+  await page.getByLabel("Place on the line").evaluate((slider) => { slider.value = 0.5; slider.dispatchEvent(new Event("input")); });
+  seen.halfway = await state(page);
+  await page.getByRole("button", { name: "Play" }).evaluate((button) => button.click());
+  await page.waitForTimeout(400);
+  await page.getByRole("button", { name: "Pause" }).evaluate((button) => button.click());
+  seen.played = await state(page);
+  await unfold(page, "^(Axes|Line)");
+  await pictured(page, TABLET, "tablet_dark");
+  await page.context().close();
+}
+
+/** Lines that jump over a singular pose, and that end at a limit. */
+async function marks() {
+  const drawn = async (fragment, from, to) => {
+    const page = await opened(fragment);
+    const found = await page.evaluate(([start, end]) => {
+      const { model, line } = softkinPage;
+      const { rotation } = model.pose.frame;
+      [["A", start], ["B", end]].forEach(([letter, position]) => {
+        model.moveTo({ position, rotation });
+        line.set(letter);
+      });
+      const count = (kind) => document.querySelectorAll(`.plots ${kind}`).length;
+      return { jumps: count(".jump"), singular: count(".singular"), limits: count(".limit"), stops: count(".stop"), said: line.said.textContent };
+    }, [from, to]);
+    await page.context().close();
+    return found;
+  };
+  seen.jump = await drawn("#machine=Kin_Polar&axes=0,200", [200, 0, 0], [-200, 0, 0]);
+  seen.limit = await drawn("#machine=Kin_Scara2_Z&axes=10,40,0&with=lower_a1:-90,upper_a1:40", [400, -100, 0], [0, 430, 0]);
+}
+
+/** A slice of the workspace in a worker. */
+async function slice() {
+  const page = await opened("#machine=Kin_Scara2_Z&axes=20,60,-20", { theme: "dark" });
+  await unfold(page, "^(Slice|Singul)");
+  const computed = async (what) => {
+    await page.locator("#slice-what").selectOption(what);
+    await page.getByRole("button", { name: "Compute" }).click();
+    await page.waitForFunction(() => softkinPage.stage.slice && /of the slice is reached/.test(document.getElementById("panel").textContent));
+    return page.evaluate(() => {
+      const { slice } = softkinPage;
+      return { corners: slice.corners, values: slice.values.map((row) => [...row]) };
+    });
+  };
+  seen.slice = await computed("number");
+  seen.slicePose = await state(page);
+  seen.margin = await computed("elbow");
+  await pictured(page, LAPTOP, "laptop_dark");
+  await page.context().close();
+}
+
+/** The page of one machine, with a mesh of its own in the place of a body. */
+async function own() {
+  const page = await opened("", { size: TABLET, file: ownPage });
+  await page.waitForFunction(() => softkinPage.stage.scene.getObjectByName("own") !== undefined);
+  await settled(page);
+  seen.own = await page.evaluate(() => ({
+    names: softkinPage.model.names, at: softkinPage.stage.scene.getObjectByName("own").getWorldPosition(softkinPage.stage.handle.position.clone()).toArray(),
+    body: softkinPage.model.pose.scene.bodies.find((body) => body.name === "A2").frame.position,
+    licence: document.documentElement.outerHTML.includes("three.js authors"),
+  }));
+  await page.screenshot({ path: `${pictures}/tablet_light.png` });
+  await page.context().close();
+}
+
+/** A controller, played by a socket that the page is given: its machine, axes that move it, axes that must not. */
+async function live() {
+  const page = await opened("#machine=Kin_Gantry2");
+  await page.evaluate(() => {
+    softkinPage.follow("abc", class {
+      constructor(address, protocols) {
+        globalThis.asked = { address, protocols };
+        globalThis.send = (message) => this.onmessage({ data: JSON.stringify(message) });
+        globalThis.lose = () => this.onclose();
+      }
+    });
+    send({ type: "machine", protocol: 1, name: "Kin_Scara4_ZCcoupled_Type1", source: { kind: "OPC UA" },
+      machine: { mechanism: "Kin_Scara4_ZCcoupled_Type1", link_length_1: 300, link_length_2: 200, pitch_zc: 10, limits: { A1: [-170, 170] } } });
+  });
+  const told = (axes, quality) => page.evaluate(([values, words]) => {
+    send({ type: "axes", status: "live", message: "", complete: values.every((value) => value !== null), axes: values, quality: words, reasons: values.map(() => "") });
+    return document.getElementById("live").textContent;
+  }, [axes, quality]);
+  const good = ["good", "good", "good", "good"];
+  const before = await page.evaluate(() => softkinPage.model.pose.scene.bodies.map((body) => body.frame));
+  seen.liveWords = [await told([10, 20, -30, 40], good)];
+  seen.live = await state(page);
+  const after = await page.evaluate(() => softkinPage.model.pose.scene.bodies.map((body) => body.frame));
+  seen.liveBodies = { before, after };
+  seen.liveWords.push(await told([50, null, -30, 40], ["good", "bad", "good", "good"]));
+  seen.liveKept = await state(page);
+  seen.liveAsked = await page.evaluate(() => asked);
+  await page.evaluate(() => lose());
+  seen.liveWords.push(await page.locator("#live").textContent());
+  await page.context().close();
+}
+
+for (const work of [live, everyMachine, dragged, typed, line, marks, slice, own]) {
+  try {
+    await work();
+  } catch (error) {
+    seen.errors.push(`${work.name}: ${error.stack}`);
+  }
+}
+await browser.close();
+writeFileSync(result, JSON.stringify(seen));
