@@ -14,7 +14,7 @@ from derive.command.stages import Stages
 from derive.description.catalogue import load
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.places import in_place
-from derive.output import ForeignFolder, differences, replace_folder, replace_parts
+from derive.output import ForeignFolder, differences, replace_beside_others, replace_parts
 from derive.pipeline import WRITTEN, GenerationError, derive_one, files_of, languages, reason_of
 
 _TAKEN = ("softkin", "derive", "numpy", "scipy", "sympy", "casadi", "matplotlib")
@@ -46,7 +46,7 @@ def derive(options: argparse.Namespace) -> int:
         if options.language:
             replace_parts(folder, data)
         elif any(differences(folder, data)):
-            replace_folder(folder, data)
+            replace_beside_others(folder, data)
         stages.told("write", f"{len(data)} files in {folder}")
 
     return each(files, written, options.keep_going)

@@ -96,6 +96,19 @@ def test_deriving_again_changes_nothing_and_another_machine_does_not_replace_it(
     assert before == {n: (scara.path / "build" / n).read_bytes() for n in scara.names("build")}
 
 
+def test_what_other_commands_write_into_the_same_folder_stays(folder: Folder) -> None:
+    """`explain --html`, `view`, and another language: all of them write into build, in any order."""
+    folder.write("rail.py", RAIL)
+    for name in ("report/Rail.html", "rail.html", "javascript/rail.js"):
+        folder.write(f"build/{name}", "kept")
+    for _ in range(2):
+        assert folder.run("derive", "rail.py", "--out", "build").status == 0
+        assert {n.split("/")[0] for n in folder.names("build")} == {"python", "st", "report", "rail.html", "javascript"}
+    folder.write("build/mine.txt", "mine")
+    said = folder.run("derive", "rail.py", "--out", "build")
+    assert said.status == 2 and "build holds 'mine.txt', which was not generated: it is not replaced" in said.err
+
+
 def test_one_wrong_file_stops_no_other(folder: Folder) -> None:
     """Of many machines each has a folder of its own; what is wrong is said, and the rest is written."""
     folder.write("machines/a_rail.py", RAIL)
