@@ -14,7 +14,7 @@ READY := $(ENVIRONMENT)/ready
 
 BENCH := .venv-bench
 
-.PHONY: generate check test quick bench javascript
+.PHONY: generate check test quick bench javascript c
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -22,6 +22,10 @@ generate: $(READY)
 # The modules of the catalogue, into build/javascript; what is derived already is taken from generated.cache/.
 javascript: $(READY)
 	$(RUN) -m derive generate --language javascript --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
+
+# Header and source of every machine, and the source that they share, into build/c.
+c: $(READY)
+	$(RUN) -m derive generate --language c --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
 
 check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)

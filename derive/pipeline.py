@@ -18,6 +18,7 @@ from derive.cache import Cache, entry_key, key_of
 from derive.description.catalogue import Entry
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.places import in_place
+from derive.emit.c import package as c
 from derive.emit.javascript import package as javascript
 from derive.emit.language import Language, Part
 from derive.emit.named_package import NamedPackage
@@ -31,10 +32,12 @@ from derive.witness.disagreement import Disagreement
 PROCESSES = 2
 WRITTEN = (python.name, StructuredTextFiles.name)
 """The languages that are written unless others are asked for."""
-LANGUAGES = (*WRITTEN, javascript.name)
+LANGUAGES = (*WRITTEN, javascript.name, c.name)
 UNFIT = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
 """What a wrong description leads to: the message says enough."""
-_LANGUAGES = {python.name: "Python", StructuredTextFiles.name: "Structured Text", javascript.name: "JavaScript"}
+_LANGUAGES = {
+    python.name: "Python", StructuredTextFiles.name: "Structured Text", javascript.name: "JavaScript", c.name: "C",
+}  # fmt: skip
 Told = Callable[[str, str], None]
 """What is told about a stage: its name, and its result, which is empty at its begin."""
 
@@ -212,6 +215,7 @@ def languages(
             python if package == python.PACKAGE else NamedPackage(package),
             StructuredTextFiles(profile),
             javascript,
+            c,
         )
     except ValueError as problem:
         raise GenerationError(str(problem)) from None
