@@ -240,8 +240,52 @@ static void inverse_all(const void *machine) {
   free(kept);
 }
 
+/* What the mechanism says of itself. */
+static void describe(const void *machine) {
+  (void)machine;
+  const int counts[] = {tested->axis_count, tested->branch_count, tested->period_count, tested->row_count,
+                        tested->margin_count, tested->limit_count, tested->parameter_count, tested->quantity_count};
+  for (size_t i = 0; i < sizeof counts/sizeof counts[0]; i += 1) {
+    tell(counts[i]);
+  }
+  tell_text(tested->name);
+  for (int i = 0; i < tested->axis_count; i += 1) {
+    const softkin_axis *axis = &tested->axes[i];
+    tell_text(axis->name);
+    tell_text(axis->kind);
+    tell_text(axis->unit);
+    tell_text(axis->meaning);
+    tell(axis->multi_turn);
+  }
+  for (int i = 0; i < tested->parameter_count; i += 1) {
+    const softkin_parameter *one = &tested->parameters[i];
+    tell_text(one->name);
+    tell_text(one->kind);
+    tell_text(one->unit);
+    tell_text(one->meaning);
+    tell(one->low);
+    tell(one->high);
+    tell(one->low_is_open);
+    tell(one->initial);
+    tell(one->nominal);
+  }
+  for (int i = 0; i < tested->branch_count + tested->period_count; i += 1) {
+    tell_text(tested->configuration[i].name);
+    tell_text(tested->configuration[i].first);
+    tell_text(tested->configuration[i].second);
+    tell(tested->configuration[i].initial);
+  }
+  for (int i = 0; i < tested->margin_count; i += 1) {
+    tell_text(tested->margins[i].name);
+  }
+  for (int i = 0; i < tested->row_count; i += 1) {
+    tell_text(tested->rows[i]);
+  }
+}
+
 int main(void) {
-  static void (*const calls[])(const void *) = {NULL, forward, singularity, jacobian, inverse, inverse_all, limits};
+  static void (*const calls[])(const void *) = {NULL, forward, singularity, jacobian, inverse, inverse_all, limits,
+                                                 describe};
   void *machine = calloc(1, tested->machine_size);
   double call;
   while (read_number(&call)) {

@@ -57,7 +57,7 @@ def compiled(part: Part, change: Change = _as_it_is) -> Path:
 @cache
 def _common() -> tuple[str, str]:
     """The objects that all programs share: the calls, and the driver."""
-    folder = written({path: text for path, text in package.files([]).items()})
+    folder = written(package.files([]))
     gcc(folder, *SANITIZED, "-c", "softkin.c")
     gcc(folder, *SANITIZED, "-I.", "-c", str(DRIVER))
     return str(folder / "softkin.o"), str(folder / "driver.o")

@@ -7,33 +7,26 @@ from typing import Any
 
 import pytest
 
-from derive.emit.c.description import inputs
-from tests.c.machine import Counts, ask, counts_of, said
+from tests.c.machine import ask, described, said
 from tests.c.programs import program_of
 from tests.corpus.dimensions import DIMENSIONS
 from tests.corpus.recording import read
 from tests.corpus.robots import robot
 from tests.javascript.comparison import Comparison, calls_of
-from tests.mechanisms import kinematics_of, named
 
 SHOWN = 5
 
 
-def sizes_of(name: str) -> Counts:
-    """The sizes of a mechanism of the catalogue."""
-    kin = kinematics_of(named(name))
-    return counts_of(kin, [inputs(kin).names[p.name] for p in kin.parameters])
-
-
-def compared(program: Path, counts: Counts, recording: list[dict[str, Any]]) -> list[Comparison]:
+def compared(program: Path, recording: list[dict[str, Any]]) -> list[Comparison]:
     """The machines of a recording, each compared."""
-    asked = [[q for q in (said(q, counts) for q in part["asked"]) if q is not None] for part in recording]
+    known = described(program)
+    asked = [[q for q in (said(q, known) for q in part["asked"]) if q is not None] for part in recording]
     machines = [
         {"parameters": part["recipe"][0]["parameters"], "calls": [call for q in own for call in calls_of(q)]}
         for part, own in zip(recording, asked, strict=True)
     ]
     found = []
-    for part, own, answer in zip(recording, asked, ask(program, counts, machines), strict=True):
+    for part, own, answer in zip(recording, asked, ask(program, machines), strict=True):
         one = Comparison(robot(part["recipe"]))
         assert answer["made"] == {"status": 0}
         answers = iter(answer["found"])
@@ -49,10 +42,10 @@ def differences(every: list[Comparison]) -> list[str]:
     return [text for one in every for text in one.found]
 
 
-@pytest.mark.parametrize("name", DIMENSIONS)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.xdist_group(f"c {n}")) for n in DIMENSIONS])
 def test_answers_are_those_of_python(name: str) -> None:
     """Every answer is that of the package, and enough of them are solutions and refusals with reasons."""
-    every = compared(program_of(name), sizes_of(name), read(name))
+    every = compared(program_of(name), read(name))
     found = differences(every)
     assert not found, f"{len(found)} differences:\n" + "\n".join(found[:SHOWN])
     assert sum(one.regular for one in every) >= (0 if name == "Kin_Tool" else 10)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from derive.equations.limits import value_of
@@ -90,20 +90,27 @@ def functions(kin: Kinematics) -> list[Function]:
         text = "Position, rotation and margins, found from a given start."
         parameters = f"{given_axes}, const softkin_frame *start, softkin_frame *frame, double *margins"
         found.append(Function(text, kin.forward_from, parameters, axes | start, placed, "forward_from"))
+    return [*found, *_further(kin, axes, frame | choice, turns | reference)]
+
+
+def _further(
+    kin: Kinematics, axes: Mapping[str, str], asked: Mapping[str, str], near: Mapping[str, str]
+) -> Iterator[Function]:
+    """Those of machines with limits of other quantities, or with a search."""
     if kin.limited:
         quantities = [Output(q.name, value_of(q)) for q in kin.limited]
         program = normalise("quantities", kin.limits.lets(), quantities)
-        text, results = "The quantities beside the axes that have limits.", _places("values", [o.name for o in quantities])
-        found.append(Function(text, program, f"{given_axes}, double *values", axes, tuple(results.items()), "quantities"))
+        results = tuple(_places("values", [o.name for o in quantities]).items())
+        yield Function("The quantities beside the axes that have limits.", program,
+                       "const double *axes, double *values", axes, results, "quantities")  # fmt: skip
     if kin.search_given is not None and kin.from_joints is not None:
-        results = _places("given", [o.name for o in kin.search_given.outputs])
-        found.append(Function("The arguments of the search.", kin.search_given,
-                              f"{_GIVEN_FRAME}, {_CHOICE}, double *given", frame | choice, tuple(results.items()),
-                              "search_given"))  # fmt: skip
-        angles = _places("joints", [j.symbol.name for j in joints]) | turns | reference
+        results = tuple(_places("given", [o.name for o in kin.search_given.outputs]).items())
+        yield Function("The arguments of the search.", kin.search_given,
+                       f"{_GIVEN_FRAME}, {_CHOICE}, double *given", asked, results, "search_given")  # fmt: skip
+        joints = _places("joints", [j.symbol.name for j in kin.mechanism.joints])
         parameters = "const double *joints, const int8_t *turns, const double *reference, double *axes"
-        found.append(Function("The axes of joint values.", kin.from_joints, parameters, angles, values, "from_joints"))
-    return found
+        yield Function("The axes of joint values.", kin.from_joints, parameters, {**joints, **near},
+                       tuple(axes.items()), "from_joints")  # fmt: skip
 
 
 def shared(kin: Kinematics) -> list[Function]:

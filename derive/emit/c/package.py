@@ -132,6 +132,7 @@ def _known(kin: Kinematics, module: str) -> dict[str, Any]:
     stored = {name: f"k->{member(name)}" for name in made.constants}
     of_programs = [lines for f in found for lines in _function(kin, f, f"{module}_machine", stored)]
     further = _further(kin, module, stored)
+    more = [lines for _, lines in further.values()]
     programs = {f.key: f.name for f in found if f.key} | {key: function for key, (function, _) in further.items()}
     given = inputs(kin)
     return {
@@ -147,7 +148,7 @@ def _known(kin: Kinematics, module: str) -> dict[str, Any]:
         ],
         "constants": _members(made.constants),
         "tables": laid_out(tables(kin, module)),
-        "functions": [laid_out(lines) for lines in (*of_programs, *(lines for _, lines in further.values()), made.lines)],
+        "functions": [laid_out(lines) for lines in (*of_programs, *more, made.lines)],
         "programs": programs,
         "name": text(kin.mechanism.name),
         "summary": text(kin.mechanism.summary),

@@ -118,8 +118,9 @@ def _window(index: int, window: Window, inputs: Inputs, printer: C) -> list[str]
     if window.fallback:
         condition, low, high = window.fallback[-1]
         lines.append(f"const double range_of_{window.key}[] = {{{printer.print(low)}, {printer.print(high)}}};")
-        is_always = condition == sp.true
-        otherwise = f"range_of_{window.key}" if is_always else f"{printer.print(condition)} ? range_of_{window.key} : NULL"
+        otherwise = f"range_of_{window.key}"
+        if condition != sp.true:
+            otherwise = f"{printer.print(condition)} ? {otherwise} : NULL"
     turns = printer.print(window.turns) if window.has_turns and window.turns != 1 else "0.0"
     lower, upper = (f"p->{inputs.names[end]}" for end in window.given)
     given = [f"&LIMITS[{index}]", lower, upper, f"p->{inputs.names[CHECK_LIMITS]} != 0.0", otherwise, turns,
