@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
@@ -21,11 +21,6 @@ SANITIZED = (
     "-fno-sanitize-recover=all",
 )
 DRIVER = Path(__file__).with_name("driver.c")
-Change = Callable[[str, str], str]
-
-
-def _as_it_is(path: str, text: str) -> str:
-    return text
 
 
 @cache
@@ -42,24 +37,39 @@ def part_of(name: str) -> Part:
     return part
 
 
-def compiled(part: Part, change: Change = _as_it_is) -> Path:
-    """The program of what is written. change: path and text of a file → its text."""
-    folder = written(files_of(part), change)
+def compiled(part: Part) -> Path:
+    """The program of what is written."""
+    return _linked(part, written(files_of(part)), SANITIZED, _common(SANITIZED))
+
+
+def compiled_with_a_fault(part: Part, file: str, found: str, wrong: str, options: tuple[str, ...]) -> Path:
+    """The same with a change of one place of one source, which must be there; the other source is as it was.
+
+    file: the begin of the name of the source; options: of the compiler.
+    """
+    texts = dict(files_of(part))
+    path = next(path for path in texts if path.startswith(file) and path.endswith(".c"))
+    changed = re.sub(found, wrong, texts[path])
+    assert changed != texts[path], f"{path} does not hold {found}"
+    folder = written(texts | {path: changed})
+    calls, driver = _common(options)
+    return _linked(part, folder, options, ("softkin.c" if path == "softkin.c" else calls, driver))
+
+
+def _linked(part: Part, folder: Path, options: tuple[str, ...], common: tuple[str, str]) -> Path:
     module = part["index"]["module"]
-    tested = f'#include "{module}.h"\nextern const softkin_mechanism *const tested;\n'
-    (folder / "tested.c").write_text(f"{tested}const softkin_mechanism *const tested = &{module}_mechanism;\n")
-    is_common = change is _as_it_is
-    common = _common() if is_common else (str(folder / "softkin.c"), str(_common()[1]))
-    gcc(folder, *SANITIZED, f"{module}.c", "tested.c", *common, "-lm", "-o", "driver")
+    tested = f"const softkin_mechanism *const tested = &{module}_mechanism;"
+    (folder / "tested.c").write_text(f'#include "{module}.h"\nextern {tested.partition(" =")[0]};\n{tested}\n')
+    gcc(folder, *options, f"{module}.c", "tested.c", *common, "-lm", "-o", "driver")
     return folder / "driver"
 
 
 @cache
-def _common() -> tuple[str, str]:
+def _common(options: tuple[str, ...]) -> tuple[str, str]:
     """The objects that all programs share: the calls, and the driver."""
     folder = written(package.files([]))
-    gcc(folder, *SANITIZED, "-c", "softkin.c")
-    gcc(folder, *SANITIZED, "-I.", "-c", str(DRIVER))
+    gcc(folder, *options, "-c", "softkin.c")
+    gcc(folder, *options, "-I.", "-c", str(DRIVER))
     return str(folder / "softkin.o"), str(folder / "driver.o")
 
 
@@ -69,26 +79,13 @@ def gcc(folder: Path, *options: str) -> None:
     assert done.returncode == 0, done.stderr
 
 
-def written(texts: Mapping[str, str], change: Change = _as_it_is) -> Path:
+def written(texts: Mapping[str, str]) -> Path:
     """A folder of files."""
     folder = Path(mkdtemp(prefix="c-"))
     _FOLDERS.append(folder)
     for path, text in texts.items():
-        (folder / path).write_text(change(path, text), encoding="utf-8")
+        (folder / path).write_text(text, encoding="utf-8")
     return folder
-
-
-def planted(file: str, found: str, wrong: str) -> Change:
-    """The change of one place of one file, which must be there."""
-
-    def change(path: str, text: str) -> str:
-        if not path.startswith(file) or not path.endswith(".c"):
-            return text
-        changed = re.sub(found, wrong, text)
-        assert changed != text, f"{path} does not hold {found}"
-        return changed
-
-    return change
 
 
 def files_of(part: Part) -> Mapping[str, str]:

@@ -1,4 +1,4 @@
-"""Machines of a user's own, in C as in Python: numbers for lengths, held joints, gears, natural names."""
+"""Machines of a user's own, in C as in Python: held joints, gears, natural names."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from tests.machines.odd_names import ODD
 from tests.mechanisms import kinematics_of
 
 NAMES = (
-    "numbers for lengths",
     "seven axes beside each other, the first held",
     "palletizer with both motors at the base",
 )

@@ -1,0 +1,105 @@
+"""What is written: its width, what it includes, the same bytes every time, what it says of a machine, and its use."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+import softkin
+
+from derive.command.line import main
+from derive.emit.c import package
+from derive.ir.constants import LEAST
+from tests.c.machine import described
+from tests.c.programs import STRICT, files_of, gcc, part_of, program_of, written
+from tests.corpus.dimensions import DIMENSIONS
+
+ROOT = Path(__file__).parents[2]
+HEADERS = {"<math.h>", "<stdbool.h>", "<stddef.h>", "<stdint.h>", '"softkin.h"'}
+EVERY = [pytest.param(n, marks=pytest.mark.xdist_group(f"c {n}")) for n in DIMENSIONS]
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_lines_and_includes(name: str) -> None:
+    """No line is wider than a page; nothing is allocated, changed globally, or included besides libm."""
+    part = part_of(name)
+    for path, text in files_of(part).items():
+        wide = [line for line in text.splitlines() if len(line) > 110]
+        assert not wide, (path, wide[0])
+        assert "\t" not in text and text.endswith("\n") and " \n" not in text
+        assert set(re.findall(r"^#include (.*)$", text, re.MULTILINE)) <= {*HEADERS, f'"{part["index"]["module"]}.h"'}
+        code = re.sub(r"/\*.*?\*/|\"(\\.|[^\"])*\"", "", text, flags=re.DOTALL)
+        assert not re.search(r"\b(malloc|calloc|alloca|printf|goto|errno|volatile|rand|time|//)\b", code), path
+        changed = [line for line in re.findall(r"^(?:static )?[a-z].*(?:=|;)$", code, re.MULTILINE)
+                   if "(" not in line and not line.startswith(("typedef", "static const", "const", "extern const"))
+                   and not line.endswith("}")]  # fmt: skip
+        assert not changed, (path, changed)
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_the_description_is_that_of_the_class(name: str) -> None:
+    """Axes, parameters, bytes, rows, margins: what the class of the package says."""
+    told, made = described(program_of(name)), softkin.catalogue()[name]
+    assert told.name == name
+    assert [(a["name"], a["kind"], a["unit"], a["meaning"], bool(a["multi_turn"])) for a in told.axes] == [
+        (a.name, a.kind, a.unit, a.meaning, a.multi_turn) for a in made.AXES
+    ]
+    assert [(p["name"], p["kind"], p["unit"], p["meaning"]) for p in told.parameters] == [
+        (p.name, p.kind, p.unit, p.meaning) for p in made.PARAMETERS
+    ]
+    for one, other in zip(told.parameters, made.PARAMETERS, strict=True):
+        low = max(other.low, float(LEAST)) if other.low_is_open else -1.0 if other.kind == "sign" else other.low
+        assert (one["low"], one["high"], bool(one["low_is_open"])) == (low, min(other.high, 1e9), other.low_is_open)
+        assert other.default is None and one["default"] != one["default"] or one["default"] == other.default
+    assert [(name, first, second, initial) for name, first, second, initial in told.configuration] == [
+        (b.name, *(b.branches or ("", "")), b.default) for b in made.CONFIGURATION
+    ]
+    assert told.margins == tuple(made.MARGINS) and told.rows == tuple(made.JACOBIAN_ROWS)
+    assert told.branches == made.BRANCHES
+
+
+def test_names() -> None:
+    """The files that all share have names that no machine takes."""
+    assert package.module_name("Kin_Softkin") == "softkin_machine"
+    assert package.module_name("Kin_3RRR") == "kin_3rrr"
+    assert package.module_name("Kin_Numbers") == "numbers"
+
+
+def test_the_command_writes_it_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`softkin derive … --language c` writes its folder, and leaves what stands beside it."""
+    description = ROOT / "derive" / "mechanisms" / "kin_caxis.py"
+    beside = tmp_path / "out" / "mine.txt"
+    beside.parent.mkdir()
+    beside.write_text("mine")
+    command = ["derive", str(description), "--out", str(beside.parent), "--language", "c"]
+    assert main(command) == 0
+    assert {path.name for path in beside.parent.iterdir()} == {"mine.txt", "c"}
+    found = {path.name: path.read_text() for path in (beside.parent / "c").iterdir()}
+    assert found == dict(package.files([part_of("Kin_CAxis")]))
+    assert set(found) == {"caxis.c", "caxis.h", "softkin.c", "softkin.h"}
+    capsys.readouterr()
+
+
+def test_the_program_of_the_readme() -> None:
+    """It compiles as the README says, and prints what the README says."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    program = re.search(r"```c\n(.*?)```", text, re.DOTALL)
+    printed = re.search(r"    cc -std=c99 (.*)\n    (.*)\n", text)
+    assert program and printed
+    folder = written({**files_of(part_of("Kin_Scara4_ZCcoupled_Type1")), "main.c": program[1]})
+    sources = printed[1].partition(" && ")[0].split()
+    gcc(folder, *sources)
+    found = subprocess.run([folder / "a.out"], capture_output=True, text=True, check=True).stdout
+    assert found == f"{printed[2]}\n"
+
+
+def test_optimised_and_for_cpp() -> None:
+    """No warning where the compiler looks deeper; C++ reads the headers (that of the search is the longest source)."""
+    parts = [part_of(name) for name in ("Kin_Scara4_ZCcoupled_Type1", "Kin_Ac6_RZRYRYRXRYRZ_J6Offset")]
+    folder = written(package.files(parts))
+    gcc(folder, "-O2", "-Wshadow=local", "-Wpedantic", "-c", *(path.name for path in folder.glob("*.c")))
+    (folder / "all.cpp").write_text("".join(f'#include "{part["index"]["module"]}.h"\n' for part in parts))
+    options = [option for option in STRICT if not option.startswith("-std")]
+    subprocess.run(["gcc", *options, "-std=c++11", "-fsyntax-only", "all.cpp"], cwd=folder, check=True)
