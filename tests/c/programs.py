@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
@@ -14,6 +15,7 @@ from derive.emit.c import package
 from derive.emit.language import Part
 from tests.mechanisms import kinematics_of, named
 
+COMPILER = os.environ.get("CC", "gcc")
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-Wconversion")
 SANITIZED = (
     "-O1",
@@ -60,7 +62,7 @@ def _linked(part: Part, folder: Path, options: tuple[str, ...], common: tuple[st
     module = part["index"]["module"]
     tested = f"const softkin_mechanism *const tested = &{module}_mechanism;"
     (folder / "tested.c").write_text(f'#include "{module}.h"\nextern {tested.partition(" =")[0]};\n{tested}\n')
-    gcc(folder, *options, f"{module}.c", "tested.c", *common, "-lm", "-o", "driver")
+    compile_in(folder, *options, f"{module}.c", "tested.c", *common, "-lm", "-o", "driver")
     return folder / "driver"
 
 
@@ -68,14 +70,14 @@ def _linked(part: Part, folder: Path, options: tuple[str, ...], common: tuple[st
 def _common(options: tuple[str, ...]) -> tuple[str, str]:
     """The objects that all programs share: the calls, and the driver."""
     folder = written(package.files([]))
-    gcc(folder, *options, "-c", "softkin.c")
-    gcc(folder, *options, "-I.", "-c", str(DRIVER))
+    compile_in(folder, *options, "-c", "softkin.c")
+    compile_in(folder, *options, "-I.", "-c", str(DRIVER))
     return str(folder / "softkin.o"), str(folder / "driver.o")
 
 
-def gcc(folder: Path, *options: str) -> None:
-    """Compile in a folder; every warning is an error."""
-    done = subprocess.run(["gcc", *STRICT, *options], cwd=folder, capture_output=True, text=True, check=False)
+def compile_in(folder: Path, *options: str) -> None:
+    """Compile in a folder; every warning is an error. The environment's CC names another compiler, as clang."""
+    done = subprocess.run([COMPILER, *STRICT, *options], cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
 

@@ -10,11 +10,13 @@ import pytest
 import softkin
 
 from derive.command.line import main
-from derive.emit.c import package
+from derive.emit.c import package, printer
+from derive.emit.c.printer import is_reserved, member, spelled
 from derive.ir.constants import LEAST
 from tests.c.machine import described
-from tests.c.programs import STRICT, files_of, gcc, part_of, program_of, written
+from tests.c.programs import COMPILER, STRICT, compile_in, files_of, part_of, program_of, written
 from tests.corpus.dimensions import DIMENSIONS
+from tests.mechanisms import kinematics_of, named
 
 ROOT = Path(__file__).parents[2]
 HEADERS = {"<math.h>", "<stdbool.h>", "<stddef.h>", "<stdint.h>", '"softkin.h"'}
@@ -63,8 +65,27 @@ def test_the_description_is_that_of_the_class(name: str) -> None:
 def test_names() -> None:
     """The files that all share have names that no machine takes."""
     assert package.module_name("Kin_Softkin") == "softkin_machine"
+    assert package.module_name("Kin_Math") == "math_machine"  # a folder with another math.h
     assert package.module_name("Kin_3RRR") == "kin_3rrr"
     assert package.module_name("Kin_Numbers") == "numbers"
+
+
+@pytest.mark.parametrize("name", ["double", "NAN", "__FILE__", "M_PI", "linux", "softkin_root", "_Bool", "while"])
+def test_words_are_no_names(name: str) -> None:
+    """A name with another meaning is neither a variable nor a member; any other is both."""
+    assert is_reserved(name) and not is_reserved(spelled(name)) and not is_reserved(member(name))
+    assert spelled("reach") == member("reach") == "reach" and member("ends") != "ends" and spelled("k") != "k"
+    assert printer.text('a "b" ??/ c') == r'"a \"b\" ?\?/ c"'
+
+
+def test_a_machine_that_does_not_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The arrays of the calls have an end: no source is written that would write beyond it."""
+    kinematics = kinematics_of(named("Kin_Scara4_ZCcoupled_Type1"))
+    for most, size in (("MOST_AXES", 3), ("MOST_BRANCHES", 0)):
+        with monkeypatch.context() as changed:
+            changed.setattr(package, most, size)
+            assert package.part(kinematics) is None
+    assert package.part(kinematics) is not None
 
 
 def test_the_command_writes_it_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -90,7 +111,7 @@ def test_the_program_of_the_readme() -> None:
     assert program and printed
     folder = written({**files_of(part_of("Kin_Scara4_ZCcoupled_Type1")), "main.c": program[1]})
     sources = printed[1].partition(" && ")[0].split()
-    gcc(folder, *sources)
+    compile_in(folder, *sources)
     found = subprocess.run([folder / "a.out"], capture_output=True, text=True, check=True).stdout
     assert found == f"{printed[2]}\n"
 
@@ -99,7 +120,7 @@ def test_optimised_and_for_cpp() -> None:
     """No warning where the compiler looks deeper; C++ reads the headers (that of the search is the longest source)."""
     parts = [part_of(name) for name in ("Kin_Scara4_ZCcoupled_Type1", "Kin_Ac6_RZRYRYRXRYRZ_J6Offset")]
     folder = written(package.files(parts))
-    gcc(folder, "-O2", "-Wshadow=local", "-Wpedantic", "-c", *(path.name for path in folder.glob("*.c")))
+    compile_in(folder, "-O2", "-Wpedantic", "-c", *(path.name for path in folder.glob("*.c")))
     (folder / "all.cpp").write_text("".join(f'#include "{part["index"]["module"]}.h"\n' for part in parts))
     options = [option for option in STRICT if not option.startswith("-std")]
-    subprocess.run(["gcc", *options, "-std=c++11", "-fsyntax-only", "all.cpp"], cwd=folder, check=True)
+    subprocess.run([COMPILER, *options, "-std=c++11", "-fsyntax-only", "all.cpp"], cwd=folder, check=True)

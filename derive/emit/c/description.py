@@ -8,7 +8,7 @@ from itertools import count
 
 from derive.description.mechanism import Parameter, Role
 from derive.emit.c.layout import block
-from derive.emit.c.printer import WORDS, list_of, number, text
+from derive.emit.c.printer import is_reserved, list_of, number, text
 from derive.emit.inputs import Inputs, Spelling, inputs_of, word_of
 from derive.ir.constants import LARGEST, LEAST
 from derive.kept import kept_by_identity
@@ -28,7 +28,7 @@ def inputs(kinematics: Kinematics) -> Inputs:
 def _meaning(name: str) -> str | None:
     if not _NAME.fullmatch(name):
         return "no name in C"
-    return "a word of C or of C++" if name in WORDS else None
+    return "a word of C, of C++ or of their libraries" if is_reserved(name) else None
 
 
 def _others(parameter: Parameter, wish: str) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -41,9 +41,14 @@ from derive.report.reasons import reasons_of, reasons_of_rotation
 name = "c"
 MOST_AXES, MOST_BRANCHES, MOST_DIRECTIONS = 24, 12, 6
 _SHARED = ("softkin.c", "softkin.h")
+_HEADERS = frozenset(
+    "softkin assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg "
+    "stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype".split()
+)
+"""Headers that a source may include: no machine has the name of one."""
 _CELLS, _PLACES, _SOLUTIONS = 64, 128, 128
 """What a search keeps: cells that are still to be cut, candidates, roots of all branches together."""
-_STACK = 32
+_STACK = 36
 """What a search needs of the stack (kB): its cells and candidates, and little more."""
 _OF_THE_SEARCH = (
     *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
@@ -75,23 +80,32 @@ def part(kinematics: Kinematics) -> Part | None:
 
 def files(parts: Sequence[Part]) -> dict[str, str]:
     """All files: path → text."""
-    found = {path: page(_templates().get_template(f"{path}.j2").render()) for path in _SHARED}
+    found = dict(_shared())
     for one in parts:
         found |= one["files"]
     return found
+
+
+@cache
+def _shared() -> Mapping[str, str]:
+    """The files that no mechanism changes."""
+    return {path: page(_templates().get_template(f"{path}.j2").render()) for path in _SHARED}
 
 
 def module_name(mechanism: str) -> str:
     """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`, as in the Python package."""
     short = mechanism.removeprefix("Kin_").removeprefix("Softkin_")
     module = (short if short.isidentifier() else mechanism).lower()
-    return f"{module}_machine" if module == "softkin" else module
+    return f"{module}_machine" if module in _HEADERS else module
 
 
 def _fits(kin: Kinematics) -> bool:
-    directions = [(len(s.trial.outputs) - 4) // 2 for p in kin.shared for s in searches(p)]
-    sizes = (len(kin.mechanism.joints), MOST_AXES), (len(kin.branches), MOST_BRANCHES)
-    return all(size <= most for size, most in (*sizes, (max(directions, default=0), MOST_DIRECTIONS)))
+    found = [search for program in kin.shared for search in searches(program)]
+    given = () if kin.search_given is None else kin.search_given.outputs
+    sizes = [(len(kin.mechanism.joints), MOST_AXES), (len(kin.branches), MOST_BRANCHES), (len(given), 2 * MOST_AXES)]
+    sizes += [((len(search.trial.outputs) - 4) // 2, MOST_DIRECTIONS) for search in found]
+    sizes += [(len(search.names), MOST_AXES + 1) for search in found]
+    return all(size <= most for size, most in sizes)
 
 
 @cache

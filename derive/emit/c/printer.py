@@ -6,6 +6,7 @@ Names of the derivation stay as they are, in small letters; what all machines sh
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from textwrap import wrap
@@ -29,9 +30,12 @@ WORDS = frozenset(
     "and and_eq bitand bitor catch class compl const_cast constexpr decltype delete dynamic_cast explicit export "
     "friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public "
     "reinterpret_cast static_assert static_cast template this thread_local throw try typeid typename using virtual "
-    "wchar_t xor xor_eq errno".split()
+    "wchar_t xor xor_eq errno stdin stdout stderr EOF NULL NAN INFINITY HUGE_VAL DOMAIN OVERFLOW UNDERFLOW MAXFLOAT "
+    "I PI DEG_TO_RAD RAD_TO_DEG HIGH LOW".split()
 )
 """Words of C and C++, and macros of compilers and libraries, which are no names."""
+_RESERVED = re.compile(r"_[A-Z_]|softkin_|SOFTKIN_|(M|FP|HUGE|INT\d*|UINT\d*|SIZE|MATH)_[A-Z0-9_]+$")
+"""How names begin that the compiler, its library or the shared header has."""
 _TAKEN = frozenset(
     "arguments axes context cos fabs finish found frame given joints k machine made margins otherwise p parameters "
     "pass place reference results root rotation rows search signs sin sizes sqrt start status system take turn turns "
@@ -44,12 +48,22 @@ _TEXT = 80
 
 def spelled(name: str) -> str:
     """The name of a variable: unchanged, unless it is a word of C, or the printed function uses it already."""
-    return f"{name}_" if name in WORDS or name in _TAKEN or name.startswith("softkin_") else name
+    return _outside(name) if name not in _TAKEN else f"{name}_"
+
+
+def is_reserved(name: str) -> bool:
+    """Whether a name has another meaning in C, in C++ or in what a source includes."""
+    return name in WORDS or bool(_RESERVED.match(name))
+
+
+def _outside(name: str) -> str:
+    """The name, or one like it that has no other meaning."""
+    return f"own_{name.strip('_')}_" if is_reserved(name) else name
 
 
 def member(name: str) -> str:
     """The name of a constant in the struct of a machine."""
-    return f"{name}_" if name in WORDS or name in ("softkin", "ends") else name
+    return f"{name}_" if name in ("softkin", "ends") else _outside(name)
 
 
 def names_of(symbols: Iterable[sp.Symbol]) -> list[str]:
@@ -65,7 +79,7 @@ def type_of(name: sp.Basic) -> str:
 def text(value: str) -> str:
     """A literal text; the texts that a long one is broken into follow each other."""
     parts = wrap(value, _TEXT, drop_whitespace=False, break_on_hyphens=False) or [""]
-    return " ".join(json.dumps(part, ensure_ascii=False) for part in parts)
+    return " ".join(json.dumps(part, ensure_ascii=False).replace("??", r"?\?") for part in parts)
 
 
 def status(value: Status) -> str:
