@@ -78,6 +78,13 @@ def test_words_are_no_names(name: str) -> None:
     assert printer.text('a "b" ??/ c') == r'"a \"b\" ?\?/ c"'
 
 
+@pytest.mark.parametrize("value", [1.0, -0.5, 1e9, -1e12, 2500000.0, 1e-11, 1e22, 1.5e300, 123456789.0, 0.1, 5e-324])
+def test_literals(value: float) -> None:
+    """A literal is a real number, and the one that is meant."""
+    text = printer.number(value)
+    assert float(text) == value and ("." in text or "e" in text)
+
+
 def test_a_machine_that_does_not_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     """The arrays of the calls have an end: no source is written that would write beyond it."""
     kinematics = kinematics_of(named("Kin_Scara4_ZCcoupled_Type1"))

@@ -94,7 +94,10 @@ def list_of(parts: Iterable[str]) -> str:
 
 def number(value: float) -> str:
     """A literal of a real number."""
-    mantissa, letter, exponent = repr(float(value)).partition("e")
+    text = repr(float(value))
+    if large := re.fullmatch(r"(-?\d+?)(0{6,})\.0", text):
+        return f"{large[1]}e{len(large[2])}"
+    mantissa, letter, exponent = text.partition("e")
     return f"{mantissa}e{int(exponent)}" if letter else mantissa
 
 
