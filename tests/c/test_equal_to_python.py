@@ -42,7 +42,7 @@ def differences(every: list[Comparison]) -> list[str]:
     return [text for one in every for text in one.found]
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.xdist_group(f"c {n}")) for n in DIMENSIONS])
+@pytest.mark.parametrize("name", DIMENSIONS)
 def test_answers_are_those_of_python(name: str) -> None:
     """Every answer is that of the package, and enough of them are solutions and refusals with reasons."""
     every = compared(program_of(name), read(name))

@@ -45,7 +45,7 @@ def _calls(name: str, count: int) -> list[list[Any]]:
     return calls
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.xdist_group(f"c {n}")) for n in DIMENSIONS])
+@pytest.mark.parametrize("name", DIMENSIONS)
 def test_every_call_ends_in_a_status(name: str) -> None:
     """Of the nominal machine, and of machines as small, large and unequal as the ranges permit, and beyond these."""
     kin, robot = kinematics_of(named(name)), softkin.catalogue()[name]

@@ -20,10 +20,9 @@ from tests.mechanisms import kinematics_of, named
 
 ROOT = Path(__file__).parents[2]
 HEADERS = {"<math.h>", "<stdbool.h>", "<stddef.h>", "<stdint.h>", '"softkin.h"'}
-EVERY = [pytest.param(n, marks=pytest.mark.xdist_group(f"c {n}")) for n in DIMENSIONS]
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", DIMENSIONS)
 def test_lines_and_includes(name: str) -> None:
     """No line is wider than a page; nothing is allocated, changed globally, or included besides libm."""
     part = part_of(name)
@@ -40,7 +39,7 @@ def test_lines_and_includes(name: str) -> None:
         assert not changed, (path, changed)
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", DIMENSIONS)
 def test_the_description_is_that_of_the_class(name: str) -> None:
     """Axes, parameters, bytes, rows, margins: what the class of the package says."""
     told, made = described(program_of(name)), softkin.catalogue()[name]
