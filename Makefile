@@ -15,7 +15,7 @@ READY := $(ENVIRONMENT)/ready
 
 BENCH := .venv-bench
 
-.PHONY: generate check test quick report bench javascript view
+.PHONY: generate check test quick report bench javascript c view
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -23,6 +23,10 @@ generate: $(READY)
 # The modules of the catalogue, into build/javascript; what is derived already is taken from generated.cache/.
 javascript: $(READY)
 	$(RUN) -m derive generate --language javascript --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
+
+# Header and source of every machine, and the source that they share, into build/c.
+c: $(READY)
+	$(RUN) -m derive generate --language c --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
 
 # One page with all machines, build/viewer.html, which opens in a browser from disk; MECHANISM=my_machine.py: that machine alone.
 view: $(READY)

@@ -18,6 +18,7 @@ from derive.cache import Cache, entry_key, key_of
 from derive.description.catalogue import Entry
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.places import in_place
+from derive.emit.c import package as c
 from derive.emit.javascript import package as javascript
 from derive.emit.language import Language, Part
 from derive.emit.named_package import NamedPackage
@@ -31,10 +32,12 @@ from derive.witness.disagreement import Disagreement
 PROCESSES = 2
 WRITTEN = (python.name, StructuredTextFiles.name)
 """The languages that are written unless others are asked for."""
-LANGUAGES = (*WRITTEN, javascript.name)
+LANGUAGES = (*WRITTEN, javascript.name, c.name)
 UNFIT = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
 """What a wrong description leads to: the message says enough."""
-_LANGUAGES = {python.name: "Python", StructuredTextFiles.name: "Structured Text", javascript.name: "JavaScript"}
+_LANGUAGES = {
+    python.name: "Python", StructuredTextFiles.name: "Structured Text", javascript.name: "JavaScript", c.name: "C",
+}  # fmt: skip
 Told = Callable[[str, str], None]
 """What is told about a stage: its name, and its result, which is empty at its begin."""
 
@@ -69,10 +72,13 @@ class Built:
     undrawn: str = ""
     """Why there is no picture: a drawing is no part of the proof, and a machine without one is whole."""
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What every language says about names that it could not take from the description."""
-        return tuple(f"{_LANGUAGES.get(name, name)}: {n}" for name, part in self.parts.items() for n in part["notes"])
+    def notes(self, wanted: Sequence[str] = ()) -> tuple[str, ...]:
+        """What the languages that are written say about names that they could not take from the description.
+
+        wanted: their names; without one, those that are always written.
+        """
+        parts = ((name, part) for name, part in self.parts.items() if name in (wanted or WRITTEN))
+        return tuple(f"{_LANGUAGES.get(name, name)}: {n}" for name, part in parts for n in part["notes"])
 
     def as_plain(self) -> dict[str, Any]:
         """What JSON can hold."""
@@ -212,6 +218,7 @@ def languages(
             python if package == python.PACKAGE else NamedPackage(package),
             StructuredTextFiles(profile),
             javascript,
+            c,
         )
     except ValueError as problem:
         raise GenerationError(str(problem)) from None

@@ -104,7 +104,7 @@ def _derived(
 def _line(one: Built) -> str:
     time = "kept" if one.seconds is None else f"{one.seconds:.2f} s"
     warning = f"\n    warning: not drawn: {one.undrawn}" if one.undrawn else ""
-    notes = "".join(f"\n    note: {note}" for note in one.notes)
+    notes = "".join(f"\n    note: {note}" for note in one.notes())
     return f"{one.derived} {time:>8}   {one.measured}{warning}{notes}"
 
 

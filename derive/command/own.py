@@ -14,6 +14,7 @@ from derive.command.stages import Stages
 from derive.description.catalogue import load
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.places import in_place
+from derive.emit.c import package as c
 from derive.output import ForeignFolder, differences, replace_beside_others, replace_parts
 from derive.pipeline import WRITTEN, GenerationError, derive_one, files_of, languages, reason_of
 
@@ -126,10 +127,12 @@ def _derived(path: Path, package: str, options: argparse.Namespace, stages: Stag
         raise GenerationError(in_place(path, reason_of(problem))) from None
     if built.undrawn:
         stages.line(f"  warning: {in_place(path, f'not drawn: {built.undrawn}')}")
-    for note in built.notes:
+    for note in built.notes(options.language or ()):
         stages.line(f"  note: {note}")
     if "st" not in built.parts:
         stages.line(f"  note: no block: it has {len(mechanism.joints)} axes, and SoftMotion knows six")
+    if c.name in (options.language or ()) and c.name not in built.parts:
+        stages.line(f"  note: no C: its calls hold {c.MOST_AXES} axes and {c.MOST_BRANCHES} branches")
     return files
 
 

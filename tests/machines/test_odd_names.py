@@ -97,7 +97,7 @@ def test_every_input_is_called_as_a_user_expects(name: str) -> None:
     expected = [odd.python.get(p.name, p.name) for p in odd.mechanism().parameters]
     assert list(keywords)[1 : 1 + len(expected)] == expected
     assert [p.name for p in type(machine.made.robot).PARAMETERS][: len(expected)] == expected
-    notes = machine.made.built.notes
+    notes = machine.made.built.notes()
     assert len(notes) == len(odd.python) + len([n for n in odd.text if n in odd.names.values()])
     texts = {"Python": _module(machine), "Structured Text": machine.made.built.parts["st"]["text"]}
     for note in notes:

@@ -126,6 +126,8 @@ class Block:
     limit_reasons: tuple[int, ...]
     """The number of the reason that an axis is below its lower limit, for every axis; empty where the block tests more
     limits than those of its axes."""
+    tie: str
+    """The difference up to which two squared distances count as equal; empty where it is computed, or not read."""
 
     def stored(self, program: Printed) -> list[tuple[str, str]]:
         """The instance variables and their values, given the text of `setup`."""
@@ -135,11 +137,6 @@ class Block:
     def slots(self) -> int:
         """The number of solutions that the branches distinguish."""
         return int(2 ** len(self.branches))
-
-    @property
-    def tie(self) -> str:
-        """The difference up to which two squared distances count as equal; empty where it is computed, or not read."""
-        return literal(float(TIE)) if self.branches and all(field != "tie" for field, _ in self.computed) else ""
 
 
 def block_of(kinematics: Kinematics, contract: Contract) -> Block:
@@ -180,6 +177,7 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         turn_rows=tuple(k for k, row in enumerate(kinematics.rows) if row.startswith("turn")),
         margins=tuple(m.name for m in kinematics.margins),
         computed=_computed(kinematics),
+        tie="" if chooses_by_lengths(mechanism) or not kinematics.branches else literal(float(TIE)),
         has_settings=SETTINGS in interfaces,
         command=command_of(kinematics),
         limit_reasons=limit_reasons(kinematics),

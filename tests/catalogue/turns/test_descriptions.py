@@ -61,7 +61,8 @@ def test_what_limits_an_axis_that_is_given_no_limits_is_said(mechanism: Mechanis
         found = properties.limits
         for end, value in (("lower", found.dLower), ("upper", found.dUpper)):
             parameter = limits[f"{end}_{joint.key}"]
-            assert text.count(parameter.meaning) >= 2
+            of_both = parameter.meaning.replace(f"{end} limit", "limits")  # the table has one row for both ends
+            assert text.count(parameter.meaning) >= 2 or (parameter.meaning in text and of_both in text)
             assert meanings[parameter.name] == parameter.meaning
             default = parameter.meaning.partition("both 0: ")[2]
             assert (default == "no limit") == (found.xUnlimited and joint.pitch == 0)

@@ -1,0 +1,255 @@
+"""C99: a header and a source a mechanism, and the header and the source that all of them share."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from functools import cache
+from typing import Any
+
+from jinja2 import Environment
+
+from derive.emit.c.description import counts, in_words, inputs, tables
+from derive.emit.c.functions import Function, arguments_of, functions, read_by, rotation_function
+from derive.emit.c.layout import comment, harmless, laid_out, page
+from derive.emit.c.printer import C, list_of, member, number, text, type_of
+from derive.emit.c.program import Body, arguments_read, function_lines, function_of, of_search, searches, taken
+from derive.emit.c.setup import constants_read, setup
+from derive.emit.language import GENERATED, Part, environment
+from derive.ir import cells, roots
+from derive.ir.constants import (
+    EDGE,
+    EXACT_ROTATION,
+    FINISHED,
+    FREE_ANGLE,
+    GEARED_TURN,
+    LARGEST,
+    LEAST,
+    LIMIT,
+    ONE_TURN,
+    PIVOT,
+    ROTATION,
+    SOLVABLE,
+    TRIALS,
+    UNLIMITED,
+)
+from derive.ir.program import Status
+from derive.ir.symbols import symbols_of
+from derive.kinematics.kinematics import Kinematics
+from derive.report.reasons import reasons_of, reasons_of_rotation
+
+name = "c"
+MOST_AXES, MOST_BRANCHES, MOST_DIRECTIONS = 24, 12, 6
+_SHARED = ("softkin.c", "softkin.h")
+_HEADERS = frozenset(
+    "softkin assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg "
+    "stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype".split()
+)
+"""Headers that a source may include: no machine has the name of one."""
+_CELLS, _PLACES, _SOLUTIONS = 64, 128, 128
+"""What a search keeps: cells that are still to be cut, candidates, roots of all branches together."""
+_STACK = 36
+"""What a search needs of the stack (kB): its cells and candidates, and little more."""
+_OF_THE_SEARCH = (
+    *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
+    *("NEXT", "RESERVE", "RIM", "SEAM", "TOUCHED", "TURNED", "VANISHING"),
+)
+_MEANINGS = {
+    Status.OK: "no error",
+    Status.NOT_INITIALIZED: "a parameter is not allowed",
+    Status.BAD_INPUT: "numbers must be finite and at most 1e9 in size, and a rotation must be one",
+    Status.UNREACHABLE: "out of reach or beyond a limit",
+    Status.IMPOSSIBLE: "the mechanism cannot be assembled there, or a joint is undetermined",
+    Status.INVALID_COUPLING: "this pair of position and orientation kinematics is impossible",
+}
+
+
+def part(kinematics: Kinematics) -> Part | None:
+    """Header and source of one mechanism; None where it has more axes, branches or directions than the calls hold."""
+    if not _fits(kinematics):
+        return None
+    module = module_name(kinematics.mechanism.name)
+    known = _known(kinematics, module)
+    texts = {end: page(_templates().get_template(f"mechanism.{end}.j2").render(known)) for end in ("c", "h")}
+    return {
+        "index": {"name": kinematics.mechanism.name, "module": module},
+        "files": {f"{module}.{end}": one for end, one in texts.items()},
+        "notes": list(inputs(kinematics).notes),
+    }
+
+
+def files(parts: Sequence[Part]) -> dict[str, str]:
+    """All files: path → text."""
+    found = dict(_shared())
+    for one in parts:
+        found |= one["files"]
+    return found
+
+
+@cache
+def _shared() -> Mapping[str, str]:
+    """The files that no mechanism changes."""
+    return {path: page(_templates().get_template(f"{path}.j2").render()) for path in _SHARED}
+
+
+def module_name(mechanism: str) -> str:
+    """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`, as in the Python package."""
+    short = mechanism.removeprefix("Kin_").removeprefix("Softkin_")
+    module = (short if short.isidentifier() else mechanism).lower()
+    return f"{module}_machine" if module in _HEADERS else module
+
+
+def _fits(kin: Kinematics) -> bool:
+    found = [search for program in kin.shared for search in searches(program)]
+    given = () if kin.search_given is None else kin.search_given.outputs
+    sizes = [(len(kin.mechanism.joints), MOST_AXES), (len(kin.branches), MOST_BRANCHES), (len(given), 2 * MOST_AXES)]
+    sizes += [((len(search.trial.outputs) - 4) // 2, MOST_DIRECTIONS) for search in found]
+    sizes += [(len(search.names), MOST_AXES + 1) for search in found]
+    return all(size <= most for size, most in sizes)
+
+
+@cache
+def _templates() -> Environment:
+    templates = environment(name).overlay(variable_start_string="@{", variable_end_string="}@")
+    numbers = {
+        "edge": EDGE, "exact": EXACT_ROTATION, "free_angle": FREE_ANGLE, "geared_turn": GEARED_TURN, "largest": LARGEST,
+        "largest_error": ROTATION, "least": LEAST, "limit": LIMIT, "one_turn": ONE_TURN, "pivot": PIVOT,
+        "solvable": SOLVABLE, "unlimited": UNLIMITED,
+    }  # fmt: skip
+    templates.filters |= {"text": text}
+    templates.globals |= {key: number(float(value)) for key, value in numbers.items()}
+    rotation = function_lines(rotation_function(), "", {}, reasons_of_rotation())
+    templates.globals |= {
+        "generated": GENERATED,
+        "statuses": [{"name": s.name, "meaning": _MEANINGS[s]} for s in Status],
+        "rotation": laid_out(rotation),
+        "search_constants": {key: f"{(vars(cells) | vars(roots))[key]!r}" for key in _OF_THE_SEARCH},
+        "shifts": list_of(map(number, roots.SHIFTS)),
+        "trials": TRIALS,
+        "finished": FINISHED,
+        "most_axes": MOST_AXES,
+        "most_branches": MOST_BRANCHES,
+        "most_directions": MOST_DIRECTIONS,
+        "most_solutions": _SOLUTIONS,
+        "most_cells": _CELLS,
+        "most_places": _PLACES,
+        "stack": _STACK,
+    }
+    return templates
+
+
+def _known(kin: Kinematics, module: str) -> dict[str, Any]:
+    """What the templates of header and source arrange."""
+    found = functions(kin)
+    read = {name for f in found for name in read_by(f.program) - f.given.keys()} | constants_read(kin)
+    made = setup(kin, module, read, inputs(kin))
+    stored = {name: f"k->{member(name)}" for name in made.constants}
+    of_programs = [lines for f in found for lines in _function(kin, f, f"{module}_machine", stored)]
+    further = _further(kin, module, stored)
+    more = [lines for _, lines in further.values()]
+    programs = {f.key: f.name for f in found if f.key} | {key: function for key, (function, _) in further.items()}
+    given = inputs(kin)
+    return {
+        "module": module,
+        "guard": f"SOFTKIN_{module.upper()}_H",
+        "upper": module.upper(),
+        "head": [line.removeprefix("/* ").removeprefix(" * ").removesuffix(" */") for line in _head(kin)],
+        "counts": counts(kin),
+        "slots": 2 ** len(kin.branches),
+        "parameters": [
+            {"name": given.names[p.name], "meaning": harmless(_told(p.meaning, p.unit, in_words(p), p.default))}
+            for p in kin.parameters
+        ],
+        "constants": _members(made.constants),
+        "tables": laid_out(tables(kin, module)),
+        "functions": [laid_out(lines) for lines in (*of_programs, *more, made.lines)],
+        "programs": programs,
+        "name": text(kin.mechanism.name),
+        "summary": text(kin.mechanism.summary),
+        "source": text(kin.mechanism.source),
+        "reads_rotation": kin.reads_rotation,
+        "starts_forward": kin.forward_from is not None,
+        "is_searched": kin.search_given is not None,
+        "needs_reference": _needed(kin),
+    }
+
+
+def _function(kin: Kinematics, function: Function, machine: str, stored: dict[str, str]) -> list[list[str]]:
+    """The function of a program, and those through which its searches call others."""
+    before = [lines for search in searches(function.program) for lines in of_search(search)]
+    return [*before, function_lines(function, machine, stored, reasons_of(kin))]
+
+
+def _told(meaning: str, unit: str, words: str, default: float | None) -> str:
+    at_first = "must be given" if default is None else f"default {default:g}"
+    return f"{meaning}{f' [{unit}]' if unit else ''}: {words}; {at_first}"
+
+
+def _members(constants: dict[str, str] | Any) -> list[str]:
+    """The members of the struct of a machine, some of a type a line."""
+    lines = []
+    for kind in ("double", "int", "bool"):
+        names = [member(name) for name, own in constants.items() if own == kind]
+        lines += [f"  {kind} {', '.join(names)};"] if names else []
+    return laid_out(lines)
+
+
+def _head(kin: Kinematics) -> list[str]:
+    """What stands at the top of a header."""
+    mechanism = kin.mechanism
+    lines = [*comment(f"{mechanism.name}: {mechanism.summary}"), ""]
+    for joint in mechanism.joints:
+        lines += comment(f"{joint.name} ({joint.kind.value}, {'deg' if joint.in_degrees else 'u'}): {joint.meaning}")
+    for branch in kin.branches:
+        lines += comment(f"{branch.name}: 1 = {branch.names[0]}, 2 = {branch.names[1]}, 0 = automatic, 3 = both meet")
+    if kin.configuration_size:
+        order = [b.name for b in kin.branches] + [f"turn of {j.name}" for j in kin.period_joints]
+        lines += comment(f"configuration: {', '.join(order)}")
+    lines += comment(f"rows of the Jacobian: {', '.join(kin.rows) or 'none'}")
+    for note in map(inputs(kin).told, mechanism.all_notes):
+        lines += ["", *comment(note)]
+    return lines
+
+
+def _needed(kin: Kinematics) -> str:
+    """Why an inverse without a reference is refused."""
+    held = [joint.name for joint in kin.mechanism.held_joints]
+    return text(f"a reference is needed: it holds the value of {' and '.join(held)}") if held else "NULL"
+
+
+def _further(kin: Kinematics, module: str, stored: dict[str, str]) -> dict[str, tuple[str, list[str]]]:
+    """Further functions of machines that have them, by their keys: name and lines."""
+    found = {}
+    if kin.search_given is not None:
+        found["every_root"] = ("find_every_root", _every_root(kin, module, stored))
+    if any(joint.is_geared for joint in kin.period_joints):
+        sizes = [number(float(j.turns)) if j.turns.is_number else stored[str(j.turns)] for j in kin.period_joints]
+        inner = [f"sizes[{i}] = {size};" for i, size in enumerate(sizes)]
+        inner = [f"const {module}_machine *k = machine;", *inner] if re.search(r"\bk->", " ".join(inner)) else inner
+        summary = "Turns of the joint per turn of each axis whose turns are named."
+        lines = function_of(summary, "static void find_turn_sizes(const void *machine, double *sizes)", inner)
+        found["turn_sizes"] = ("find_turn_sizes", lines)
+    return found
+
+
+def _every_root(kin: Kinematics, module: str, stored: dict[str, str]) -> list[str]:
+    """The function that finds all roots of a search; it is given what the search itself is."""
+    for program in kin.shared:
+        for search in searches(program):
+            names = arguments_of(program, kin)
+            body = Body(C(stored), reasons_of(kin))
+            types = {s.name: type_of(s) for s in program.inputs}
+            begin = body.sought(search)
+            read = {*arguments_read(search), *symbols_of(search.start), *symbols_of(search.wanted)}
+            wanted = {s.name for s in read}
+            own = [(name, f"given[{i}]") for i, name in enumerate(names) if name in wanted]
+            inner = [
+                f"const {module}_machine *k = machine;",
+                *taken(own, types),
+                *body.search(search),
+                f"softkin_every_root(&search, {begin}, take, context);",
+            ]
+            head = "const void *machine, const double *given, softkin_take take, void *context"
+            summary = "The joints at every root of the search, the nearest to the reference first."
+            return function_of(summary, f"static void find_every_root({head})", inner)
+    raise TypeError(f"{kin.mechanism.name}: the inverse has no search")

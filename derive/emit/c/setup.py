@@ -1,0 +1,149 @@
+"""The setup program: it computes the constants of a machine from its parameters, or refuses these.
+
+The shared source tests the range of each parameter, and computes the range of each axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.description.mechanism import Role
+from derive.emit.c.layout import block, comment
+from derive.emit.c.printer import C, member, number, text, type_of
+from derive.emit.c.program import Body, function_of
+from derive.emit.inputs import Inputs
+from derive.equations.windows import Window, windows
+from derive.ir.constants import TIE
+from derive.ir.program import Let, Program, Require, Solve, Statement, binds, reads
+from derive.ir.symbols import symbols_of
+from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.parameters import CHECK_LIMITS, TIE_OF_LENGTHS, WARNING_DISTANCE, chooses_by_lengths, ranges
+from derive.report.reasons import Reasons
+
+SEARCHED = "searched"
+"""The constant that says whether the machine is searched, where this depends on a parameter."""
+
+
+@dataclass(frozen=True)
+class Setup:
+    """The function, and the constants that it computes: name → type."""
+
+    lines: list[str]
+    constants: Mapping[str, str]
+
+
+def constants_read(kin: Kinematics) -> set[str]:
+    """The constants that a machine needs besides those that its programs read."""
+    found = {TIE_OF_LENGTHS.name} if chooses_by_lengths(kin.mechanism) else set()
+    found |= {str(j.turns) for j in kin.period_joints if j.is_geared and not j.turns.is_number}
+    return found | ({SEARCHED} if _may_be_searched(kin) else set())
+
+
+def setup(kin: Kinematics, prefix: str, read: Collection[str], inputs: Inputs) -> Setup:
+    """The function. read: the constants that other functions read; inputs: what the parameters are called."""
+    by_refusal = {window.refusal: (i, window) for i, window in enumerate(windows(kin.mechanism))}
+    program = _own(kin, read)
+    body = Body(C(_members(kin, inputs)), Reasons({}))
+    lines: list[str] = []
+    values: dict[str, tuple[str, str]] = {}
+    for statement in program.body:
+        found = by_refusal.get(statement.reason) if isinstance(statement, Require) and statement.reason else None
+        if found is not None:
+            lines += _window(*found, inputs, body.printer)
+            values |= _window_values(found[1], read)
+        elif isinstance(statement, Require):
+            lines += _refusal(statement, inputs, body)
+        elif isinstance(statement, Let):
+            lines += body.let(statement)
+        elif isinstance(statement, Solve):
+            lines += body.solve(statement)
+        else:
+            raise TypeError("what depends on parameters alone is straight-line: it neither iterates nor calls")
+    ends = {o.name for _, window in by_refusal.values() for o in window.outputs}
+    values |= {
+        o.name: (type_of(o.value), body.printer.value(o.value, o.value)) for o in program.outputs if o.name not in ends
+    }
+    head = [f"const {prefix}_parameters *p = parameters;", f"{prefix}_machine made;"]
+    writes = [f"made.{member(name)} = {value};" for name, (_, value) in values.items()]
+    tail = [f"made.softkin = (softkin_base){{{', '.join(_base(kin, values, inputs))}}};"]
+    inner = [*head, *lines, *writes, *tail, f"*({prefix}_machine *)machine = made;", "return SOFTKIN_OK;"]
+    name = "static softkin_status fill_machine(void *machine, const void *parameters, softkin_refusal *why)"
+    summary = "The values that depend on the parameters alone, or why the parameters are refused."
+    return Setup(function_of(summary, name, inner), {n: kind for n, (kind, _) in values.items()})
+
+
+def _members(kin: Kinematics, inputs: Inputs) -> dict[str, str]:
+    """Where the parameters stand: real numbers, a flag not 0, a sign -1 or 1."""
+    forms = {Role.FLAG: "(p->{} != 0.0)", Role.SIGN: "(int)p->{}"}
+    return {p.name: forms.get(p.role, "p->{}").format(inputs.names[p.name]) for p in kin.parameters}
+
+
+def _may_be_searched(kin: Kinematics) -> bool:
+    return kin.mechanism.search is not None and kin.mechanism.search.where is not None
+
+
+def _base(kin: Kinematics, values: Mapping[str, tuple[str, str]], inputs: Inputs) -> Iterator[str]:
+    """What all machines hold first."""
+    yield "0"
+    yield f"p->{inputs.names[CHECK_LIMITS]} != 0.0"
+    if _may_be_searched(kin):
+        yield values[SEARCHED][1]
+    else:
+        yield "true" if kin.search_given is not None else "false"
+    yield f"p->{inputs.names[WARNING_DISTANCE]}"
+    yield values[TIE_OF_LENGTHS.name][1] if chooses_by_lengths(kin.mechanism) else number(TIE)
+
+
+def _own(kin: Kinematics, read: Collection[str]) -> Program:
+    """The setup program without the steps of the shared source, and without values that no program reads."""
+    tested = ranges(kin.parameters)
+    elsewhere = {let.name for window in windows(kin.mechanism) for let in (*window.limits, *window.ends)}
+    outputs = tuple(o for o in kin.setup.outputs if o.name in read)
+    wanted = {s for o in outputs for s in symbols_of(o.value)}
+    body: list[Statement] = []
+    for statement in reversed(kin.setup.body):
+        bound = set(binds(statement))
+        if statement.reason not in tested if isinstance(statement, Require) else bound & wanted - elsewhere:
+            wanted |= reads(statement)
+            body.append(statement)
+    return replace(kin.setup, body=tuple(reversed(body)), outputs=outputs)
+
+
+def _window(index: int, window: Window, inputs: Inputs, printer: C) -> list[str]:
+    """The range of an axis. Limits that are none refuse, even where no program reads the range."""
+    name, otherwise, lines = f"window_of_{window.key}", "NULL", list[str]()
+    if window.fallback:
+        condition, low, high = window.fallback[-1]
+        lines.append(f"const double range_of_{window.key}[] = {{{printer.print(low)}, {printer.print(high)}}};")
+        otherwise = f"range_of_{window.key}"
+        if condition != sp.true:
+            otherwise = f"{printer.print(condition)} ? {otherwise} : NULL"
+    turns = printer.print(window.turns) if window.has_turns and window.turns != 1 else "0.0"
+    lower, upper = (f"p->{inputs.names[end]}" for end in window.given)
+    given = [f"&LIMITS[{index}]", lower, upper, f"p->{inputs.names[CHECK_LIMITS]} != 0.0", otherwise, turns,
+             f"&{name}", f"&made.ends[{index}]", "why"]  # fmt: skip
+    call = f"if (softkin_window_of({', '.join(given)}) != SOFTKIN_OK)"
+    return [*lines, f"softkin_window {name};", *block(call, ["return SOFTKIN_NOT_INITIALIZED;"])]
+
+
+def _window_values(window: Window, read: Collection[str]) -> dict[str, tuple[str, str]]:
+    words = ("lowest", "highest", "single", "middle")
+    return {
+        output.name: ("bool" if word == "single" else "double", f"window_of_{window.key}.{word}")
+        for word, output in zip(words, window.outputs, strict=False)
+        if output.name in read
+    }
+
+
+def _refusal(statement: Require, inputs: Inputs, body: Body) -> list[str]:
+    """A condition on several parameters, with its sentence and their names."""
+    assert statement.reason is not None
+    read = {s.name for s in statement.condition.free_symbols}
+    given = ", ".join(name for inner, name in inputs.names.items() if inner in read)
+    sentence = inputs.told(statement.reason.subject.name)
+    refused = f"return softkin_refuse_parameters(why, {text(sentence)}, {text(given)});"
+    condition = body.refusals.condition([statement.condition])
+    return [*comment(statement.note), *block(f"if (!({condition}))", [refused])]

@@ -1,0 +1,1 @@
+"""C, compiled with sanitizers and executed: what it answers is what the Python package answers."""

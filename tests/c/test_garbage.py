@@ -1,0 +1,104 @@
+"""Whatever a call is given, it ends in a status, and writes results only where that is 0; the sanitizers are silent."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import pytest
+import softkin
+
+from derive.emit.c.description import inputs
+from tests.c.machine import ask, described
+from tests.c.programs import program_of
+from tests.catalogue.extreme import extreme_dimensions
+from tests.corpus.dimensions import DIMENSIONS
+from tests.mechanisms import kinematics_of, named
+
+NAN, INFINITY = float("nan"), float("inf")
+ODD = (NAN, INFINITY, -INFINITY, 1e300, -1e300, 1e9, 1.0000001e9, 5e-324, -0.0, 1e-160)
+NAME = "Kin_Scara4_ZCcoupled_Type1"
+GIVEN = {"link_length_1": 300.0, "link_length_2": 250.0}
+
+
+def _calls(name: str, count: int) -> list[list[Any]]:
+    """Calls with numbers of all sizes, some of which are none."""
+    known, rng = described(program_of(name)), random.Random(name)
+    size = len(known.axes)
+
+    def numbers(many: int) -> list[float]:
+        return [rng.choice(ODD) if rng.random() < 0.3 else 10.0 ** rng.uniform(-3, 4) for _ in range(many)]
+
+    def frame() -> dict[str, Any]:
+        turned = rng.choice(softkin_rotations)
+        rotation = turned if rng.random() < 0.7 else [numbers(3) for _ in range(3)]
+        return {"position": numbers(3), "rotation": rotation}
+
+    softkin_rotations = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+                         [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # fmt: skip
+    calls: list[list[Any]] = []
+    for _ in range(count):
+        given = rng.choice([None, [rng.randint(-128, 127) if rng.random() < 0.2 else 0 for _ in range(known.bytes)]])
+        calls += [[call, numbers(size)] for call in ("forward", "jacobian", "singularity", "limits")]
+        calls += [["forward", numbers(size), frame()], ["inverse", frame(), given, rng.choice([None, numbers(size)])]]
+        calls += [["inverseAll", frame(), rng.choice([None, numbers(size)])]]
+    return calls
+
+
+@pytest.mark.parametrize("name", DIMENSIONS)
+def test_every_call_ends_in_a_status(name: str) -> None:
+    """Of the nominal machine, and of machines as small, large and unequal as the ranges permit, and beyond these."""
+    kin, robot = kinematics_of(named(name)), softkin.catalogue()[name]
+    names = inputs(kin).names
+    given = [DIMENSIONS[name], *extreme_dimensions(named(name), 8)]
+    few = 3 if kin.search_given is None else 1
+    machines = [
+        {"parameters": {names.get(key, key): value for key, value in one.items()},
+         "calls": _calls(name, few * (3 if one is given[0] else 1))}
+        for one in given
+    ]  # fmt: skip
+    for one, machine, answer in zip(given, machines, ask(program_of(name), machines), strict=True):
+        assert answer["made"]["status"] == (0 if _is_allowed(robot, one) else 1), one
+        for call, found in zip(machine["calls"], answer["found"], strict=True):
+            assert found["status"] in range(5), call
+            for slot in found.get("slots", [found]):
+                assert slot["status"] == 0 or slot["reason"], call
+            if not all(abs(value) <= 1e9 for value in _read(call)):
+                assert found["status"] != 0, call
+
+
+def _read(call: list[Any]) -> list[float]:
+    """The numbers of a call that every machine reads."""
+    return call[1] if call[0] in ("jacobian", "forward") and len(call) == 2 else []
+
+
+def _is_allowed(robot: type[softkin.Mechanism], given: dict[str, float]) -> bool:
+    own = {key: value for key, value in given.items() if key in {p.name for p in robot.PARAMETERS}}
+    try:
+        robot(**own)
+    except softkin.KinematicsError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {}, {"link_length_1": 300.0}, {**GIVEN, "link_length_2": NAN}, {**GIVEN, "link_length_2": 0.0},
+        {**GIVEN, "link_length_2": 801.0}, {**GIVEN, "link_length_2": -1.0}, {**GIVEN, "link_length_1": INFINITY},
+        {**GIVEN, "check_limits": 2.0}, {**GIVEN, "check_limits": NAN}, {**GIVEN, "offset_a1": INFINITY},
+        {**GIVEN, "lower_a1": 10.0, "upper_a1": -10.0}, {**GIVEN, "lower_a1": INFINITY},
+        {**GIVEN, "upper_a1": -INFINITY}, {**GIVEN, "upper_a1": NAN}, {**GIVEN, "link_length_1": 1e-300},
+    ],
+    ids=str,
+)  # fmt: skip
+def test_a_machine_that_cannot_be_is_refused(given: dict[str, float]) -> None:
+    """With a reason and the parameters that are at fault; the machine that there was goes on."""
+    calls = [["forward", [10.0, 20.0, 3.0, 40.0]]]
+    machines = [{"parameters": one, "calls": calls} for one in (GIVEN, given)]
+    first, second = ask(program_of(NAME), machines)
+    assert second["made"]["status"] == 1 and second["made"]["reason"]
+    assert second["made"]["parameters"].startswith(("link_length_", "check_", "lower_", "upper_", "offset_"))
+    assert second["found"] == first["found"] and first["found"][0]["status"] == 0
+    (never,) = ask(program_of(NAME), machines[1:])
+    assert never["found"][0]["status"] == 1 and never["found"][0]["reason"] == "not initialized"

@@ -1,0 +1,132 @@
+"""What is written: its width, what it includes, the same bytes every time, what it says of a machine, and its use."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+import softkin
+
+from derive.command.line import main
+from derive.emit.c import package, printer
+from derive.emit.c.printer import is_reserved, member, spelled
+from derive.ir.constants import LEAST
+from tests.c.machine import described
+from tests.c.programs import COMPILER, STRICT, compile_in, files_of, part_of, program_of, written
+from tests.corpus.dimensions import DIMENSIONS
+from tests.mechanisms import kinematics_of, named
+
+ROOT = Path(__file__).parents[2]
+HEADERS = {"<math.h>", "<stdbool.h>", "<stddef.h>", "<stdint.h>", '"softkin.h"'}
+
+
+@pytest.mark.parametrize("name", DIMENSIONS)
+def test_lines_and_includes(name: str) -> None:
+    """No line is wider than a page; nothing is allocated, changed globally, or included besides libm."""
+    part = part_of(name)
+    for path, text in files_of(part).items():
+        wide = [line for line in text.splitlines() if len(line) > 110]
+        assert not wide, (path, wide[0])
+        assert "\t" not in text and text.endswith("\n") and " \n" not in text
+        assert set(re.findall(r"^#include (.*)$", text, re.MULTILINE)) <= {*HEADERS, f'"{part["index"]["module"]}.h"'}
+        code = re.sub(r"/\*.*?\*/|\"(\\.|[^\"])*\"", "", text, flags=re.DOTALL)
+        assert not re.search(r"\b(malloc|calloc|alloca|printf|goto|errno|volatile|rand|time|//)\b", code), path
+        changed = [line for line in re.findall(r"^(?:static )?[a-z].*(?:=|;)$", code, re.MULTILINE)
+                   if "(" not in line and not line.startswith(("typedef", "static const", "const", "extern const"))
+                   and not line.endswith("}")]  # fmt: skip
+        assert not changed, (path, changed)
+
+
+@pytest.mark.parametrize("name", DIMENSIONS)
+def test_the_description_is_that_of_the_class(name: str) -> None:
+    """Axes, parameters, bytes, rows, margins: what the class of the package says."""
+    told, made = described(program_of(name)), softkin.catalogue()[name]
+    assert told.name == name
+    assert [(a["name"], a["kind"], a["unit"], a["meaning"], bool(a["multi_turn"])) for a in told.axes] == [
+        (a.name, a.kind, a.unit, a.meaning, a.multi_turn) for a in made.AXES
+    ]
+    assert [(p["name"], p["kind"], p["unit"], p["meaning"]) for p in told.parameters] == [
+        (p.name, p.kind, p.unit, p.meaning) for p in made.PARAMETERS
+    ]
+    for one, other in zip(told.parameters, made.PARAMETERS, strict=True):
+        low = max(other.low, float(LEAST)) if other.low_is_open else -1.0 if other.kind == "sign" else other.low
+        assert (one["low"], one["high"], bool(one["low_is_open"])) == (low, min(other.high, 1e9), other.low_is_open)
+        assert other.default is None and one["default"] != one["default"] or one["default"] == other.default
+    assert [(name, first, second, initial) for name, first, second, initial in told.configuration] == [
+        (b.name, *(b.branches or ("", "")), b.default) for b in made.CONFIGURATION
+    ]
+    assert told.margins == tuple(made.MARGINS) and told.rows == tuple(made.JACOBIAN_ROWS)
+    assert told.branches == made.BRANCHES
+
+
+def test_names() -> None:
+    """The files that all share have names that no machine takes."""
+    assert package.module_name("Kin_Softkin") == "softkin_machine"
+    assert package.module_name("Kin_Math") == "math_machine"  # a folder with another math.h
+    assert package.module_name("Kin_3RRR") == "kin_3rrr"
+    assert package.module_name("Kin_Numbers") == "numbers"
+
+
+@pytest.mark.parametrize("name", ["double", "NAN", "__FILE__", "M_PI", "linux", "softkin_root", "_Bool", "while"])
+def test_words_are_no_names(name: str) -> None:
+    """A name with another meaning is neither a variable nor a member; any other is both."""
+    assert is_reserved(name) and not is_reserved(spelled(name)) and not is_reserved(member(name))
+    assert spelled("reach") == member("reach") == "reach" and member("ends") != "ends" and spelled("k") != "k"
+    assert printer.text('a "b" ??/ c') == r'"a \"b\" ?\?/ c"'
+
+
+@pytest.mark.parametrize("value", [1.0, -0.5, 1e9, -1e12, 2500000.0, 1e-11, 1e22, 1.5e300, 123456789.0, 0.1, 5e-324])
+def test_literals(value: float) -> None:
+    """A literal is a real number, and the one that is meant."""
+    text = printer.number(value)
+    assert float(text) == value and ("." in text or "e" in text)
+
+
+def test_a_machine_that_does_not_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The arrays of the calls have an end: no source is written that would write beyond it."""
+    kinematics = kinematics_of(named("Kin_Scara4_ZCcoupled_Type1"))
+    for most, size in (("MOST_AXES", 3), ("MOST_BRANCHES", 0)):
+        with monkeypatch.context() as changed:
+            changed.setattr(package, most, size)
+            assert package.part(kinematics) is None
+    assert package.part(kinematics) is not None
+
+
+def test_the_command_writes_it_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`softkin derive … --language c` writes its folder, and leaves what stands beside it."""
+    description = ROOT / "derive" / "mechanisms" / "kin_caxis.py"
+    beside = tmp_path / "out" / "mine.txt"
+    beside.parent.mkdir()
+    beside.write_text("mine")
+    command = ["derive", str(description), "--out", str(beside.parent), "--language", "c"]
+    assert main(command) == 0
+    assert {path.name for path in beside.parent.iterdir()} == {"mine.txt", "c"}
+    found = {path.name: path.read_text() for path in (beside.parent / "c").iterdir()}
+    assert found == dict(package.files([part_of("Kin_CAxis")]))
+    assert set(found) == {"caxis.c", "caxis.h", "softkin.c", "softkin.h"}
+    capsys.readouterr()
+
+
+def test_the_program_of_the_readme() -> None:
+    """It compiles as the README says, and prints what the README says."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    program = re.search(r"```c\n(.*?)```", text, re.DOTALL)
+    printed = re.search(r"    cc -std=c99 (.*)\n    (.*)\n", text)
+    assert program and printed
+    folder = written({**files_of(part_of("Kin_Scara4_ZCcoupled_Type1")), "main.c": program[1]})
+    sources = printed[1].partition(" && ")[0].split()
+    compile_in(folder, *sources)
+    found = subprocess.run([folder / "a.out"], capture_output=True, text=True, check=True).stdout
+    assert found == f"{printed[2]}\n"
+
+
+def test_optimised_and_for_cpp() -> None:
+    """No warning where the compiler looks deeper; C++ reads the headers (that of the search is the longest source)."""
+    parts = [part_of(name) for name in ("Kin_Scara4_ZCcoupled_Type1", "Kin_Ac6_RZRYRYRXRYRZ_J6Offset")]
+    folder = written(package.files(parts))
+    compile_in(folder, "-O2", "-Wpedantic", "-c", *(path.name for path in folder.glob("*.c")))
+    (folder / "all.cpp").write_text("".join(f'#include "{part["index"]["module"]}.h"\n' for part in parts))
+    options = [option for option in STRICT if not option.startswith("-std")]
+    subprocess.run([COMPILER, *options, "-std=c++11", "-fsyntax-only", "all.cpp"], cwd=folder, check=True)
