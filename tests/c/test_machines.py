@@ -36,7 +36,7 @@ def test_a_machine_of_the_user(name: str) -> None:
     assert len(poses) > 10
     calls = [["inverseAll", {"position": f.position, "rotation": f.rotation}, axes] for axes, f in poses]
     machines = [{"parameters": dict(robot.parameters), "calls": calls}]
-    (answer,) = ask(compiled(machine.built.parts["c"]), machines)
+    (answer,) = ask(compiled(package.part(kinematics_of(machine.mechanism))), machines)
     assert answer["made"] == {"status": 0}
     for (axes, frame), found in zip(poses, answer["found"], strict=True):
         expected = robot.inverse_all(frame, axes)
@@ -53,7 +53,7 @@ def test_a_reference_that_is_needed() -> None:
     frame = {"position": [0.0] * 3, "rotation": np.eye(3).tolist()}
     calls = [["inverse", frame, None, None], ["inverseAll", frame, None]]
     given = {"parameters": dict(machine.robot.parameters), "calls": calls}
-    (answer,) = ask(compiled(machine.built.parts["c"]), [given])
+    (answer,) = ask(compiled(package.part(kinematics_of(machine.mechanism))), [given])
     one, every = answer["found"]
     assert one["status"] == every["status"] == 2
     assert one["reason"].startswith("a reference is needed: it holds the value of ")
