@@ -52,7 +52,12 @@ def _grown(inner: st.SearchStrategy[sp.Expr]) -> st.SearchStrategy[sp.Expr]:
     )
 
 
-expressions = st.recursive(leaves, _grown, max_leaves=10)
+def _is_real(expression: sp.Expr) -> bool:
+    """Whether SymPy sees that it is real: of an angle between two numbers it does not, and takes its imaginary part."""
+    return not expression.has(sp.im, sp.re, sp.conjugate, sp.arg, sp.I)
+
+
+expressions = st.recursive(leaves, _grown, max_leaves=10).filter(_is_real)
 
 
 def _read(lines: tuple[str, ...]) -> np.ndarray:
