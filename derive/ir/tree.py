@@ -8,12 +8,13 @@ else:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import sympy as sp
 
-from derive.ir.program import Statement, binds, expressions, reads
+from derive.ir.program import Require, Statement, binds, expressions, reads
 from derive.ir.symbols import names_in
 
 
@@ -82,3 +83,19 @@ def given_to(items: Iterable[Item]) -> set[sp.Symbol]:
             found |= reads(item) - bound
             bound |= set(binds(item))
     return found
+
+
+def grouped(body: Sequence[Item]) -> Iterator[tuple[Item, tuple[Require, ...]]]:
+    """Statements in order; conditions that follow each other and refuse alike, about the same
+    subject, come together.
+    """
+
+    def key(indexed: tuple[int, Item]) -> tuple[object, ...]:
+        index, statement = indexed
+        if not isinstance(statement, Require):
+            return (index,)
+        return statement.otherwise.name, None if statement.reason is None else statement.reason.subject
+
+    for _, group in groupby(enumerate(body), key):
+        statements = [statement for _, statement in group]
+        yield statements[0], tuple(s for s in statements if isinstance(s, Require))

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import groupby
 
 import sympy as sp
 
+from derive.emit.braces import block, indented
 from derive.emit.c.functions import Function, function_name, read_by
-from derive.emit.c.layout import block, comment, commented, indented
+from derive.emit.c.layout import comment, commented
 from derive.emit.c.printer import C, list_of, names_of, spelled, type_of
 from derive.emit.c.refusal import Refusals
 from derive.ir.primitives import Select
 from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, binds
 from derive.ir.symbols import PLACE
-from derive.ir.tree import If, Item
+from derive.ir.tree import If, Item, grouped
 from derive.lowering.scheduling import structured
 from derive.report.reasons import Reasons
 
@@ -87,7 +87,7 @@ class Body:
 
     def lines(self, items: Sequence[Item]) -> list[str]:
         """Statements, choices with their sides."""
-        return [line for item, same in _grouped(items) for line in self._item(item, same)]
+        return [line for item, same in grouped(items) for line in self._item(item, same)]
 
     def let(self, let: Let, *, declares: bool = True) -> list[str]:
         """A variable, or what is assigned to one."""
@@ -250,17 +250,3 @@ def declarations(names: Sequence[sp.Symbol]) -> list[str]:
 def without_brackets(value: sp.Basic, text: str) -> str:
     """A choice that is bound to a name needs no brackets."""
     return text[1:-1] if isinstance(value, Select) and text.startswith("(") else text
-
-
-def _grouped(items: Sequence[Item]) -> Iterator[tuple[Item, tuple[Require, ...]]]:
-    """Statements in order; conditions that follow each other and refuse alike, about one subject, come together."""
-
-    def key(indexed: tuple[int, Item]) -> tuple[object, ...]:
-        index, item = indexed
-        if not isinstance(item, Require):
-            return (index,)
-        return item.otherwise.name, None if item.reason is None else item.reason.subject
-
-    for _, group in groupby(enumerate(items), key):
-        found = [item for _, item in group]
-        yield found[0], tuple(item for item in found if isinstance(item, Require))

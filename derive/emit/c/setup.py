@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.description.mechanism import Role
-from derive.emit.c.layout import block, comment
+from derive.emit.braces import block
+from derive.emit.c.layout import comment
 from derive.emit.c.printer import C, member, number, text, type_of
 from derive.emit.c.program import Body, function_of
 from derive.emit.inputs import Inputs

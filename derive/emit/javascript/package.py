@@ -12,9 +12,10 @@ from jinja2 import Environment
 
 from derive.drawing.parts import Parts, parts_of
 from derive.drawing.pose import drawn_pose, nominal_machine
+from derive.emit.braces import block
 from derive.emit.javascript.description import description, inputs
 from derive.emit.javascript.functions import functions, rotation_function
-from derive.emit.javascript.layout import block, comment, laid_out
+from derive.emit.javascript.layout import comment, laid_out
 from derive.emit.javascript.printer import PRINTER, RUNTIME, list_of, spelled, text
 from derive.emit.javascript.program import function_lines, looked_for, read_by
 from derive.emit.javascript.refusal import Refusals

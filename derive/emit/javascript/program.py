@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import groupby
 
 import sympy as sp
 
+from derive.emit.braces import block, indented
 from derive.emit.javascript.functions import Function, Shape, names
-from derive.emit.javascript.layout import block, comment, commented, indented
+from derive.emit.javascript.layout import comment, commented
 from derive.emit.javascript.printer import PRINTER, function_name, list_of, names_of, spelled
 from derive.emit.javascript.refusal import Refusals, condition_of
 from derive.ir.primitives import Select
 from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, binds, expressions, told
 from derive.ir.symbols import PLACE, symbols_of
-from derive.ir.tree import If, Item
+from derive.ir.tree import If, Item, grouped
 from derive.lowering.scheduling import structured
 
 _PLACE = "({ tried, side, freed, freed_angle }) => "
@@ -74,7 +74,7 @@ class _Body:
 
     def lines(self, items: Sequence[Item]) -> list[str]:
         """Statements, choices with their sides."""
-        return [line for item, same in _grouped(items) for line in self._item(item, same)]
+        return [line for item, same in grouped(items) for line in self._item(item, same)]
 
     def _item(self, item: Item, same: tuple[Require, ...]) -> list[str]:
         if isinstance(item, Require):
@@ -184,17 +184,3 @@ def _trimmed(targets: list[str]) -> list[str]:
     while targets and not targets[-1]:
         targets.pop()
     return targets
-
-
-def _grouped(items: Sequence[Item]) -> Iterator[tuple[Item, tuple[Require, ...]]]:
-    """Statements in order; conditions that follow each other and refuse alike, about one subject, come together."""
-
-    def key(indexed: tuple[int, Item]) -> tuple[object, ...]:
-        index, item = indexed
-        if not isinstance(item, Require):
-            return (index,)
-        return item.otherwise.name, None if item.reason is None else item.reason.subject
-
-    for _, group in groupby(enumerate(items), key):
-        found = [item for _, item in group]
-        yield found[0], tuple(item for item in found if isinstance(item, Require))

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.emit.javascript.layout import block, comment, indented
+from derive.emit.braces import block, indented
+from derive.emit.javascript.layout import comment
 from derive.emit.javascript.printer import PRINTER, status, text
 from derive.ir.constants import LARGEST
 from derive.ir.program import Iterate, Require

@@ -9,8 +9,9 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from derive.description.mechanism import Parameter
+from derive.emit.braces import block
 from derive.emit.inputs import Inputs
-from derive.emit.javascript.layout import block, comment, commented
+from derive.emit.javascript.layout import comment, commented
 from derive.emit.javascript.printer import PRINTER, list_of, spelled, text
 from derive.emit.javascript.program import solved, without_brackets
 from derive.emit.javascript.refusal import condition_of

@@ -15,7 +15,6 @@ from derive.emit.python.program import (
     Method,
     binding_lines,
     constants_of,
-    grouped,
     has_search,
     step_lines,
     unpacked,
@@ -33,7 +32,7 @@ from derive.ir.program import (
     Statement,
     reads,
 )
-from derive.ir.tree import If, Item
+from derive.ir.tree import If, Item, grouped
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.scheduling import scheduled
 

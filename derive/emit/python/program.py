@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
 
 import sympy as sp
 
@@ -37,7 +36,7 @@ from derive.ir.symbols import (
     PLACE,
     symbols_of,
 )
-from derive.ir.tree import If, Item
+from derive.ir.tree import If, Item, grouped
 from derive.ir.verify import verify
 from derive.lowering.scheduling import structured
 
@@ -188,22 +187,6 @@ def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
     if let.comment and fits(line, let.comment):
         return [f"{line}  # {let.comment}"]
     return [*note_lines(let.comment), line]
-
-
-def grouped(body: Sequence[Item]) -> Iterator[tuple[Item, tuple[Require, ...]]]:
-    """Statements in order; conditions that follow each other and refuse alike, about the same
-    subject, come together.
-    """
-
-    def key(indexed: tuple[int, Item]) -> tuple[object, ...]:
-        index, statement = indexed
-        if not isinstance(statement, Require):
-            return (index,)
-        return statement.otherwise.name, None if statement.reason is None else statement.reason.subject
-
-    for _, group in groupby(enumerate(body), key):
-        statements = [statement for _, statement in group]
-        yield statements[0], tuple(s for s in statements if isinstance(s, Require))
 
 
 def unpacked(method: Method) -> list[str]:

@@ -1,0 +1,64 @@
+"""The layout of languages with braces: indents, blocks, and long statements broken outside of texts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+_INDENT = "  "
+_BREAKS = (" + ", " - ", " && ", " || ", " ? ", " : ")
+_COMMENTS = ("//", "/*")
+
+
+def indented(lines: Sequence[str]) -> list[str]:
+    """The lines, each with one more indent."""
+    return [_INDENT + line if line else line for line in lines]
+
+
+def block(head: str, lines: Sequence[str]) -> list[str]:
+    """`head {`, the lines, `}`."""
+    return [f"{head} {{", *indented(lines), "}"]
+
+
+def broken(line: str, width: int) -> Iterator[str]:
+    """The lines of a statement, broken before an operator or behind a comma, first outside of all brackets."""
+    margin = line[: len(line) - len(line.lstrip())]
+    rest, inner = line.lstrip(), margin + 2 * _INDENT
+    while len(margin) + len(rest) > width and not rest.startswith((*_COMMENTS, "* ")):
+        place = _place(rest, width - len(margin))
+        if place is None:
+            break
+        yield margin + rest[:place].rstrip()
+        rest, margin = rest[place:].lstrip(), inner
+    yield margin + rest
+
+
+def _place(text: str, width: int) -> int | None:
+    """The best place to break within a width: the least nested one, among equals the last."""
+    places = [(depth, -at) for at, depth in _places(text)]
+    fitting = [place for place in places if -place[1] <= width]
+    far = [place for place in fitting if -place[1] > width // 4]
+    return -min(far or fitting or places)[1] if places else None
+
+
+def _places(text: str) -> Iterator[tuple[int, float]]:
+    """The places where a line may end, each with its depth: a sum is deeper than a list, and a product than a sum."""
+    depth, is_text, escaped = 0, False, False
+    for at, character in enumerate(text):
+        if is_text:
+            is_text, escaped = escaped or character != '"', character == "\\" and not escaped
+        elif character == '"':
+            is_text = True
+        elif text.startswith(_COMMENTS, at):
+            return
+        elif character in "([{":
+            depth += 1
+        elif character in ")]}":
+            depth -= 1
+        elif text.startswith(_BREAKS, at):
+            yield at + 1, depth + 0.25
+        elif text.startswith(", ", at):
+            yield at + 2, depth
+        elif character == " " and text[at - 1 : at + 2] == '" "':  # between the parts of a text
+            yield at + 1, depth
+        elif character in "*/":
+            yield at, depth + 0.5
