@@ -38,6 +38,11 @@ UNFIT = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
 _LANGUAGES = {
     python.name: "Python", StructuredTextFiles.name: "Structured Text", javascript.name: "JavaScript", c.name: "C",
 }  # fmt: skip
+_BOUNDS = {
+    StructuredTextFiles.name: "no block: it has {axes} axes, and SoftMotion knows six",
+    c.name: f"no C: its calls hold {c.MOST_AXES} axes and {c.MOST_BRANCHES} branches",
+}
+"""Why a language does not hold a machine."""
 Told = Callable[[str, str], None]
 """What is told about a stage: its name, and its result, which is empty at its begin."""
 
@@ -223,6 +228,13 @@ def languages(
     except ValueError as problem:
         raise GenerationError(str(problem)) from None
     return tuple(language for language in every if language.name in wanted)
+
+
+def unwritten(built: Built, outputs: Sequence[Language], mechanism: Mechanism) -> Iterator[str]:
+    """Why a language that is asked for does not have this machine, a sentence each."""
+    for name in (language.name for language in outputs):
+        if name not in built.parts:
+            yield _BOUNDS[name].format(axes=len(mechanism.joints))
 
 
 def files_of(

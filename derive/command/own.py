@@ -14,9 +14,8 @@ from derive.command.stages import Stages
 from derive.description.catalogue import load
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.places import in_place
-from derive.emit.c import package as c
 from derive.output import ForeignFolder, differences, replace_beside_others, replace_parts
-from derive.pipeline import WRITTEN, GenerationError, derive_one, files_of, languages, reason_of
+from derive.pipeline import WRITTEN, GenerationError, derive_one, files_of, languages, reason_of, unwritten
 
 _TAKEN = ("softkin", "derive", "numpy", "scipy", "sympy", "casadi", "matplotlib")
 """Packages that a user of the machine may have installed, besides the modules of Python."""
@@ -129,10 +128,8 @@ def _derived(path: Path, package: str, options: argparse.Namespace, stages: Stag
         stages.line(f"  warning: {in_place(path, f'not drawn: {built.undrawn}')}")
     for note in built.notes(options.language or ()):
         stages.line(f"  note: {note}")
-    if "st" not in built.parts:
-        stages.line(f"  note: no block: it has {len(mechanism.joints)} axes, and SoftMotion knows six")
-    if c.name in (options.language or ()) and c.name not in built.parts:
-        stages.line(f"  note: no C: its calls hold {c.MOST_AXES} axes and {c.MOST_BRANCHES} branches")
+    for note in unwritten(built, outputs, mechanism):
+        stages.line(f"  note: {note}")
     return files
 
 

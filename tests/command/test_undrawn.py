@@ -6,7 +6,8 @@ import re
 
 import pytest
 
-from derive.pipeline import derive_one
+from derive.description.catalogue import MECHANISMS, load
+from derive.pipeline import Built, derive_one, languages, unwritten
 from tests.command.files import Folder
 from tests.command.guide import MACHINES
 from tests.command.wrong import changed
@@ -63,3 +64,14 @@ def test_a_machine_with_seven_axes_has_a_package_and_no_block(folder: Folder) ->
     assert (said.status, said.err) == (0, "")
     assert "note: no block: it has 7 axes, and SoftMotion knows six" in said.out
     assert {n.split("/")[0] for n in folder.names("build")} == {"python"}
+
+
+def test_a_language_that_does_not_hold_a_machine_says_why() -> None:
+    """Of those that were asked for alone."""
+    mechanism = load(MECHANISMS / "kin_gantry2.py")
+    built = Built("", "", None, {"python": {}}, {})
+    assert list(unwritten(built, languages(wanted=["python", "st", "c"]), mechanism)) == [
+        "no block: it has 2 axes, and SoftMotion knows six",
+        "no C: its calls hold 24 axes and 12 branches",
+    ]
+    assert not list(unwritten(built, languages(wanted=["python"]), mechanism))

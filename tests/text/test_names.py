@@ -10,8 +10,9 @@ import pytest
 from derive.__main__ import main
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
+from derive.emit.language import TEMPLATES
 from derive.emit.plcopen.objects import Object, objects_of
-from derive.emit.st.names import parameter_name, spellings
+from derive.emit.st.names import TEMPLATE_LOCALS, parameter_name, spellings
 from derive.emit.st.reserved import clash, refuse_clashes, reserved
 from tests.harness.contract import INTERFACES
 from tests.harness.faults import Place, StError
@@ -133,3 +134,10 @@ def test_a_parameter_whose_input_is_a_keyword(tmp_path: Path, capsys: pytest.Cap
     block = (out / "st" / "scara" / "Softkin_Scara2_Z.st").read_text(encoding="utf-8")
     assert "dIntLength : LREAL" in block and told in " ".join(block.split())
     assert " int: float," in (out / "python" / "softkin" / "scara2_z.py").read_text("utf-8")
+
+
+def test_the_names_of_template_variables_are_declared_in_templates() -> None:
+    """A name that no template of a method declares would only make other names longer."""
+    texts = [path.read_text(encoding="utf-8") for path in (TEMPLATES / "st" / "methods").glob("*.st.j2")]
+    declared = {name.lower() for text in texts for name in re.findall(r"^ +([A-Za-z]\w*) : ", text, re.MULTILINE)}
+    assert declared >= TEMPLATE_LOCALS

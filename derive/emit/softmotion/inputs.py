@@ -9,7 +9,7 @@ from itertools import count
 from derive.description.mechanism import Parameter, Role
 from derive.emit.inputs import Inputs, Spelling, inputs_of, word_of
 from derive.emit.st.expression import literal
-from derive.emit.st.names import TEMPLATE_LOCALS, capitalized, input_name, of_methods, stored_name
+from derive.emit.st.names import capitalized, input_name, of_methods, stored_name
 from derive.emit.st.reserved import clash
 from derive.ir.constants import (
     LARGEST,
@@ -36,7 +36,7 @@ class Input:
 def inputs(kinematics: Kinematics) -> Inputs:
     """The names of the inputs of a block: none is another variable of the block, or of one of its methods."""
     stored = {stored_name(o.name): "a variable of the block" for o in kinematics.setup.outputs}
-    local = dict.fromkeys(of_methods() | TEMPLATE_LOCALS, "a method or a variable of one")
+    local = dict.fromkeys(of_methods(), "a method or a variable of one")
     return inputs_of(kinematics, _TEXT, stored | local)
 
 

@@ -24,9 +24,8 @@ _PREFIX = {Role.FLAG: "x", Role.SIGN: "i"}
 
 TEMPLATE_LOCALS = frozenset(
     """
-    apart baseaxis branch candidate column configbytes distance drivelimited drivelower driveupper failure flange
-    flangeaxis found frame highest identity issingle least lowest middle nothing order ownlower ownunlimited
-    ownupper projected relative rot rotation row slot solution space status total tried
+    apart baseaxis column configbytes distance flange flangeaxis frame identity least middle nothing projected
+    relative rot rotation solution space status total
     """.split()
 )
 """The variables that the templates of methods declare."""
