@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gc
+import os
 import sys
+import webbrowser
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -11,7 +13,7 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from derive.command.catalogue import chosen
-from derive.command.own import complain
+from derive.command.own import complain, package_of
 from derive.command.stages import Stages
 from derive.description.catalogue import Entry, catalogue
 from derive.description.mechanism import Mechanism
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 
 OUTPUT = Path("build/report")
 _INDEX = "index.html"
+_DESKTOPS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
 def report(options: argparse.Namespace) -> int:
@@ -50,22 +53,38 @@ def report(options: argparse.Namespace) -> int:
     return 1 if faults else 0
 
 
-def written(path: Path, mechanism: Mechanism, folder: Path, stages: Stages) -> None:
+def written(path: Path, mechanism: Mechanism, folder: Path, stages: Stages) -> Path:
     """Write the page of a machine, and name its file. Raises `GenerationError` with file, line and remedy."""
     try:
-        page = _page(mechanism, stages.told)
+        page = _page(mechanism, stages.told, _viewer(path))
     except Exception as problem:
         raise GenerationError(in_place(path, reason_of(problem))) from None
     target = _write(folder, page.file, page.text)
     stages.line(f"  {target}  {target.stat().st_size // 1000} kB")
+    return target
 
 
-def _page(mechanism: Mechanism, told: Told) -> Page:
+def opened(target: Path) -> None:
+    """Show a page in the browser of who sits at this terminal; in a script, or without a desktop, nothing happens."""
+    has_desktop = sys.platform in ("darwin", "win32") or any(os.environ.get(name) for name in _DESKTOPS)
+    if sys.stdout.isatty() and has_desktop:
+        webbrowser.open(target.resolve().as_uri())
+
+
+def _viewer(path: Path) -> str:
+    """The page that `view` writes of a machine; empty where its file has a name that no package can have."""
+    try:
+        return f"../{package_of(path, None)}.html"
+    except GenerationError:
+        return ""
+
+
+def _page(mechanism: Mechanism, told: Told, viewer: str) -> Page:
     from derive.emit.page.page import page_of
 
     kinematics = derive_and_measure(mechanism, told)
     told("page", "")
-    page = page_of(mechanism, kinematics)
+    page = page_of(mechanism, kinematics, viewer=viewer)
     ElementTree.fromstring(page.text)  # what is not well-formed, some readers show in part
     told("page", f"{len(page.text.encode()) // 1000} kB")
     return page
@@ -81,7 +100,7 @@ def _attempt(entry: Entry) -> Page | Failure:
     """A page made in a worker process: a problem comes back as text, because not every exception can travel."""
     path, mechanism = entry
     try:
-        return _page(mechanism, lambda stage, found: None)
+        return _page(mechanism, lambda stage, found: None, f"../viewer.html#machine={mechanism.name}")
     except Exception as problem:
         return Failure(in_place(path, reason_of(problem)))
 

@@ -1,6 +1,7 @@
 /** What the machine says of a pose: margins as gauges, other solutions, dimensions and why one is refused. */
 
 import { element, numberIn, section, shown, unitOf } from "./element.js";
+import { openEnd } from "./limits.js";
 
 /** A margin below this is worth a warning colour. */
 const NEAR = 0.1;
@@ -10,11 +11,15 @@ const KINDS = {
 };
 
 /** "good", "near" or "singular", by the least margin of a pose. */
-export function stateOf(pose, nearest) {
-  if (!pose || pose.singularity.status) return "singular";
-  if (pose.singularity.isSingular) return "singular";
-  const least = Math.min(Infinity, ...Object.values(pose.singularity.margins).map(Math.abs));
-  return least < Math.max(NEAR, nearest) ? "near" : "good";
+export function stateOf(pose) {
+  if (!pose || pose.singularity.status || pose.singularity.isSingular) return "singular";
+  return nearestOf(pose).margin < NEAR ? "near" : "good";
+}
+
+/** The singularity that is nearest to a pose: its name, and its margin in size. */
+export function nearestOf(pose) {
+  const sizes = Object.entries(pose?.singularity.margins ?? {}).map(([name, margin]) => ({ name, margin: Math.abs(margin) }));
+  return sizes.reduce((least, one) => (one.margin < least.margin ? one : least), { name: "", margin: Infinity });
 }
 
 export class MarginsPanel {
@@ -111,7 +116,7 @@ export class DimensionsPanel {
     const wrong = element("span", { class: "wrong", id: `wrong-${i}`, role: "alert" });
     const field = element("input", { type: isFlag ? "checkbox" : "number", step: "any", id: `parameter-${i}`, "aria-describedby": `wrong-${i}`,
       [isFlag ? "change" : "input"]: ({ target }) => {
-        const value = isFlag ? target.checked : numberIn(target);
+        const value = isFlag ? target.checked : target.validity.badInput || target.value !== "" ? numberIn(target) : openEnd(this.model.description, name);
         if (value !== null) this.model.setParameter(name, value);
       } });
     const label = element("label", { for: `parameter-${i}`, title: meaning }, name.replaceAll("_", " "));
@@ -127,7 +132,12 @@ export class DimensionsPanel {
       row.field.setAttribute("aria-invalid", String(isWrong));
       row.wrong.textContent = isWrong && name === wrong.names[0] ? `Refused: ${wrong.words}` : "";
       if (row.isFlag) row.field.checked = Boolean(parameters[name]);
-      else if (document.activeElement !== row.field) row.field.value = String(isWrong && wrong.value !== null && name === wrong.names[0] ? wrong.value : parameters[name]);
+      else if (document.activeElement !== row.field) row.field.value = written(wrong?.values[name] ?? parameters[name]);
     }
   }
+}
+
+/** A parameter in its field; an end that is open is an empty one. */
+function written(value) {
+  return Number.isFinite(value) ? String(value) : "";
 }

@@ -16,7 +16,7 @@ const { browser, name } = await launched(which).catch((error) => {
   writeFileSync(result, JSON.stringify({ missing: error.message }));
   process.exit(0);
 });
-const seen = { browser: name, errors: [], firstPictures: [] };
+const seen = { browser: name, errors: [], pictures: { catalogue: [], own: [] } };
 
 /** A page at a fragment; what its console complains of is kept. */
 async function opened(fragment, { size = SMALL, theme = "light", file = cataloguePage } = {}) {
@@ -26,8 +26,9 @@ async function opened(fragment, { size = SMALL, theme = "light", file = catalogu
   page.on("pageerror", (error) => seen.errors.push(`${fragment}: ${error}`));
   page.on("request", (request) => /^(file|blob|data):/.test(request.url()) || seen.errors.push(`${fragment} asks for ${request.url()}`));
   await page.goto(`${pathToFileURL(file)}${fragment}`);
-  await page.waitForFunction(() => globalThis.softkinPage?.model.pose && globalThis.softkinPage.stage.firstPicture);
-  seen.firstPictures.push(await page.evaluate(() => softkinPage.stage.firstPicture));
+  await page.waitForFunction(() => globalThis.softkinPage?.model.pose && globalThis.softkinPage.stage.isDrawn);
+  const marks = await page.evaluate(() => performance.getEntriesByType("mark").map((mark) => [mark.name, mark.startTime]));
+  seen.pictures[file === ownPage ? "own" : "catalogue"].push(Object.fromEntries(marks));
   return page;
 }
 
@@ -41,8 +42,16 @@ function state(page) {
   return page.evaluate(() => {
     const { model } = softkinPage;
     const value = (id) => document.getElementById(id).value;
+    const parameters = { ...model.parameters };
+    const limits = {};
+    for (const { name, lower, upper } of model.description.limits) {
+      const pair = [lower, upper].map((end) => (Number.isFinite(parameters[end]) ? parameters[end] : null));
+      if (!pair.includes(null)) continue;
+      limits[name] = pair; // JSON has no infinite numbers
+      [lower, upper].forEach((end) => delete parameters[end]);
+    }
     return {
-      machine: model.name, parameters: model.parameters, axes: model.axes, frame: model.pose.frame, configuration: model.pose.configuration,
+      machine: model.name, parameters, limits, state: document.getElementById("state").textContent, axes: model.axes, frame: model.pose.frame, configuration: model.pose.configuration,
       branches: model.branches(), margins: model.pose.singularity.margins,
       shownAxes: model.description.axes.map((_, i) => value(`axis-${i}`)), shownTool: [..."XYZABC"].map((letter) => value(`tool-${letter}`)),
       refusal: document.getElementById("refusal").hidden ? null : document.getElementById("refusal").textContent,
@@ -150,8 +159,10 @@ async function dragged() {
   seen.turned = await state(other);
   await other.context().close();
   await clickGhost(page);
+  await lookedAround(page);
   await pictured(page, LAPTOP, "laptop_light");
   await unfold(page);
+  seen.report = await page.locator("#report").getAttribute("href");
   const click = (name) => page.locator("#panel").getByRole("button", { name, exact: true }).evaluate((button) => button.click());
   seen.copied = { pose: await state(page) };
   for (const kind of ["Python", "Structured Text", "CSV"]) {
@@ -159,6 +170,26 @@ async function dragged() {
     seen.copied[kind] = await page.locator("#panel textarea").inputValue();
   }
   await page.context().close();
+}
+
+/** The picture turned by the mouse: the address says from where one looks, until the whole machine is looked at again. */
+async function lookedAround(page) {
+  const camera = (one) => one.evaluate(() => [...softkinPage.stage.camera.position.toArray(), ...softkinPage.stage.orbit.target.toArray()]);
+  const { height } = await page.evaluate(() => document.getElementById("canvas").getBoundingClientRect());
+  await settled(page);
+  const fitted = await page.evaluate(() => location.hash);
+  await page.mouse.move(12, height - 12);
+  await page.mouse.down();
+  for (let i = 1; i <= 5; i += 1) await page.mouse.move(12 + 12 * i, height - 12 - 5 * i);
+  await page.mouse.up();
+  await settled(page);
+  const turned = await page.evaluate(() => location.hash);
+  const other = await opened(turned);
+  seen.camera = { fitted, turned, here: await camera(page), there: await camera(other) };
+  await other.context().close();
+  await page.evaluate(() => document.getElementById("fit").click());
+  await settled(page);
+  seen.camera.again = await page.evaluate(() => location.hash);
 }
 
 /** A click on a ghost in the picture. */
@@ -206,6 +237,19 @@ async function typed() {
   seen.stepped = await state(page);
   await page.getByRole("button", { name: "left", exact: true }).evaluate((button) => button.click());
   seen.left = await state(page);
+  await dimension("lower a1").fill("28");
+  seen.lowerAlone = await page.evaluate(() => [...document.querySelectorAll(".wrong")].map((one) => one.textContent).filter(Boolean));
+  await dimension("upper a1").fill("60");
+  seen.bothEnds = await state(page);
+  await dimension("lower a1").fill("");
+  await page.locator("#axis-0").fill("-200");
+  seen.openEnd = await state(page);
+  await page.getByRole("button", { name: "Python", exact: true }).evaluate((button) => button.click());
+  seen.openEndCopied = await page.locator("#panel textarea").inputValue();
+  await settled(page);
+  const third = await opened(await page.evaluate(() => location.hash));
+  seen.openEndRestored = await state(third);
+  await third.context().close();
   await page.locator("#canvas").press("g");
   seen.withoutGhosts = await state(page);
   seen.order = await page.evaluate(() => [...document.querySelectorAll("a, button, select, input, summary, canvas, textarea")]
@@ -298,9 +342,13 @@ async function own() {
   seen.own = await page.evaluate(() => ({
     names: softkinPage.model.names, at: softkinPage.stage.scene.getObjectByName("own").getWorldPosition(softkinPage.stage.handle.position.clone()).toArray(),
     body: softkinPage.model.pose.scene.bodies.find((body) => body.name === "A2").frame.position,
-    licence: document.documentElement.outerHTML.includes("three.js authors"),
+    licence: document.documentElement.outerHTML.includes("three.js authors"), report: document.getElementById("report").getAttribute("href"),
   }));
   await page.screenshot({ path: `${pictures}/tablet_light.png` });
+  await unfold(page);
+  seen.own.pose = await state(page);
+  await page.getByRole("button", { name: "Python", exact: true }).evaluate((button) => button.click());
+  seen.own.copied = await page.locator("#panel textarea").inputValue();
   await page.context().close();
 }
 
@@ -316,7 +364,8 @@ async function live() {
       }
     });
     send({ type: "machine", protocol: 1, name: "Kin_Scara4_ZCcoupled_Type1", source: { kind: "OPC UA" },
-      machine: { mechanism: "Kin_Scara4_ZCcoupled_Type1", link_length_1: 300, link_length_2: 200, pitch_zc: 10, limits: { A1: [-170, 170] } } });
+      machine: { mechanism: "Kin_Scara4_ZCcoupled_Type1", link_length_1: 300, link_length_2: 200,
+        limits: { A1: [-170, 170], A2: null, A3: [null, 0], A4: [-300, null] } } });
   });
   const told = (axes, quality) => page.evaluate(([values, words]) => {
     send({ type: "axes", status: "live", message: "", complete: values.every((value) => value !== null), axes: values, quality: words, reasons: values.map(() => "") });
@@ -331,6 +380,12 @@ async function live() {
   seen.liveWords.push(await told([50, null, -30, 40], ["good", "bad", "good", "good"]));
   seen.liveKept = await state(page);
   seen.liveAsked = await page.evaluate(() => asked);
+  seen.liveUnknown = await page.evaluate(() => {
+    send({ type: "machine", protocol: 1, name: "Kin_Gantry2", source: { kind: "OPC UA" }, machine: { mechanism: "Kin_Gantry2", tool: 7 } });
+    return document.getElementById("live").textContent;
+  });
+  seen.liveWords.push(await told([1, 2], ["good", "good"]));
+  seen.liveNotMoved = await state(page);
   await page.evaluate(() => lose());
   seen.liveWords.push(await page.locator("#live").textContent());
   await page.context().close();
