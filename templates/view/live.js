@@ -43,7 +43,9 @@ export class Live {
   }
 
   #open({ machine, name, source }) {
-    const { mechanism, limits = {}, ...given } = machine;
+    let bare = machine;
+    while (bare.bare) bare = bare.bare; // base and tool move with the machine: its axes are the same
+    const { mechanism, limits = {}, ...given } = bare;
     const { names } = this.model;
     this.count = -1; // nothing moves before its machine is shown
     const found = [name, mechanism, names.length === 1 ? names[0] : null].find((one) => names.includes(one));

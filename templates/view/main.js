@@ -8,6 +8,7 @@ import { Live, tokenOf } from "./live.js";
 import { meshesOf } from "./meshes.js";
 import { Model, inWords } from "./model.js";
 import { LinePanel } from "./plots.js";
+import { refusing } from "./refusing.js";
 import { DimensionsPanel, MarginsPanel, SolutionsPanel, nearestOf, stateOf } from "./said.js";
 import { SlicePanel } from "./slice.js";
 import { Stage } from "./stage.js";
@@ -147,7 +148,8 @@ class Page {
     const said = refusal ?? pose?.beyond ?? (isWhole ? null : pose?.scene);
     stage.figure.group.visible = isWhole;
     if (isWhole) {
-      stage.show(pose.scene, refusal ? model.target : null, { refused: (body) => Boolean(said) && refuses(said.reason, body) });
+      this.refusing = said ? refusing(said.reason, pose.scene.bodies, model.description.margins) : new Set();
+      stage.show(pose.scene, refusal ? model.target : null, { refused: (body) => this.refusing.has(body) });
       stage.figure.mark(refusal ? "refused" : stateOf(pose));
     }
     parts.refusal.hidden = !said;
@@ -193,12 +195,6 @@ class Page {
       history.replaceState(null, "", `#${this.written}`);
     }, REMEMBER_AFTER);
   }
-}
-
-/** Whether a reason speaks of a body: by an axis that moves it, or by its name. */
-function refuses(reason, body) {
-  const named = reason.split(/[:,]| cannot | where /)[0].trim();
-  return body.joints.includes(named) || body.name === named;
 }
 
 /** The page, or in a sentence why there is none: a browser without WebGL 2 cannot draw it. */

@@ -106,6 +106,11 @@ async function everyMachine() {
         parameters: model.parameters, solutions: model.solutions().filter((slot) => !slot.status).length, margins: model.pose?.singularity.margins,
         isLabelled: [...document.querySelectorAll("input, select, button")].every((one) => one.labels?.length || one.ariaLabel || one.getAttribute("aria-labelledby") || one.textContent.trim()),
       };
+      if (model.isCommanded) {
+        const { position, rotation } = model.pose.frame;
+        model.moveTo({ position: position.map((value) => value + 20 * stage.size), rotation });
+        found[name].farAway = { reason: model.refusal?.reason ?? null, marked: [...softkinPage.refusing].map((body) => `${body.kind} ${body.name}`) };
+      }
       await new Promise(requestAnimationFrame);
     }
     return found;
@@ -386,6 +391,13 @@ async function live() {
   });
   seen.liveWords.push(await told([1, 2], ["good", "good"]));
   seen.liveNotMoved = await state(page);
+  seen.liveMounted = await page.evaluate(() => {
+    const bare = { mechanism: "Kin_Gantry2", limits: { X: [-1, 99], Y: null } };
+    send({ type: "machine", protocol: 1, name: "Kin_Gantry2", source: { kind: "OPC UA" }, machine: { mechanism: "Mounted", bare, base: 1, tool: 2 } });
+    const said = document.getElementById("live").textContent;
+    send({ type: "axes", status: "live", message: "", complete: true, axes: [3, 4], quality: ["good", "good"], reasons: ["", ""] });
+    return { said, name: softkinPage.model.name, axes: softkinPage.model.axes, upper: softkinPage.model.machine.limits[0].upper };
+  });
   await page.evaluate(() => lose());
   seen.liveWords.push(await page.locator("#live").textContent());
   await page.context().close();

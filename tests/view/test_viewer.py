@@ -107,6 +107,28 @@ def test_every_machine_is_drawn(name: str, seen: Seen) -> None:
     assert sum(slot.status == softkin.Status.OK for slot in slots) == found["solutions"]
 
 
+@pytest.mark.parametrize("name", [mechanism.name for _, mechanism in catalogue() if mechanism.joints])
+def test_the_part_that_refuses_is_marked(name: str, seen: Seen) -> None:
+    """Far away every machine that ends somewhere refuses: the axis or the rod is marked that its sentence names."""
+    found = seen["machines"][name]["farAway"]
+    if found["reason"] is None:
+        assert found["marked"] == []
+        return
+    subject = re.split(r"[:,]| cannot | where ", found["reason"])[0]
+    kinds = {part.partition(" ")[0] for part in found["marked"]}
+    names = {part.partition(" ")[2] for part in found["marked"]}
+    axes = {axis.name for axis in softkin.catalogue()[name].AXES}
+    if subject in axes:
+        assert names and all(subject in words.split() or kinds == {"rod"} for words in names)
+    elif " " in subject:
+        rod = subject.rpartition("rod ")[2]
+        assert kinds == {"rod"} and {words.rstrip("ab") for words in names} == {rod}
+    elif subject == "a3_from_a2":
+        assert names == {"A2", "A2 A3", "A3"}
+    else:
+        assert kinds in ({"plate"}, {"tool"})
+
+
 def test_the_tool_is_dragged(seen: Seen) -> None:
     """A drag by the mouse gives axes that Python confirms, on the branches of before, with the rotation of before."""
     before, after = seen["before"], seen["dragged"]
@@ -311,6 +333,7 @@ def test_a_controller_moves_it(seen: Seen) -> None:
     assert seen["liveWords"][1] == "live, axis 2 bad"
     assert seen["liveUnknown"].startswith("this page cannot show the machine: there is no parameter of this name: tool")
     assert seen["liveWords"][2] == "live" and seen["liveNotMoved"]["axes"] != [1, 2]
+    assert seen["liveMounted"] == {"said": "OPC UA: connecting", "name": "Kin_Gantry2", "axes": [3, 4], "upper": 99}
     assert "no connection" in seen["liveWords"][3]
 
 
