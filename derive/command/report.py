@@ -8,6 +8,7 @@ import sys
 import webbrowser
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
@@ -38,7 +39,7 @@ def report(options: argparse.Namespace) -> int:
     entries = chosen(catalogue(options.mechanisms), options.only)
     pages: list[Page] = []
     progress, faults = Progress(len(entries), sys.stdout), 0
-    for made in _pages(entries):
+    for made in _pages(entries, _is_beside_viewer(options.out)):
         if isinstance(made, Failure):
             complain(made.message)
             faults += 1
@@ -56,7 +57,7 @@ def report(options: argparse.Namespace) -> int:
 def written(path: Path, mechanism: Mechanism, folder: Path, stages: Stages) -> Path:
     """Write the page of a machine, and name its file. Raises `GenerationError` with file, line and remedy."""
     try:
-        page = _page(mechanism, stages.told, _viewer(path))
+        page = _page(mechanism, stages.told, _viewer(path) if _is_beside_viewer(folder) else "")
     except Exception as problem:
         raise GenerationError(in_place(path, reason_of(problem))) from None
     target = _write(folder, page.file, page.text)
@@ -69,6 +70,11 @@ def opened(target: Path) -> None:
     has_desktop = sys.platform in ("darwin", "win32") or any(os.environ.get(name) for name in _DESKTOPS)
     if sys.stdout.isatty() and has_desktop:
         webbrowser.open(target.resolve().as_uri())
+
+
+def _is_beside_viewer(folder: Path) -> bool:
+    """Whether the folder of pages is one to which the viewer above it links."""
+    return folder.name == OUTPUT.name
 
 
 def _viewer(path: Path) -> str:
@@ -90,17 +96,18 @@ def _page(mechanism: Mechanism, told: Told, viewer: str) -> Page:
     return page
 
 
-def _pages(entries: tuple[Entry, ...]) -> Iterator[Page | Failure]:
+def _pages(entries: tuple[Entry, ...], has_viewer: bool) -> Iterator[Page | Failure]:
     """The pages in the order of the catalogue."""
     with ProcessPoolExecutor(max_workers=min(PROCESSES, len(entries)), initializer=gc.disable) as pool:
-        yield from pool.map(_attempt, entries)
+        yield from pool.map(partial(_attempt, has_viewer), entries)
 
 
-def _attempt(entry: Entry) -> Page | Failure:
+def _attempt(has_viewer: bool, entry: Entry) -> Page | Failure:
     """A page made in a worker process: a problem comes back as text, because not every exception can travel."""
     path, mechanism = entry
     try:
-        return _page(mechanism, lambda stage, found: None, f"../viewer.html#machine={mechanism.name}")
+        viewer = f"../viewer.html#machine={mechanism.name}" if has_viewer else ""
+        return _page(mechanism, lambda stage, found: None, viewer)
     except Exception as problem:
         return Failure(in_place(path, reason_of(problem)))
 

@@ -19,6 +19,7 @@ const STATES = { good: ["regular pose", "good"], near: ["near a singular pose", 
 /** Ghosts of more solutions would hide the machine. */
 const MOST_GHOSTS = 32;
 const REMEMBER_AFTER = 120;
+const ZOOM = { "+": 0.9, "-": 1 / 0.9 };
 
 class Page {
   constructor() {
@@ -68,7 +69,7 @@ class Page {
   #about() {
     this.summary = element("p", { class: "soft" });
     const licence = element("pre", { class: "soft", style: "white-space: pre-wrap" }, this.data.licences);
-    const keys = element("p", { class: "soft" }, "Keys: T move, R turn, G ghosts, N names, F fit, 0 start; in a number, arrows step by 1, with Shift by 10, with Alt by 0.1.");
+    const keys = element("p", { class: "soft" }, "Keys: T move, R turn, G ghosts, N names, F fit, 0 start, + and - nearer and farther; in the picture, arrows shift it, with Shift they turn it; in a number, arrows step by 1, with Shift by 10, with Alt by 0.1.");
     this.report = element("a", { id: "report" }, "The derivation of this machine");
     const command = this.model.names.length > 1 ? "make report" : "softkin explain --html";
     const report = element("p", { class: "soft" }, this.report, `, line by line on paper: ${command} writes it beside this page.`);
@@ -100,6 +101,7 @@ class Page {
       const isTyping = event.target.matches("input, select, textarea") || event.ctrlKey || event.metaKey || event.altKey;
       const name = keys[event.key.toLowerCase()];
       if (name && !isTyping && model.pose) actions[name]();
+      if (event.key in ZOOM && !isTyping) this.stage.closer(ZOOM[event.key]);
     });
   }
 

@@ -87,6 +87,12 @@ export class Stage {
     this.ask();
   }
 
+  /** Look from a part of the distance. */
+  closer(part) {
+    this.camera.position.sub(this.orbit.target).multiplyScalar(part).add(this.orbit.target);
+    this.orbit.update();
+  }
+
   /** Look at all of a machine. */
   fit(scene) {
     this.measure(scene);

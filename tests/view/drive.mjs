@@ -7,6 +7,7 @@
 import { writeFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import { launched } from "./browser.mjs";
+import { isOfTheDriver, settled, state, unfold } from "./shown.mjs";
 
 const [cataloguePage, ownPage, pictures, result, which] = process.argv.slice(2);
 const LAPTOP = { width: 1366, height: 768 };
@@ -30,47 +31,6 @@ async function opened(fragment, { size = SMALL, theme = "light", file = catalogu
   const marks = await page.evaluate(() => performance.getEntriesByType("mark").map((mark) => [mark.name, mark.startTime]));
   seen.pictures[file === ownPage ? "own" : "catalogue"].push(Object.fromEntries(marks));
   return page;
-}
-
-/** Reading pixels back makes the software renderer complain of its speed; the viewer itself reads none. */
-function isOfTheDriver(message) {
-  return /GPU stall due to ReadPixels|GL Driver Message/.test(message.text());
-}
-
-/** What the page shows and knows of its pose. */
-function state(page) {
-  return page.evaluate(() => {
-    const { model } = softkinPage;
-    const value = (id) => document.getElementById(id).value;
-    const parameters = { ...model.parameters };
-    const limits = {};
-    for (const { name, lower, upper } of model.description.limits) {
-      const pair = [lower, upper].map((end) => (Number.isFinite(parameters[end]) ? parameters[end] : null));
-      if (!pair.includes(null)) continue;
-      limits[name] = pair; // JSON has no infinite numbers
-      [lower, upper].forEach((end) => delete parameters[end]);
-    }
-    return {
-      machine: model.name, parameters, limits, state: document.getElementById("state").textContent, axes: model.axes, frame: model.pose.frame, configuration: model.pose.configuration,
-      branches: model.branches(), margins: model.pose.singularity.margins,
-      shownAxes: model.description.axes.map((_, i) => value(`axis-${i}`)), shownTool: [..."XYZABC"].map((letter) => value(`tool-${letter}`)),
-      refusal: document.getElementById("refusal").hidden ? null : document.getElementById("refusal").textContent,
-      isMarked: softkinPage.stage.figure.group.children.some((mesh) => mesh.visible && mesh.material === softkinPage.stage.figure.materials.refused),
-      ghosts: softkinPage.ghosts.map((slot) => slot.axes),
-    };
-  });
-}
-
-/** Open these sections of the panel, or all. */
-function unfold(page, names = "") {
-  return page.evaluate((pattern) => document.querySelectorAll("details").forEach((one) => {
-    one.open = new RegExp(pattern).test(one.querySelector("summary").textContent);
-  }), names);
-}
-
-async function settled(page) {
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  await page.waitForTimeout(150); // the address is written after 120 ms
 }
 
 /** A picture at a size; what comes before it is drawn smaller, which takes a software renderer less. */
@@ -257,6 +217,10 @@ async function typed() {
   await third.context().close();
   await page.locator("#canvas").press("g");
   seen.withoutGhosts = await state(page);
+  const away = () => page.evaluate(() => softkinPage.stage.camera.position.distanceTo(softkinPage.stage.orbit.target));
+  seen.away = [await away()];
+  await page.locator("#canvas").press("+");
+  seen.away.push(await away());
   seen.order = await page.evaluate(() => [...document.querySelectorAll("a, button, select, input, summary, canvas, textarea")]
     .filter((one) => one.tabIndex >= 0 && !one.disabled).map((one) => one.id || one.textContent.trim() || one.ariaLabel));
   await page.context().close();
@@ -403,7 +367,13 @@ async function live() {
   await page.context().close();
 }
 
-for (const work of [live, everyMachine, dragged, typed, line, marks, slice, own]) {
+/** The page of one machine again, at another time: how soon its picture is there depends on what else the machine does. */
+async function ownAgain() {
+  const page = await opened("", { file: ownPage });
+  await page.context().close();
+}
+
+for (const work of [live, ownAgain, everyMachine, dragged, ownAgain, typed, line, ownAgain, marks, slice, own]) {
   try {
     await work();
   } catch (error) {

@@ -219,6 +219,7 @@ def test_limits_and_keys(seen: Seen) -> None:
     assert seen["stepped"]["refusal"] is None
     assert "A1: above its upper limit" in seen["left"]["refusal"]
     assert len(seen["withoutGhosts"]["ghosts"]) == 0
+    assert isclose(seen["away"][1], 0.9 * seen["away"][0], rel_tol=1e-9)
     order = seen["order"]
     assert order[:3] == ["To the values", "machine", "move"]
     assert order.index("canvas") < order.index("axis-0") < order.index("tool-X") < order.index("CSV")
