@@ -33,8 +33,27 @@ export function limitsOf(description, parameters) {
   return given.map(([name, pair]) => [name, pair.map((end) => (Number.isFinite(end) ? end : null))]);
 }
 
-/** What an empty field of a parameter means: of an end of a limit that there is none; null for any other. */
-export function openEnd(description, name) {
-  if (description.limits.some(({ lower }) => lower === name)) return -Infinity;
-  return description.limits.some(({ upper }) => upper === name) ? Infinity : null;
+/** The limits of which a parameter is an end; undefined for any other parameter. */
+export function limitOf(description, name) {
+  return description.limits.find(({ lower, upper }) => lower === name || upper === name);
+}
+
+/** Whether there are no limits. */
+export function isFree({ lower, upper }, parameters) {
+  return parameters[lower] === 0 && parameters[upper] === 0;
+}
+
+/**
+ * What changes with a parameter, which is null where its field is empty: of an end of limits both ends. Where there
+ * were no limits the other end is open, and where both are open there are none.
+ */
+export function changesWith(description, parameters, name, value) {
+  const limit = limitOf(description, name);
+  if (!limit) return { [name]: value };
+  const given = { ...parameters };
+  if (isFree(limit, given)) [given[limit.lower], given[limit.upper]] = [-Infinity, Infinity];
+  given[name] = value ?? (name === limit.lower ? -Infinity : Infinity);
+  const ends = [given[limit.lower], given[limit.upper]];
+  const [lower, upper] = ends.some(Number.isFinite) ? ends : [0, 0];
+  return { [limit.lower]: lower, [limit.upper]: upper };
 }

@@ -4,7 +4,7 @@
  * Every number comes from the module of the machine. Whoever shows something asks to be told of changes.
  */
 
-import { created } from "./limits.js";
+import { changesWith, created } from "./limits.js";
 import { catalogue, inWords } from "./machines/index.js";
 import { nominalOf, startOf } from "./start.js";
 
@@ -81,11 +81,13 @@ export class Model {
 
   /**
    * Another value of a parameter. A value that the machine refuses is kept beside the machine as it was, and tried
-   * again with the next: the two ends of a range may be allowed together alone.
+   * again with the next: the two ends of a range may be allowed together alone. null: the end of a limit is open.
    */
   setParameter(name, value) {
-    const values = { ...this.wrong?.values, [name]: value };
-    const tried = [values, { [name]: value }].map((some) => ({ ...this.parameters, ...some }));
+    const known = this.wrong?.values ?? {};
+    const values = { ...known, ...changesWith(this.description, { ...this.parameters, ...known }, name, value) };
+    const alone = changesWith(this.description, this.parameters, name, value);
+    const tried = [values, alone].map((some) => ({ ...this.parameters, ...some }));
     const made = tried.map((parameters) => created(this.module, parameters));
     const place = made.findIndex(({ status }) => !status);
     if (place < 0) {

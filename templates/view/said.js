@@ -1,7 +1,7 @@
 /** What the machine says of a pose: margins as gauges, other solutions, dimensions and why one is refused. */
 
 import { element, numberIn, section, shown, unitOf } from "./element.js";
-import { openEnd } from "./limits.js";
+import { isFree, limitOf } from "./limits.js";
 
 /** A margin below this is worth a warning colour. */
 const NEAR = 0.1;
@@ -114,10 +114,12 @@ export class DimensionsPanel {
     const { name, kind, meaning, unit } = parameter;
     const isFlag = kind === "flag";
     const wrong = element("span", { class: "wrong", id: `wrong-${i}`, role: "alert" });
-    const field = element("input", { type: isFlag ? "checkbox" : "number", step: "any", id: `parameter-${i}`, "aria-describedby": `wrong-${i}`,
+    const isEnd = limitOf(this.model.description, name) !== undefined;
+    const field = element("input", { type: isFlag ? "checkbox" : "number", step: "any", id: `parameter-${i}`, "aria-describedby": `wrong-${i}`, placeholder: isEnd ? "none" : null,
       [isFlag ? "change" : "input"]: ({ target }) => {
-        const value = isFlag ? target.checked : target.validity.badInput || target.value !== "" ? numberIn(target) : openEnd(this.model.description, name);
-        if (value !== null) this.model.setParameter(name, value);
+        const value = isFlag ? target.checked : numberIn(target);
+        const isOpen = isEnd && target.value === "" && !target.validity.badInput;
+        if (value !== null || isOpen) this.model.setParameter(name, value);
       } });
     const label = element("label", { for: `parameter-${i}`, title: meaning }, name.replaceAll("_", " "));
     const row = element("div", { class: "dimension" }, label, field, element("span", { class: "soft" }, unitOf(unit)), wrong);
@@ -132,12 +134,15 @@ export class DimensionsPanel {
       row.field.setAttribute("aria-invalid", String(isWrong));
       row.wrong.textContent = isWrong && name === wrong.names[0] ? `Refused: ${wrong.words}` : "";
       if (row.isFlag) row.field.checked = Boolean(parameters[name]);
-      else if (document.activeElement !== row.field) row.field.value = written(wrong?.values[name] ?? parameters[name]);
+      else if (document.activeElement !== row.field) row.field.value = this.#written(name);
     }
   }
-}
 
-/** A parameter in its field; an end that is open is an empty one. */
-function written(value) {
-  return Number.isFinite(value) ? String(value) : "";
+  /** A parameter as its field has it; the end of a limit that is open is an empty field. */
+  #written(name) {
+    const { parameters, wrong, description } = this.model;
+    const given = { ...parameters, ...wrong?.values };
+    const limit = limitOf(description, name);
+    return (limit && isFree(limit, given)) || !Number.isFinite(given[name]) ? "" : String(given[name]);
+  }
 }

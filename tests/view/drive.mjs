@@ -209,12 +209,18 @@ async function typed() {
   await dimension("lower a1").fill("");
   await page.locator("#axis-0").fill("-200");
   seen.openEnd = await state(page);
+  seen.endFields = await page.evaluate(() => ["a1", "a2"].map((axis) => ["lower", "upper"].map((end) => [...document.querySelectorAll(".dimension")]
+    .find((one) => one.textContent.startsWith(`${end} ${axis}`)).querySelector("input").value)));
   await page.getByRole("button", { name: "Python", exact: true }).evaluate((button) => button.click());
   seen.openEndCopied = await page.locator("#panel textarea").inputValue();
   await settled(page);
   const third = await opened(await page.evaluate(() => location.hash));
   seen.openEndRestored = await state(third);
   await third.context().close();
+  await dimension("upper a1").fill("");
+  seen.noLimit = await state(page);
+  await dimension("upper a1").fill("60");
+  seen.upperAlone = await state(page);
   await page.locator("#canvas").press("g");
   seen.withoutGhosts = await state(page);
   const away = () => page.evaluate(() => softkinPage.stage.camera.position.distanceTo(softkinPage.stage.orbit.target));

@@ -232,6 +232,9 @@ def test_an_end_of_a_limit_is_open(seen: Seen) -> None:
     found = seen["openEnd"]
     assert found["limits"] == {"A1": [None, 60]} == seen["openEndRestored"]["limits"]
     assert found["axes"][0] == -200 and found["refusal"] is None
+    assert seen["endFields"] == [["", "60"], ["", ""]]
+    assert seen["noLimit"]["limits"] == {} and seen["noLimit"]["parameters"]["upper_a1"] == 0
+    assert seen["upperAlone"]["limits"] == {"A1": [None, 60]}  # where there were no limits, the other end is open
     confirm(found)
     names: dict[str, Any] = {}
     exec(seen["openEndCopied"], names)  # the text of the viewer
