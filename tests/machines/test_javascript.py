@@ -15,7 +15,7 @@ from tests.machines.odd_names import ODD
 from tests.machines.spoken import BASE, HELD, confirm_natural_names, spoken
 from tests.mechanisms import kinematics_of
 
-WORDS = {word: word for word in ("self", "configuration", "lambda")}
+WORDS = {word: word for word in ("self", "configuration", "lambda", "del")}
 """Names that Python cannot give."""
 
 
