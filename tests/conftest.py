@@ -79,8 +79,8 @@ SHARED_BY_A_FILE = (
 )
 """Tests that share more with those of their file than with those of their mechanism: all units compiled together, a
 grammar."""
-OF_A_GENERATION = ("test_generated_is_fresh.py", "view/test_viewer.py")
-"""Tests that share a fresh generation of the whole catalogue."""
+OF_A_GENERATION = ("test_generated_is_fresh.py", "view/")
+"""Tests that share a fresh generation of the whole catalogue, or the browser that shows it."""
 WITH_THEIR_MECHANISM = ("unit/drawing/",)
 """Units that need all programs of a mechanism, which its other tests have built."""
 PATHS = {

@@ -11,7 +11,7 @@ from pathlib import Path
 import sympy as sp
 
 from derive.command.own import described, each
-from derive.command.report import written
+from derive.command.report import opened, written
 from derive.command.stages import Stages
 from derive.description.catalogue import load
 from derive.description.mechanism import Mechanism
@@ -55,7 +55,7 @@ def explain(options: argparse.Namespace) -> int:
     def told(path: Path, stages: Stages) -> None:
         mechanism = load(path)
         if options.html:
-            written(path, mechanism, options.out, stages)
+            opened(written(path, mechanism, options.out, stages))
             return
         try:
             for line in explanation(mechanism):

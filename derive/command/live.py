@@ -8,13 +8,14 @@ import ipaddress
 import sys
 from pathlib import Path
 
-from derive.command.own import complain
+from derive.command.own import complain, package_of
+from derive.controller.machine import Machine
 from derive.controller.refusal import Refused
 from derive.controller.run import LOOPBACK, live, source_of, who
 from derive.controller.settings import Security, settings_of
 
-PAGE = Path("build/viewer.html")
-"""Where the viewer is built."""
+BUILT = Path("build")
+"""Where the viewer is built: of the catalogue, and of machines of a user's own."""
 _WRONG = 2
 
 
@@ -28,8 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     text = "which node is which axis, and its scale: A1=node or A1=node*scale; may be repeated"
     parser.add_argument("--axis", action="append", default=[], metavar="A1=NODE", help=text)
-    text = f"the page (default: {PAGE})"
-    parser.add_argument("--page", type=Path, default=PAGE, metavar="FILE", help=text)
+    text = f"the page (default: {BUILT}/viewer.html, or for a machine of your own the one of `softkin view` in {BUILT})"
+    parser.add_argument("--page", type=Path, metavar="FILE", help=text)
     text = f"the address of this computer to serve at (default: {LOOPBACK}, which no other computer reaches)"
     parser.add_argument("--bind", default=LOOPBACK, metavar="ADDRESS", help=text)
     parser.add_argument("--port", type=int, default=0, help="the port (default: one that is free)")
@@ -75,13 +76,21 @@ async def _live(options: argparse.Namespace) -> None:
         **{name: getattr(options, name) for name in ("rate", "stale_after", "speed", "loop", "time")},
     }
     settings = settings_of(options.machine, options.axis, source, security)
-    if not options.page.is_file():
-        raise Refused(f"{options.page}: there is no page; `make view` builds it, or name another one with --page")
+    page = options.page or _page_of(settings.machine)
+    if not page.is_file():
+        command = f"softkin view {settings.machine.own}" if settings.machine.own else "make view"
+        raise Refused(f"{page}: there is no page; `{command}` builds it, or name another one with --page")
     if not _is_loopback(options.bind):
         _say(f"warning: {options.bind} can be reached by other computers, and what is sent to them is not encrypted")
     if security.is_unchecked:
         _say("warning: the certificate of the controller is not checked")
-    await live(settings, source_of(settings, who(settings)), options.page, options.bind, options.port, _say)
+    await live(settings, source_of(settings, who(settings)), page, options.bind, options.port, _say)
+
+
+def _page_of(machine: Machine) -> Path:
+    """The page that `view` writes of a machine into the folder where it writes by default."""
+    name = "viewer" if machine.own is None else package_of(machine.own, None)
+    return BUILT / f"{name}.html"
 
 
 def _is_loopback(address: str) -> bool:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import gc
+import os
 import sys
+import webbrowser
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from derive.command.catalogue import chosen
-from derive.command.own import complain
+from derive.command.own import complain, package_of
 from derive.command.stages import Stages
 from derive.description.catalogue import Entry, catalogue
 from derive.description.mechanism import Mechanism
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
 
 OUTPUT = Path("build/report")
 _INDEX = "index.html"
+_DESKTOPS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
 def report(options: argparse.Namespace) -> int:
@@ -35,7 +39,7 @@ def report(options: argparse.Namespace) -> int:
     entries = chosen(catalogue(options.mechanisms), options.only)
     pages: list[Page] = []
     progress, faults = Progress(len(entries), sys.stdout), 0
-    for made in _pages(entries):
+    for made in _pages(entries, _is_beside_viewer(options.out)):
         if isinstance(made, Failure):
             complain(made.message)
             faults += 1
@@ -50,38 +54,60 @@ def report(options: argparse.Namespace) -> int:
     return 1 if faults else 0
 
 
-def written(path: Path, mechanism: Mechanism, folder: Path, stages: Stages) -> None:
+def written(path: Path, mechanism: Mechanism, folder: Path, stages: Stages) -> Path:
     """Write the page of a machine, and name its file. Raises `GenerationError` with file, line and remedy."""
     try:
-        page = _page(mechanism, stages.told)
+        page = _page(mechanism, stages.told, _viewer(path) if _is_beside_viewer(folder) else "")
     except Exception as problem:
         raise GenerationError(in_place(path, reason_of(problem))) from None
     target = _write(folder, page.file, page.text)
     stages.line(f"  {target}  {target.stat().st_size // 1000} kB")
+    return target
 
 
-def _page(mechanism: Mechanism, told: Told) -> Page:
+def opened(target: Path) -> None:
+    """Show a page in the browser of who sits at this terminal; in a script, or without a desktop, nothing happens."""
+    has_desktop = sys.platform in ("darwin", "win32") or any(os.environ.get(name) for name in _DESKTOPS)
+    if sys.stdout.isatty() and has_desktop:
+        webbrowser.open(target.resolve().as_uri())
+
+
+def _is_beside_viewer(folder: Path) -> bool:
+    """Whether the folder of pages is one to which the viewer above it links."""
+    return folder.name == OUTPUT.name
+
+
+def _viewer(path: Path) -> str:
+    """The page that `view` writes of a machine; empty where its file has a name that no package can have."""
+    try:
+        return f"../{package_of(path, None)}.html"
+    except GenerationError:
+        return ""
+
+
+def _page(mechanism: Mechanism, told: Told, viewer: str) -> Page:
     from derive.emit.page.page import page_of
 
     kinematics = derive_and_measure(mechanism, told)
     told("page", "")
-    page = page_of(mechanism, kinematics)
+    page = page_of(mechanism, kinematics, viewer=viewer)
     ElementTree.fromstring(page.text)  # what is not well-formed, some readers show in part
     told("page", f"{len(page.text.encode()) // 1000} kB")
     return page
 
 
-def _pages(entries: tuple[Entry, ...]) -> Iterator[Page | Failure]:
+def _pages(entries: tuple[Entry, ...], has_viewer: bool) -> Iterator[Page | Failure]:
     """The pages in the order of the catalogue."""
     with ProcessPoolExecutor(max_workers=min(PROCESSES, len(entries)), initializer=gc.disable) as pool:
-        yield from pool.map(_attempt, entries)
+        yield from pool.map(partial(_attempt, has_viewer), entries)
 
 
-def _attempt(entry: Entry) -> Page | Failure:
+def _attempt(has_viewer: bool, entry: Entry) -> Page | Failure:
     """A page made in a worker process: a problem comes back as text, because not every exception can travel."""
     path, mechanism = entry
     try:
-        return _page(mechanism, lambda stage, found: None)
+        viewer = f"../viewer.html#machine={mechanism.name}" if has_viewer else ""
+        return _page(mechanism, lambda stage, found: None, viewer)
     except Exception as problem:
         return Failure(in_place(path, reason_of(problem)))
 

@@ -10,12 +10,13 @@ from pathlib import Path
 
 from derive.command import own
 from derive.command.catalogue import machine_files
+from derive.command.report import OUTPUT as REPORTS
 from derive.command.stages import Stages
 from derive.description.catalogue import MECHANISMS, Entry, catalogue, load
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.emit.python.entries import class_name
 from derive.output import write_file
-from derive.pipeline import GenerationError, derive_one, files_of, languages
+from derive.pipeline import Built, GenerationError, derive_one, files_of, languages
 from derive.view.node import MissingTool
 from derive.view.page import BrokenPage, Content, Model, page
 
@@ -42,7 +43,9 @@ def view(options: argparse.Namespace) -> int:
 
 def content_of(entries: Sequence[Entry], modules: Mapping[str, bytes]) -> Content:
     """What stands in the page of a catalogue."""
-    return Content("Softkin", modules, "softkin", {mechanism.name: _class(mechanism) for _, mechanism in entries})
+    classes = {mechanism.name: _class(mechanism) for _, mechanism in entries}
+    reports = {mechanism.name: _report(mechanism) for _, mechanism in entries}
+    return Content("Softkin", modules, "softkin", classes, reports=reports)
 
 
 def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[Model, ...]) -> None:
@@ -51,8 +54,15 @@ def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[
     package = own.package_of(path, None)
     built = derive_one(mechanism, None, stages.told)
     files = files_of([built], languages(None, package, [_LANGUAGE]))
-    classes = {mechanism.name: _class(mechanism)}
-    content = Content(f"{mechanism.name}: Softkin", _modules(files), package, classes, models)
+    content = Content(
+        f"{mechanism.name}: Softkin",
+        _modules(files),
+        package,
+        classes={mechanism.name: _class(mechanism)},
+        keywords={mechanism.name: _keywords(built)},
+        reports={mechanism.name: _report(mechanism)},
+        models=models,
+    )
     _write(options.out / f"{package}.html", content)
 
 
@@ -63,6 +73,17 @@ def _write(path: Path, content: Content) -> None:
         raise GenerationError(str(problem)) from None
     write_file(path, text.encode())
     print(f"{path}: {len(text.encode()) / 1e6:.2f} MB, opens in a browser", file=sys.stdout)
+
+
+def _keywords(built: Built) -> dict[str, str]:
+    """What Python calls the parameters that it cannot call as JavaScript does."""
+    here, there = (built.parts[language]["inputs"] for language in (_LANGUAGE, "python"))
+    return {here[name]: there[name] for name in here if here[name] != there[name]}
+
+
+def _report(mechanism: Mechanism) -> str:
+    """The page of the derivation, where `report` and `explain --html` write it beside this page."""
+    return f"{REPORTS.name}/{mechanism.block_name}.html"
 
 
 def _class(mechanism: Mechanism) -> str:

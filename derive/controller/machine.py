@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +36,8 @@ class Machine:
     axes: tuple[MachineAxis, ...]
     given: Mapping[str, Any]
     """Its name (`mechanism`) and parameters, as `to_json` of the Python package writes them."""
+    own: Path | None = None
+    """The description or the package of a machine of a user's own."""
 
     @property
     def axis_names(self) -> tuple[str, ...]:
@@ -55,8 +57,10 @@ def machine_of(given: object, description: Path | None, package: Path | None) ->
     if description is not None and package is not None:
         raise Refused("a machine has a description or a package, not both")
     if package is not None:
-        return _of_package(dict(entries), package)
-    return _made(dict(entries), lambda name: _of_description(description, name) if description else _found(name))
+        return replace(_of_package(dict(entries), package), own=package)
+    if description is not None:
+        return replace(_made(dict(entries), lambda name: _of_description(description, name)), own=description)
+    return _made(dict(entries), _found)
 
 
 def _made(given: dict[str, Any], find: Callable[[object], Mechanism]) -> Machine:

@@ -4,6 +4,7 @@ A margin is a function of the axis values; of a loop that turns its platform, wh
 where its margin does, it is taken at the pose instead, and the inverse has the axis values. A step goes along the
 gradient, as far as the margin would be zero there if it were linear; it is halved until the machine has that pose, and
 its margin is smaller. So it also ends on the boundary of what a loop can reach, where the margin falls as a root.
+Where every such way ends at the boundary of another leg, a cloud of poses goes around it.
 """
 
 from __future__ import annotations
@@ -38,6 +39,8 @@ _DEGREES = 90.0
 _TURNS = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0)
 _STUCK = 0.95
 """A step after which more than this share of the margin is left leads nowhere."""
+_CLOUD, _NARROWER, _CLOUDS, _TRIALS = 0.2, 0.95, 60, 20
+"""The width of the first cloud of poses over the scales, how each is narrower than the one before, and their sizes."""
 _BESIDE = 1e-6
 _CLEAR = 0.05
 """Another margin that is larger than this is no singularity of the same pose."""
@@ -101,6 +104,22 @@ def _smallest_first(rows: Array, measured: Array, place: int) -> Iterator[Array]
     share = own / np.clip(np.min(others, axis=0, initial=1.0), SINGULAR, 1.0)
     order = np.argsort(np.where(np.isfinite(share), share, np.inf), kind="stable")
     yield from (rows[k] for k in order[:_STARTS] if np.isfinite(share[k]))
+
+
+def _gathered(measure: Measure, place: int, rows: Array, scales: Array) -> Array:
+    """Poses near to where a margin vanishes: the best of a cloud, around which the next cloud is drawn, a bit narrower.
+
+    Shape (n, coordinates), like the rows. Other than a step along the gradient it goes around what the machine cannot
+    reach.
+    """
+    random, best, width = np.random.default_rng(5), rows, _CLOUD
+    for _ in range(_CLOUDS):
+        around = np.repeat(best[:_STARTS], _TRIALS, axis=0)
+        cloud = np.concatenate([best, around + width * scales * random.standard_normal(around.shape)])
+        values = measure(cloud)[place]
+        best = cloud[np.argsort(np.where(np.isfinite(values), values, np.inf), kind="stable")[:_STARTS]]
+        width *= _NARROWER
+    return best
 
 
 def _measured(machine: Machine, rows: Array) -> Array:
@@ -193,9 +212,13 @@ def _of_platform(machine: Machine, derived: Derived, name: str) -> SingularPose 
 
     spread = scales * np.random.default_rng(3).uniform(-1.0, 1.0, (_SAMPLES, len(home)))
     rows = np.concatenate([home + 0.05 * spread[:1], home + 0.45 * spread])
-    at, _ = _clearest(measure, place, _smallest_first(rows, measure(rows), place), scales) or (None, None)
-    if at is None:
+    starts = _smallest_first(rows, measure(rows), place)
+    reached = _clearest(measure, place, starts, scales)
+    if reached is None:
+        reached = _clearest(measure, place, _gathered(measure, place, rows, scales), scales)
+    if reached is None:
         return None
+    at, _ = reached
     measured, found = solved(at[None])
     axes = tuple(float(found[j.axis.name][0]) for j in mechanism.joints)
     named = _named_frames(mechanism, at[None])

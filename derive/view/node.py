@@ -8,12 +8,15 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import tempfile
+from contextlib import suppress
 from hashlib import sha256
 from importlib import util
 from pathlib import Path
 
 PACKAGES = ("package.json", "package-lock.json")
 """What says which packages are installed, and in which versions."""
+_MARK = ".lockfile-digest"
 
 
 class MissingTool(Exception):
@@ -38,22 +41,32 @@ def installed(packages: Path, folder: Path) -> Path:
     """The folder `node_modules` with the packages that a lockfile names, installed where they are not yet.
 
     packages: the folder of `package.json` and its lockfile. Raises `MissingTool` where they cannot be fetched.
+    Several processes may ask at once: each installs beside, and the first moves what it has into its place.
     """
-    content = [(packages / name).read_bytes() for name in PACKAGES]
-    wanted = sha256(b"\0".join(content)).hexdigest()
-    modules, mark = folder / "node_modules", folder / "installed"
-    if modules.is_dir() and mark.is_file() and mark.read_text() == wanted:
+    wanted = sha256(b"\0".join((packages / name).read_bytes() for name in PACKAGES)).hexdigest()
+    modules = folder / "node_modules"
+    if _is_for(modules, wanted):
         return modules
-    shutil.rmtree(modules, ignore_errors=True)
     folder.mkdir(parents=True, exist_ok=True)
-    for name, data in zip(PACKAGES, content, strict=True):
-        (folder / name).write_bytes(data)
-    command = [node(), _npm(), "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--loglevel=error"]
-    done = run([str(part) for part in command], folder)
-    if done.returncode:
-        raise MissingTool(f"npm could not install what the viewer is made of:\n{done.stderr.strip()}")
-    mark.write_text(wanted)
+    with tempfile.TemporaryDirectory(dir=folder) as beside:
+        for name in PACKAGES:
+            shutil.copy(packages / name, Path(beside) / name)
+        command = [node(), _npm(), "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--loglevel=error"]
+        done = run([str(part) for part in command], Path(beside))
+        if done.returncode:
+            raise MissingTool(f"npm could not install what the viewer is made of:\n{done.stderr.strip()}")
+        (Path(beside) / modules.name / _MARK).write_text(wanted)
+        if not _is_for(modules, wanted):
+            shutil.rmtree(modules, ignore_errors=True)
+            with suppress(OSError):  # another process was faster
+                os.rename(Path(beside) / modules.name, modules)
     return modules
+
+
+def _is_for(modules: Path, wanted: str) -> bool:
+    """Whether everything that a lockfile names is installed."""
+    mark = modules / _MARK
+    return mark.is_file() and mark.read_text() == wanted
 
 
 def run(command: list[str], folder: Path, **more: str) -> subprocess.CompletedProcess[str]:

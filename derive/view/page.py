@@ -46,6 +46,10 @@ class Content:
     """The Python package of the machines."""
     classes: Mapping[str, str]
     """The name of a machine → that of its class in Python."""
+    keywords: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    """The name of a machine → of its parameters in JavaScript → in Python, where they differ."""
+    reports: Mapping[str, str] = field(default_factory=dict)
+    """The name of a machine → the page of its derivation, from where this page stands."""
     models: Sequence[Model] = field(default=())
 
 
@@ -56,6 +60,8 @@ def page(content: Content, packages: Path) -> str:
     data = {
         "package": content.package,
         "classes": dict(content.classes),
+        "keywords": {name: dict(keywords) for name, keywords in content.keywords.items()},
+        "reports": dict(content.reports),
         "models": [{"body": m.body, "scale": m.scale, "data": b64encode(m.data).decode()} for m in content.models],
         "licences": licences,
     }

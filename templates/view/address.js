@@ -2,13 +2,18 @@
 
 import { frameOf, numbersOf } from "./pose.js";
 
-/** The fragment of a model: machine, parameters that differ from the nominal ones, axes, a frame that was refused. */
-export function fragmentOf(model) {
+/**
+ * The fragment of a model: machine, parameters that differ from the nominal ones, axes, a frame that was refused.
+ *
+ * view: from where one looks, and at what, six numbers; null where one looks at the whole machine.
+ */
+export function fragmentOf(model, view = null) {
   const parts = [`machine=${encodeURIComponent(model.name)}`, `axes=${(model.pose?.axes ?? model.axes).join()}`];
   const changed = Object.entries(model.parameters).filter(([name, value]) => Number(value) !== Number(model.nominal[name]));
   if (changed.length) parts.push(`with=${changed.map(([name, value]) => `${encodeURIComponent(name)}:${Number(value)}`).join()}`);
   if (model.automatic.size) parts.push(`automatic=${[...model.automatic].sort().join()}`);
   if (model.refusal && model.target) parts.push(`target=${numbersOf(model.target).join()}`);
+  if (view) parts.push(`view=${view.map((value) => Number(value.toPrecision(5))).join()}`);
   return parts.join("&");
 }
 
@@ -21,8 +26,10 @@ export function readFragment(fragment, names) {
   const target = numbersIn(parts.get("target"));
   if (target?.length === 6) given.target = frameOf(target);
   const parameters = (parts.get("with") ?? "").split(",").filter(Boolean).map((pair) => pair.split(":"));
-  const valid = parameters.filter(([, value]) => value && Number.isFinite(Number(value)));
+  const valid = parameters.filter(([, value]) => value && !Number.isNaN(Number(value)));
   given.parameters = Object.fromEntries(valid.map(([key, value]) => [decoded(key), Number(value)]));
+  const view = numbersIn(parts.get("view"));
+  if (view?.length === 6) given.view = view;
   given.automatic = numbersIn(parts.get("automatic")) ?? [];
   return { name, given };
 }

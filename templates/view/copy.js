@@ -1,6 +1,7 @@
 /** A pose as text to be copied: Python, Structured Text, CSV, the address. */
 
 import { element, section } from "./element.js";
+import { limitsOf } from "./limits.js";
 import { numbersOf } from "./pose.js";
 
 const AXES = ["X", "Y", "Z", "A", "B", "C"];
@@ -11,12 +12,17 @@ function exact(value) {
   return /^-?\d+$/.test(text) ? `${text}.0` : text.replace(/^(-?\d+)e/, "$1.0e");
 }
 
-/** The lines of Python that make this machine, and give these axes. names: {package, classes}. */
+/** The lines of Python that make this machine, and give these axes. names: {package, classes, keywords}. */
 export function pythonOf(model, names) {
   const { description, parameters, pose, axes } = model;
+  const keywords = names.keywords[model.name] ?? {};
+  const ends = new Set(description.limits.flatMap(({ lower, upper }) => [lower, upper]));
   const given = description.parameters
-    .filter(({ name, default: usual }) => usual === null || Number(usual) !== Number(parameters[name]))
-    .map(({ name, kind }) => `${name}=${kind === "flag" ? (parameters[name] ? "True" : "False") : exact(parameters[name])}`);
+    .filter(({ name, default: usual }) => !ends.has(name) && (usual === null || Number(usual) !== Number(parameters[name])))
+    .map(({ name, kind }) => `${keywords[name] ?? name}=${kind === "flag" ? (parameters[name] ? "True" : "False") : exact(parameters[name])}`);
+  const limits = limitsOf(description, parameters)
+    .map(([name, pair]) => `${JSON.stringify(name)}: ${tuple(pair.map((end) => (end === null ? "None" : exact(end))))}`);
+  if (limits.length) given.push(`limits={${limits.join(", ")}}`);
   const [x, y, z, a, b, c] = numbersOf(pose.frame).map(exact);
   return [
     `import ${names.package}`, "",

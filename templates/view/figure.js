@@ -2,7 +2,7 @@
 
 import {
   BoxGeometry, BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Matrix4, Mesh,
-  MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
+  MeshLambertMaterial, Quaternion, SphereGeometry, Vector3,
 } from "three";
 
 const ROUND = new CylinderGeometry(1, 1, 1, 24);
@@ -38,8 +38,8 @@ export class Figure {
     this.isGhost = isGhost;
     this.materials = {};
     for (const kind of ["base", "link", "rod", "plate", "joint", "tool", "refused"]) {
-      this.materials[kind] = new MeshStandardMaterial({
-        roughness: 0.55, metalness: 0.15, transparent: isGhost, opacity: isGhost ? 0.2 : 1, depthWrite: !isGhost, side: DoubleSide,
+      this.materials[kind] = new MeshLambertMaterial({
+        transparent: isGhost, opacity: isGhost ? 0.2 : 1, depthWrite: !isGhost, side: DoubleSide, forceSinglePass: true,
         polygonOffset: isGhost, polygonOffsetFactor: 2, polygonOffsetUnits: 8,
       });
     }

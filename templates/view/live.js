@@ -4,6 +4,8 @@
  * The page moves only where every axis has a number that can be trusted; what the connection says is shown.
  */
 
+import { endsOf } from "./limits.js";
+
 const PROTOCOL = "softkin.live.1";
 const RETRY = 1500;
 
@@ -15,9 +17,12 @@ export function tokenOf(fragment) {
 export class Live {
   #waiting = null;
 
-  /** said: called with a sentence and whether the machine follows; Socket: what connects. */
-  constructor(model, token, said, Socket = globalThis.WebSocket) {
-    Object.assign(this, { model, token, said, Socket });
+  /**
+   * said: called with a sentence and whether the machine follows; keywords: of a machine, the names of its parameters
+   * here, and in Python where these differ; Socket: what connects.
+   */
+  constructor(model, token, said, keywords = {}, Socket = globalThis.WebSocket) {
+    Object.assign(this, { model, token, said, keywords, Socket });
     this.#connect();
   }
 
@@ -38,15 +43,26 @@ export class Live {
   }
 
   #open({ machine, name, source }) {
-    const { mechanism, limits = {}, ...parameters } = machine;
+    let bare = machine;
+    while (bare.bare) bare = bare.bare; // base and tool move with the machine: its axes are the same
+    const { mechanism, limits = {}, ...given } = bare;
     const { names } = this.model;
+    this.count = -1; // nothing moves before its machine is shown
     const found = [name, mechanism, names.length === 1 ? names[0] : null].find((one) => names.includes(one));
     if (!found) {
       this.said(`this page does not have the machine ${name}`, false);
       return;
     }
-    this.count = this.model.describe(found).axes.length;
-    this.model.open(found, { parameters: { ...parameters, ...endsOf(this.model.describe(found), limits) } });
+    const description = this.model.describe(found);
+    const own = new Map(Object.entries(this.keywords[found] ?? {}).map(([here, there]) => [there, here]));
+    const usual = description.parameters.filter((one) => one.default !== null).map((one) => [one.name, one.default]);
+    const named = Object.entries(given).map(([key, value]) => [own.get(key) ?? key, value]);
+    this.model.open(found, { parameters: { ...Object.fromEntries([...usual, ...named]), ...endsOf(description, limits) } });
+    if (this.model.wrong) {
+      this.said(`this page cannot show the machine: ${this.model.wrong.words}: ${this.model.wrong.names.join(", ")}`, false);
+      return;
+    }
+    this.count = description.axes.length;
     this.said(`${source.kind}: connecting`, false);
   }
 
@@ -56,14 +72,4 @@ export class Live {
     this.said(`${status}${message ? `: ${message}` : ""}${words}`, status === "live" && doubtful < 0);
     if (complete && axes.length === this.count && axes.every(Number.isFinite)) this.model.moveAxes(axes);
   }
-}
-
-/** The parameters of limits that are given as [lower, upper] by the names of axes; without both ends there is no limit. */
-function endsOf(description, limits) {
-  const found = {};
-  for (const { name, lower, upper } of description.limits) {
-    const pair = limits[name];
-    if (pair && pair.every(Number.isFinite)) [found[lower], found[upper]] = pair;
-  }
-  return found;
 }

@@ -8,7 +8,8 @@ import { Live, tokenOf } from "./live.js";
 import { meshesOf } from "./meshes.js";
 import { Model, inWords } from "./model.js";
 import { LinePanel } from "./plots.js";
-import { DimensionsPanel, MarginsPanel, SolutionsPanel, stateOf } from "./said.js";
+import { refusing } from "./refusing.js";
+import { DimensionsPanel, MarginsPanel, SolutionsPanel, nearestOf, stateOf } from "./said.js";
 import { SlicePanel } from "./slice.js";
 import { Stage } from "./stage.js";
 import { ConfigurationPanel, ToolPanel } from "./tool.js";
@@ -18,6 +19,7 @@ const STATES = { good: ["regular pose", "good"], near: ["near a singular pose", 
 /** Ghosts of more solutions would hide the machine. */
 const MOST_GHOSTS = 32;
 const REMEMBER_AFTER = 120;
+const ZOOM = { "+": 0.9, "-": 1 / 0.9 };
 
 class Page {
   constructor() {
@@ -28,6 +30,7 @@ class Page {
     this.stage = new Stage(this.parts.canvas, this.parts.labels, {
       onDrag: (frame, isFinished) => (isFinished ? this.#show("pose") : this.model.moveTo(frame)),
       onGhost: (index) => this.model.take(this.ghosts[index].axes),
+      onView: () => this.#remember(),
     });
     this.mode = "translate";
     this.ghosts = [];
@@ -48,7 +51,7 @@ class Page {
     this.live = new Live(this.model, token, (words, isGood) => {
       this.parts.live.textContent = words;
       this.parts.live.className = isGood ? "good" : "bad";
-    }, Socket);
+    }, this.data.keywords, Socket);
   }
 
   #panel() {
@@ -66,9 +69,12 @@ class Page {
   #about() {
     this.summary = element("p", { class: "soft" });
     const licence = element("pre", { class: "soft", style: "white-space: pre-wrap" }, this.data.licences);
-    const keys = element("p", { class: "soft" }, "Keys: T move, R turn, G ghosts, N names, F fit, 0 start; in a number, arrows step by 1, with Shift by 10, with Alt by 0.1.");
-    const report = element("p", { class: "soft" }, element("a", { href: "report/index.html" }, "The derivations"), ", where they have been written beside this page.");
-    return element("details", {}, element("summary", {}, "About"), this.summary, this.model.names.length > 1 ? report : null, keys, licence);
+    const keys = element("p", { class: "soft" }, "Keys: T move, R turn, G ghosts, N names, F fit, 0 start, + and - nearer and farther; in the picture, arrows shift it, with Shift they turn it; in a number, arrows step by 1, with Shift by 10, with Alt by 0.1.");
+    this.report = element("a", { id: "report" }, "The derivation of this machine");
+    const command = this.model.names.length > 1 ? "make report" : "softkin explain --html";
+    const report = element("p", { class: "soft" }, this.report, `, line by line on paper: ${command} writes it beside this page.`);
+    const isOnDisk = location.protocol === "file:"; // a server of `softkin live` has this page alone
+    return element("details", {}, element("summary", {}, "About"), this.summary, isOnDisk ? report : null, keys, licence);
   }
 
   #theme() {
@@ -95,6 +101,7 @@ class Page {
       const isTyping = event.target.matches("input, select, textarea") || event.ctrlKey || event.metaKey || event.altKey;
       const name = keys[event.key.toLowerCase()];
       if (name && !isTyping && model.pose) actions[name]();
+      if (event.key in ZOOM && !isTyping) this.stage.closer(ZOOM[event.key]);
     });
   }
 
@@ -121,6 +128,7 @@ class Page {
   #restore() {
     const found = readFragment(location.hash, this.model.names);
     if (found) this.model.open(found.name, found.given);
+    if (found?.given.view) this.stage.view = found.given.view;
     return found !== null;
   }
 
@@ -131,17 +139,20 @@ class Page {
     if (what === "machine") {
       parts.machine.value = model.name;
       document.title = `${model.name}: Softkin`;
+      this.report.href = this.data.reports[model.name];
       this.summary.textContent = `${model.description.summary} ${model.description.notes.join(" ")}`;
       this.#meshes();
       this.#handles();
     }
     const isWhole = Boolean(pose) && !pose.scene.status;
-    if (isWhole && (what === "machine" || what === "dimensions")) stage.fit(pose.scene);
+    if (isWhole && (what === "machine" || (what === "dimensions" && !stage.view))) stage.fit(pose.scene);
+    else if (isWhole && what === "dimensions") stage.measure(pose.scene);
     const said = refusal ?? pose?.beyond ?? (isWhole ? null : pose?.scene);
     stage.figure.group.visible = isWhole;
     if (isWhole) {
-      stage.show(pose.scene, refusal ? model.target : null, { refused: (body) => Boolean(said) && refuses(said.reason, body) });
-      stage.figure.mark(refusal ? "refused" : stateOf(pose, 0));
+      this.refusing = said ? refusing(said.reason, pose.scene.bodies, model.description.margins) : new Set();
+      stage.show(pose.scene, refusal ? model.target : null, { refused: (body) => this.refusing.has(body) });
+      stage.figure.mark(refusal ? "refused" : stateOf(pose));
     }
     parts.refusal.hidden = !said;
     parts.refusal.textContent = said ? inWords(said) : "";
@@ -151,10 +162,12 @@ class Page {
   }
 
   #state(said) {
-    const [words, kind] = said ? ["refused", "bad"] : STATES[stateOf(this.model.pose, 0)];
+    const { pose } = this.model;
+    const [state, kind] = said ? ["refused", "bad"] : STATES[stateOf(pose)];
+    const { name } = nearestOf(pose);
+    const words = said || kind === "good" || !name ? state : `${state}: ${name.replaceAll("_", " ")}`;
     this.parts.state.textContent = words;
     this.parts.state.className = kind;
-    const { pose } = this.model;
     this.parts.canvas.setAttribute("aria-label", `${this.model.name}, ${words}${pose ? `, tool at ${pose.frame.position.map((value) => value.toFixed(1)).join(", ")}` : ""}`);
   }
 
@@ -177,23 +190,18 @@ class Page {
 
   /** The state in the address, at most once in a while: browsers refuse to write it faster. */
   #remember() {
-    if (this.isLive) return; // the address names the run of the server, and the pose is over in a moment
+    if (this.isLive || !this.model.pose) return; // the address names the run of the server, and the pose is over in a moment
     clearTimeout(this.remembering);
     this.remembering = setTimeout(() => {
-      this.written = fragmentOf(this.model);
+      this.written = fragmentOf(this.model, this.stage.view);
       history.replaceState(null, "", `#${this.written}`);
     }, REMEMBER_AFTER);
   }
 }
 
-/** Whether a reason speaks of a body: by an axis that moves it, or by its name. */
-function refuses(reason, body) {
-  const named = reason.split(/[:,]| cannot | where /)[0].trim();
-  return body.joints.includes(named) || body.name === named;
-}
-
 /** The page, or in a sentence why there is none: a browser without WebGL 2 cannot draw it. */
 function shown() {
+  performance.mark("program");
   try {
     return new Page();
   } catch (error) {

@@ -4,6 +4,7 @@
  * Every number comes from the module of the machine. Whoever shows something asks to be told of changes.
  */
 
+import { changesWith, created } from "./limits.js";
 import { catalogue, inWords } from "./machines/index.js";
 import { nominalOf, startOf } from "./start.js";
 
@@ -33,10 +34,10 @@ export class Model {
     this.automatic = new Set(given.automatic ?? []);
     this.wrong = null;
     const parameters = { ...this.nominal, ...given.parameters };
-    const made = this.module.create(parameters);
+    const made = created(this.module, parameters);
     this.parameters = made.status ? { ...this.nominal } : parameters;
     this.machine = made.status ? this.module.create(this.nominal).machine : made.machine;
-    if (made.status) this.wrong = { names: made.parameters, words: inWords(made), value: null };
+    if (made.status) this.wrong = { names: made.parameters, words: inWords(made), values: {} };
     this.start = startOf(this.machine);
     const count = this.description.axes.length;
     this.axes = given.axes?.length === count ? given.axes : this.start;
@@ -78,17 +79,25 @@ export class Model {
     this.#tell("pose");
   }
 
-  /** Another value of a parameter. A value that the machine refuses is kept beside the machine as it was. */
+  /**
+   * Another value of a parameter. A value that the machine refuses is kept beside the machine as it was, and tried
+   * again with the next: the two ends of a range may be allowed together alone. null: the end of a limit is open.
+   */
   setParameter(name, value) {
-    const made = this.module.create({ ...this.parameters, [name]: value });
-    if (made.status) {
-      this.wrong = { names: [name, ...made.parameters], words: inWords(made), value };
+    const known = this.wrong?.values ?? {};
+    const values = { ...known, ...changesWith(this.description, { ...this.parameters, ...known }, name, value) };
+    const alone = changesWith(this.description, this.parameters, name, value);
+    const tried = [values, alone].map((some) => ({ ...this.parameters, ...some }));
+    const made = tried.map((parameters) => created(this.module, parameters));
+    const place = made.findIndex(({ status }) => !status);
+    if (place < 0) {
+      this.wrong = { names: [name, ...made[1].parameters], words: inWords(made[1]), values };
       this.#tell("refused parameter");
       return;
     }
     this.wrong = null;
-    this.parameters = { ...this.parameters, [name]: value };
-    this.machine = made.machine;
+    this.parameters = tried[place];
+    this.machine = made[place].machine;
     this.pose = null;
     this.#stand(this.axes);
     if (!this.pose) {

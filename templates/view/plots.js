@@ -101,10 +101,16 @@ export class LinePanel {
 
   #drawn() {
     const { axes } = this.model.description;
-    const height = axes.length * (HEIGHT + GAP);
+    const bottom = axes.length * (HEIGHT + GAP);
+    const height = bottom + GAP;
     const svg = drawn("svg", { viewBox: `0 0 ${WIDTH} ${height}`, class: "plots", role: "img", "aria-label": "The axes along the line" });
     axes.forEach((axis, i) => svg.append(this.#plot(axis, i)));
-    svg.append(drawn("line", { class: "now", x1: 0, x2: 0, y1: 0, y2: height }));
+    for (const [text, x, anchor] of [["A, 0 s", LEFT, "start"], [`B, ${SECONDS} s`, WIDTH, "end"]]) {
+      const time = drawn("text", { x, y: bottom + 8, "text-anchor": anchor });
+      time.textContent = text;
+      svg.append(time);
+    }
+    svg.append(drawn("line", { class: "now", x1: 0, x2: 0, y1: 0, y2: bottom }));
     return svg;
   }
 

@@ -1,6 +1,7 @@
 /** What the machine says of a pose: margins as gauges, other solutions, dimensions and why one is refused. */
 
 import { element, numberIn, section, shown, unitOf } from "./element.js";
+import { isFree, limitOf } from "./limits.js";
 
 /** A margin below this is worth a warning colour. */
 const NEAR = 0.1;
@@ -10,11 +11,15 @@ const KINDS = {
 };
 
 /** "good", "near" or "singular", by the least margin of a pose. */
-export function stateOf(pose, nearest) {
-  if (!pose || pose.singularity.status) return "singular";
-  if (pose.singularity.isSingular) return "singular";
-  const least = Math.min(Infinity, ...Object.values(pose.singularity.margins).map(Math.abs));
-  return least < Math.max(NEAR, nearest) ? "near" : "good";
+export function stateOf(pose) {
+  if (!pose || pose.singularity.status || pose.singularity.isSingular) return "singular";
+  return nearestOf(pose).margin < NEAR ? "near" : "good";
+}
+
+/** The singularity that is nearest to a pose: its name, and its margin in size. */
+export function nearestOf(pose) {
+  const sizes = Object.entries(pose?.singularity.margins ?? {}).map(([name, margin]) => ({ name, margin: Math.abs(margin) }));
+  return sizes.reduce((least, one) => (one.margin < least.margin ? one : least), { name: "", margin: Infinity });
 }
 
 export class MarginsPanel {
@@ -109,10 +114,12 @@ export class DimensionsPanel {
     const { name, kind, meaning, unit } = parameter;
     const isFlag = kind === "flag";
     const wrong = element("span", { class: "wrong", id: `wrong-${i}`, role: "alert" });
-    const field = element("input", { type: isFlag ? "checkbox" : "number", step: "any", id: `parameter-${i}`, "aria-describedby": `wrong-${i}`,
+    const isEnd = limitOf(this.model.description, name) !== undefined;
+    const field = element("input", { type: isFlag ? "checkbox" : "number", step: "any", id: `parameter-${i}`, "aria-describedby": `wrong-${i}`, placeholder: isEnd ? "none" : null,
       [isFlag ? "change" : "input"]: ({ target }) => {
         const value = isFlag ? target.checked : numberIn(target);
-        if (value !== null) this.model.setParameter(name, value);
+        const isOpen = isEnd && target.value === "" && !target.validity.badInput;
+        if (value !== null || isOpen) this.model.setParameter(name, value);
       } });
     const label = element("label", { for: `parameter-${i}`, title: meaning }, name.replaceAll("_", " "));
     const row = element("div", { class: "dimension" }, label, field, element("span", { class: "soft" }, unitOf(unit)), wrong);
@@ -127,7 +134,15 @@ export class DimensionsPanel {
       row.field.setAttribute("aria-invalid", String(isWrong));
       row.wrong.textContent = isWrong && name === wrong.names[0] ? `Refused: ${wrong.words}` : "";
       if (row.isFlag) row.field.checked = Boolean(parameters[name]);
-      else if (document.activeElement !== row.field) row.field.value = String(isWrong && wrong.value !== null && name === wrong.names[0] ? wrong.value : parameters[name]);
+      else if (document.activeElement !== row.field) row.field.value = this.#written(name);
     }
+  }
+
+  /** A parameter as its field has it; the end of a limit that is open is an empty field. */
+  #written(name) {
+    const { parameters, wrong, description } = this.model;
+    const given = { ...parameters, ...wrong?.values };
+    const limit = limitOf(description, name);
+    return (limit && isFree(limit, given)) || !Number.isFinite(given[name]) ? "" : String(given[name]);
   }
 }

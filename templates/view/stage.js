@@ -22,13 +22,15 @@ export class Stage {
   #ghosts = [];
   #isAsked = false;
   #meshes = new Map();
+  #fitted = null;
 
-  /** heard: {onDrag(frame, isFinished), onGhost(index)}. */
+  /** heard: {onDrag(frame, isFinished), onGhost(index), onView()}. */
   constructor(canvas, labels, heard) {
     this.canvas = canvas;
     this.labels = labels;
     this.heard = heard;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer.debug.checkShaderErrors = false;
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(38, 1, 1, 1e5);
     this.camera.up.set(0, 0, 1);
@@ -43,7 +45,10 @@ export class Stage {
     this.scene.add(this.triad, this.origin);
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.listenToKeyEvents(canvas);
-    this.orbit.addEventListener("change", () => this.ask());
+    this.orbit.addEventListener("change", () => {
+      this.ask();
+      this.heard.onView();
+    });
     this.#handles();
     canvas.addEventListener("click", (event) => this.#clicked(event));
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
@@ -58,20 +63,46 @@ export class Stage {
     this.ask();
   }
 
-  /** Take the size of a machine from its scene, and look at all of it. */
-  fit(scene) {
+  /** Take the size of a machine from its scene. */
+  measure(scene) {
     this.extent = extentOf(scene);
+    this.size = this.extent.size;
+    this.camera.near = this.size / 100;
+    this.camera.far = this.size * 60;
+    this.camera.updateProjectionMatrix();
+    this.#layFloor();
+    this.ask();
+  }
+
+  /** From where one looks, and at what: six lengths; null where `fit` has decided that. */
+  get view() {
+    const view = [...this.camera.position.toArray(), ...this.orbit.target.toArray()];
+    return view.every((value, i) => Math.abs(value - (this.#fitted?.[i] ?? value)) < 1e-6 * this.size) ? null : view;
+  }
+
+  set view(view) {
+    this.camera.position.set(...view.slice(0, 3));
+    this.orbit.target.set(...view.slice(3));
+    this.orbit.update();
+    this.ask();
+  }
+
+  /** Look from a part of the distance. */
+  closer(part) {
+    this.camera.position.sub(this.orbit.target).multiplyScalar(part).add(this.orbit.target);
+    this.orbit.update();
+  }
+
+  /** Look at all of a machine. */
+  fit(scene) {
+    this.measure(scene);
     const { centre, size } = this.extent;
-    this.size = size;
-    this.camera.near = size / 100;
-    this.camera.far = size * 60;
     this.orbit.target.set(...centre);
     const narrow = Math.min(1, this.camera.aspect) * Math.tan((this.camera.fov / 2) * (Math.PI / 180));
     const away = (ROOM * size) / 2 / Math.sin(Math.atan(narrow));
     this.camera.position.set(...FROM.map((value, i) => centre[i] + away * value));
-    this.camera.updateProjectionMatrix();
-    this.#layFloor();
     this.orbit.update();
+    this.#fitted = [...this.camera.position.toArray(), ...centre];
     this.ask();
   }
 
@@ -180,7 +211,8 @@ export class Stage {
   draw() {
     this.renderer.render(this.scene, this.camera);
     this.#label();
-    if (this.figure.group.children.length) this.firstPicture ??= performance.now();
+    if (this.figure.group.children.length && !this.isDrawn) performance.mark("first picture");
+    this.isDrawn ||= this.figure.group.children.length > 0;
   }
 
   /** Where the tool's handle is on the screen, in pixels of the page. */

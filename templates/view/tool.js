@@ -72,8 +72,9 @@ export class ConfigurationPanel {
     const buttons = [...byte.branches, "automatic"].map((name, k) => element("button", { "aria-pressed": "false",
       click: () => this.#choose(i, k === 2 ? 0 : k + 1) }, name));
     const value = element("small");
-    const label = element("b", { id: `byte-${i}` }, byte.name.replaceAll("_", " "));
-    return { kind: "branch", buttons, value, element: element("div", { class: "row", role: "group", "aria-labelledby": `byte-${i}` }, label, ...buttons, value) };
+    const label = element("span", { id: `byte-${i}` }, element("b", {}, byte.name.replaceAll("_", " ")), value);
+    const choice = element("div", { class: "row" }, ...buttons);
+    return { kind: "branch", buttons, value, element: element("div", { class: "byte", role: "group", "aria-labelledby": `byte-${i}` }, label, choice) };
   }
 
   #turn(byte, i) {

@@ -22,6 +22,7 @@ def test_the_page_of_ones_own_machine(folder: Folder) -> None:
     ET.fromstring(text)
     assert "<h1>MyScara</h1>" in text and ": A2 ← trigonometric ← x² + y²" in text
     assert re.search(r"largest residual 1e-\d\d", text)
+    assert '<a href="../scara.html">' in text  # which `softkin view scara.py` writes into build
     assert text.count("<figure") == 4  # the drawing, the elbow, two maps
     assert len(text.encode()) < 400_000
 
@@ -35,6 +36,7 @@ def test_a_folder_of_its_own(folder: Folder) -> None:
     assert folder.names("pages") == {"Rail.html"}
     text = (folder.path / "pages/Rail.html").read_text(encoding="utf-8")
     assert "<p>None.</p>" in text and "every point is reached" in text.lower()
+    assert "in the viewer" not in text  # which looks for pages in a folder called report alone
 
 
 def test_the_pages_of_a_catalogue(folder: Folder) -> None:
@@ -46,6 +48,10 @@ def test_the_pages_of_a_catalogue(folder: Folder) -> None:
     assert folder.names("pages") == {"Rail.html", "index.html"}
     assert 'href="Rail.html"' in (folder.path / "pages/index.html").read_text(encoding="utf-8")
     assert "1 page, listed in pages/index.html" in said.out
+    assert "in the viewer" not in (folder.path / "pages/Rail.html").read_text(encoding="utf-8")
+    assert folder.run("report", "--mechanisms", "machines", "--only", "Rail").status == 0
+    text = (folder.path / "build/report/Rail.html").read_text(encoding="utf-8")
+    assert '<a href="../viewer.html#machine=Rail">' in text
     wrong = folder.run("report", "--mechanisms", "machines", "--only", "Nobody")
     assert wrong.status == 1 and "no mechanism is called 'Nobody'" in wrong.err
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from derive.command.line import main
-from tests.command.files import ROOT
+from tests.command.files import RAIL, ROOT
 from tests.controller.pages import GANTRY, PATIENCE, Served, message_where, page_of
 
 
@@ -76,6 +76,21 @@ def test_what_cannot_be_is_one_sentence(
     written = capsys.readouterr()
     assert written.err.startswith("error: ") and said in written.err and written.err.count("\n") == 1
     assert "#live=" not in written.out
+
+
+def test_the_page_of_a_machine_of_ones_own(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Where none is named it is the one that `softkin view` writes; the sentence says so where there is none."""
+    (folder / "my-slide.py").write_text(RAIL, encoding="utf-8")
+    (folder / "t.csv").write_text("t,A1,A2\n0,1,2\n", encoding="utf-8")
+    given = {"description": "my-slide.py", "source": "t.csv"}
+    (folder / "own.json").write_text(json.dumps(given), encoding="utf-8")
+    assert main(["live", "--machine", "own.json"]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("error: build/my_slide.html: there is no page; `softkin view my-slide.py` builds it")
+    (folder / "build").mkdir()
+    (folder / "build" / "my_slide.html").write_text("<p>viewer</p>", encoding="utf-8")
+    assert main(["live", "--machine", "own.json", "--bind", "192.0.2.1"]) == 2
+    assert "cannot serve at 192.0.2.1" in capsys.readouterr().err
 
 
 def test_no_other_command_loads_the_servers() -> None:

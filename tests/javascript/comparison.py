@@ -50,6 +50,8 @@ class Comparison:
     regular: int = 0
     """The solutions that were compared axis by axis."""
     refused: int = 0
+    sentences: int = 0
+    """The refusals whose sentences were compared: those whose four digits do not hang on rounding."""
 
     def compare(self, question: Answer, answers: Iterator[Answer]) -> None:
         """Compare the answers to the calls of a question."""
@@ -150,6 +152,9 @@ class Comparison:
         scale = {"u": self.robot.reach, "deg": 180.0}.get(unit, 1.0)
         if not abs(why.missing - answer["missing"]) <= 10.0 * SAME * max(scale, abs(why.missing)):
             self.found.append(f"{place}: missing {answer['missing']!r}, expected {why.missing!r}")
+        if "words" in answer and f"{why.missing:.4g}" == f"{answer['missing']:.4g}":  # C has no sentences
+            self.sentences += 1
+            self._equal(f"{place}, in words", why.in_words, answer["words"])
 
     def _axes(self, place: str, expected: Sequence[float], found: Sequence[float]) -> None:
         margin = self._margin(expected)

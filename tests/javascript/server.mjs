@@ -1,4 +1,5 @@
-// Answers questions, a line of JSON each: makes machines of a module, and calls their methods.
+// Answers questions, a line of JSON each: makes machines of a module, and calls their methods; `words` is a refusal in a
+// sentence.
 // A number that is not finite stands as {"$": "NaN"}, undefined as {"$": "undefined"}.
 import { createInterface } from "node:readline";
 import { pathToFileURL } from "node:url";
@@ -14,16 +15,19 @@ function encoded(key, value) {
   return typeof value === "number" && !Number.isFinite(value) ? { $: String(value) } : value;
 }
 
-function answered(module, { parameters, limits, calls }) {
+function answered(module, runtime, { parameters, limits, calls }) {
+  const said = (result) => (result?.status ? { ...result, words: runtime.inWords(result) } : result);
+  const told = (result) => (result?.slots ? { ...result, slots: result.slots.map(said) } : said(result));
   const { machine, ...made } = module.create(decoded(parameters), decoded(limits));
-  const found = calls.map(([name, ...given]) => machine?.[name](...given.map(decoded)) ?? null);
+  const found = calls.map(([name, ...given]) => told(machine?.[name](...given.map(decoded)) ?? null));
   return { made, found, limits: machine?.limits, isSearched: machine?.isSearched };
 }
 
 async function answer({ module, machines, script }) {
   const loaded = await import(pathToFileURL(module).href);
   if (script) return new Function("module", `"use strict"; ${script}`)(loaded);
-  return { description: loaded.description, answers: machines.map((one) => answered(loaded, one)) };
+  const runtime = await import(new URL("softkin/softkin.js", pathToFileURL(module)).href);
+  return { description: loaded.description, answers: machines.map((one) => answered(loaded, runtime, one)) };
 }
 
 for await (const line of createInterface({ input: process.stdin })) {

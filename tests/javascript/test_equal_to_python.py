@@ -48,3 +48,4 @@ def test_answers_are_those_of_python(name: str) -> None:
     assert not found, f"{len(found)} differences:\n" + "\n".join(found[:SHOWN])
     assert sum(one.regular for one in every) >= (0 if name == "Kin_Tool" else 10)
     assert sum(one.refused for one in every) >= (0 if name == "Kin_Tool" else 10)
+    assert sum(one.sentences for one in every) >= 0.9 * sum(one.refused for one in every)

@@ -6,15 +6,13 @@ from collections.abc import Mapping
 
 from sympy import Integer, cos, pi, sin
 
-from derive.frames import Chain, Rx, Ry, Rz, Tx, Txyz, Ty, Tz, denavit_hartenberg
+from derive.frames import Rx, Ry, Rz, Tx, Txyz, Ty, Tz, denavit_hartenberg
 from derive.mechanism import (
     Branch,
     Joint,
     Mechanism,
-    Parameter,
     Task,
     Turning,
-    Vendor,
     angle,
     branch,
     distance,
@@ -28,6 +26,7 @@ from tests.machines.chain_machines import CHAINS, FROM_FLANGE
 from tests.machines.searched_machines import SEARCHED
 from tests.machines.subset_machines import SWEPT
 from tests.machines.task_machines import TASK_MACHINES
+from tests.machines.textbook import textbook as _machine
 
 X, Y, Z, R = (linear(name, f"slide {name}") for name in ("X", "Y", "Z", "R"))
 A, B, C, A1, A2, A3, A4, A5, A6, E1 = (
@@ -50,31 +49,6 @@ ELBOW = branch("elbow", sin(A2), right=+1, left=-1)
 
 def _tilt(joint: Joint) -> tuple[Branch, ...]:
     return (branch("tilt", sin(joint), positive=+1, negative=-1),)
-
-
-def _machine(
-    name: str,
-    joints: tuple[Joint, ...],
-    chain: Chain,
-    parameters: tuple[Parameter, ...],
-    task: Task,
-    branches: tuple[Branch, ...] = (),
-    **details: object,
-) -> Mechanism:
-    stated = {"offset_interface": False, **details}
-    return Mechanism(
-        name=f"Kin_{name}",
-        vendor=Vendor.TEXTBOOK,
-        family="articulated",
-        source="the tests",
-        summary="A machine that is in no catalogue.",
-        joints=joints,
-        parameters=parameters,
-        chain=chain,
-        task=task,
-        branches=branches,
-        **stated,  # type: ignore[arg-type]
-    )
 
 
 THREE_LENGTHS = {

@@ -148,6 +148,13 @@ ODD: Mapping[str, Odd] = {
         {"int": "dIntLength"},
         "Words",
     ),
+    "constants called as words": Odd(
+        _scara,
+        _named("arm_1 arm_2 tip", "lambda np del"),
+        {"lambda": "lambda_", "del": "del_"},
+        {},
+        "Constants",
+    ),
     "names of the derivation": Odd(
         _plane_arm,
         _named(

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
 from sympy import cos, pi, sin
 
-from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
+from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz
 from derive.mechanism import (
-    Branch,
-    Joint,
     Mechanism,
-    Parameter,
     Task,
     Turning,
     Vendor,
@@ -25,6 +23,7 @@ from derive.mechanism import (
     rod,
     rotary,
 )
+from tests.machines.textbook import textbook
 
 S1, S2 = (linear(name, f"slide {name}") for name in ("S1", "S2"))
 A1, A2, A3, C = (rotary(name, f"turn {name}") for name in ("A1", "A2", "A3", "C"))
@@ -32,28 +31,7 @@ BESIDE, HEIGHT = (distance(n, n, nominal=v) for n, v in (("beside", 40.0), ("hei
 L1, L2, L3 = (length(f"link_{k}", f"link {k}", nominal=v) for k, v in enumerate((300.0, 250.0, 80.0), 1))
 ELBOW = branch("elbow", sin(A2), right=+1, left=-1)
 
-
-def _machine(
-    name: str,
-    joints: tuple[Joint, ...],
-    chain: Chain,
-    parameters: tuple[Parameter, ...],
-    task: Task,
-    branches: tuple[Branch, ...] = (),
-) -> Mechanism:
-    return Mechanism(
-        name=f"Kin_{name}",
-        vendor=Vendor.TEXTBOOK,
-        family="planar",
-        source="the tests",
-        summary="A machine that is in no catalogue.",
-        joints=joints,
-        parameters=parameters,
-        chain=chain,
-        task=task,
-        branches=branches,
-    )
-
+_machine = partial(textbook, family="planar", offset_interface=None)
 
 SUBSETS: Mapping[str, Mechanism] = {
     "arm in an upright plane": _machine(

@@ -6,16 +6,13 @@ from collections.abc import Mapping
 
 from sympy import cos, sin
 
-from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
+from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz
 from derive.mechanism import (
     TURN,
     Branch,
-    Joint,
     Mechanism,
-    Parameter,
     Task,
     Turning,
-    Vendor,
     branch,
     distance,
     length,
@@ -23,6 +20,7 @@ from derive.mechanism import (
     rotary,
     transmission,
 )
+from tests.machines.textbook import textbook as _machine
 
 X, Y, Z = (linear(name, f"slide {name}") for name in ("X", "Y", "Z"))
 A, B, C, A1, A2, A3, A4, A5 = (rotary(name, f"turn {name}") for name in ("A", "B", "C", "A1", "A2", "A3", "A4", "A5"))
@@ -30,31 +28,6 @@ SHOULDER, HEIGHT = (distance(n, n, nominal=v) for n, v in (("shoulder_x", 50.0),
 BESIDE = distance("beside", "how far the plane of the arm is beside its first axis", nominal=40.0)
 L1, L2, L3, L4 = (length(f"link_{k}", f"link {k}", nominal=v) for k, v in enumerate((300.0, 400.0, 350.0, 120.0), 1))
 PITCH, PITCH_ROLL = Task("xyz", Turning.PITCH), Task("xyz", Turning.PITCH_ROLL)
-
-
-def _machine(
-    name: str,
-    joints: tuple[Joint, ...],
-    chain: Chain,
-    parameters: tuple[Parameter, ...],
-    task: Task,
-    branches: tuple[Branch, ...] = (),
-    **details: object,
-) -> Mechanism:
-    stated = {"offset_interface": False, **details}
-    return Mechanism(
-        name=f"Kin_{name}",
-        vendor=Vendor.TEXTBOOK,
-        family="articulated",
-        source="the tests",
-        summary="A machine that is in no catalogue.",
-        joints=joints,
-        parameters=parameters,
-        chain=chain,
-        task=task,
-        branches=branches,
-        **stated,  # type: ignore[arg-type]
-    )
 
 
 def _arm(reach: object, bend: object) -> tuple[Branch, Branch]:

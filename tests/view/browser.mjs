@@ -9,13 +9,20 @@ const FLAGS = [
   "--disable-background-networking", "--disable-component-update", "--disable-sync", "--force-color-profile=srgb",
 ];
 
-/** The browser, and what it is called. which: "installed", "npm", or nothing for the first that is there. */
+/** The browser, and what it is called. which: "installed", "npm", or nothing for the first that can be started. */
 export async function launched(which) {
-  const installed = which === "npm" ? undefined : INSTALLED.find((path) => existsSync(path));
-  if (which === "installed" && !installed) throw new Error("no browser is installed");
-  const executablePath = installed ?? (await unpacked());
-  const browser = await chromium.launch({ executablePath, args: FLAGS, headless: true });
-  return { browser, name: `Chromium ${browser.version()} (${installed ?? "from npm"})` };
+  const installed = which === "npm" ? [] : INSTALLED.filter((path) => existsSync(path));
+  const all = which === "installed" ? installed : [...installed, null];
+  let problem = new Error("no browser is installed");
+  for (const path of all) {
+    try {
+      const browser = await chromium.launch({ executablePath: path ?? (await unpacked()), args: FLAGS, headless: true });
+      return { browser, name: `Chromium ${browser.version()} (${path ?? "from npm"})` };
+    } catch (error) {
+      problem = error; // a command of that name may only tell how to install a browser
+    }
+  }
+  throw problem;
 }
 
 /** The browser of @sparticuz/chromium: the package carries the libraries, too, and unpacks them where it says so. */

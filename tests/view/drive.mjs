@@ -7,6 +7,7 @@
 import { writeFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import { launched } from "./browser.mjs";
+import { isOfTheDriver, settled, state, unfold } from "./shown.mjs";
 
 const [cataloguePage, ownPage, pictures, result, which] = process.argv.slice(2);
 const LAPTOP = { width: 1366, height: 768 };
@@ -16,7 +17,7 @@ const { browser, name } = await launched(which).catch((error) => {
   writeFileSync(result, JSON.stringify({ missing: error.message }));
   process.exit(0);
 });
-const seen = { browser: name, errors: [], firstPictures: [] };
+const seen = { browser: name, errors: [], pictures: { catalogue: [], own: [] } };
 
 /** A page at a fragment; what its console complains of is kept. */
 async function opened(fragment, { size = SMALL, theme = "light", file = cataloguePage } = {}) {
@@ -26,42 +27,10 @@ async function opened(fragment, { size = SMALL, theme = "light", file = catalogu
   page.on("pageerror", (error) => seen.errors.push(`${fragment}: ${error}`));
   page.on("request", (request) => /^(file|blob|data):/.test(request.url()) || seen.errors.push(`${fragment} asks for ${request.url()}`));
   await page.goto(`${pathToFileURL(file)}${fragment}`);
-  await page.waitForFunction(() => globalThis.softkinPage?.model.pose && globalThis.softkinPage.stage.firstPicture);
-  seen.firstPictures.push(await page.evaluate(() => softkinPage.stage.firstPicture));
+  await page.waitForFunction(() => globalThis.softkinPage?.model.pose && globalThis.softkinPage.stage.isDrawn);
+  const marks = await page.evaluate(() => performance.getEntriesByType("mark").map((mark) => [mark.name, mark.startTime]));
+  seen.pictures[file === ownPage ? "own" : "catalogue"].push(Object.fromEntries(marks));
   return page;
-}
-
-/** Reading pixels back makes the software renderer complain of its speed; the viewer itself reads none. */
-function isOfTheDriver(message) {
-  return /GPU stall due to ReadPixels|GL Driver Message/.test(message.text());
-}
-
-/** What the page shows and knows of its pose. */
-function state(page) {
-  return page.evaluate(() => {
-    const { model } = softkinPage;
-    const value = (id) => document.getElementById(id).value;
-    return {
-      machine: model.name, parameters: model.parameters, axes: model.axes, frame: model.pose.frame, configuration: model.pose.configuration,
-      branches: model.branches(), margins: model.pose.singularity.margins,
-      shownAxes: model.description.axes.map((_, i) => value(`axis-${i}`)), shownTool: [..."XYZABC"].map((letter) => value(`tool-${letter}`)),
-      refusal: document.getElementById("refusal").hidden ? null : document.getElementById("refusal").textContent,
-      isMarked: softkinPage.stage.figure.group.children.some((mesh) => mesh.visible && mesh.material === softkinPage.stage.figure.materials.refused),
-      ghosts: softkinPage.ghosts.map((slot) => slot.axes),
-    };
-  });
-}
-
-/** Open these sections of the panel, or all. */
-function unfold(page, names = "") {
-  return page.evaluate((pattern) => document.querySelectorAll("details").forEach((one) => {
-    one.open = new RegExp(pattern).test(one.querySelector("summary").textContent);
-  }), names);
-}
-
-async function settled(page) {
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  await page.waitForTimeout(150); // the address is written after 120 ms
 }
 
 /** A picture at a size; what comes before it is drawn smaller, which takes a software renderer less. */
@@ -97,6 +66,11 @@ async function everyMachine() {
         parameters: model.parameters, solutions: model.solutions().filter((slot) => !slot.status).length, margins: model.pose?.singularity.margins,
         isLabelled: [...document.querySelectorAll("input, select, button")].every((one) => one.labels?.length || one.ariaLabel || one.getAttribute("aria-labelledby") || one.textContent.trim()),
       };
+      if (model.isCommanded) {
+        const { position, rotation } = model.pose.frame;
+        model.moveTo({ position: position.map((value) => value + 20 * stage.size), rotation });
+        found[name].farAway = { reason: model.refusal?.reason ?? null, marked: [...softkinPage.refusing].map((body) => `${body.kind} ${body.name}`) };
+      }
       await new Promise(requestAnimationFrame);
     }
     return found;
@@ -150,8 +124,10 @@ async function dragged() {
   seen.turned = await state(other);
   await other.context().close();
   await clickGhost(page);
+  await lookedAround(page);
   await pictured(page, LAPTOP, "laptop_light");
   await unfold(page);
+  seen.report = await page.locator("#report").getAttribute("href");
   const click = (name) => page.locator("#panel").getByRole("button", { name, exact: true }).evaluate((button) => button.click());
   seen.copied = { pose: await state(page) };
   for (const kind of ["Python", "Structured Text", "CSV"]) {
@@ -159,6 +135,26 @@ async function dragged() {
     seen.copied[kind] = await page.locator("#panel textarea").inputValue();
   }
   await page.context().close();
+}
+
+/** The picture turned by the mouse: the address says from where one looks, until the whole machine is looked at again. */
+async function lookedAround(page) {
+  const camera = (one) => one.evaluate(() => [...softkinPage.stage.camera.position.toArray(), ...softkinPage.stage.orbit.target.toArray()]);
+  const { height } = await page.evaluate(() => document.getElementById("canvas").getBoundingClientRect());
+  await settled(page);
+  const fitted = await page.evaluate(() => location.hash);
+  await page.mouse.move(12, height - 12);
+  await page.mouse.down();
+  for (let i = 1; i <= 5; i += 1) await page.mouse.move(12 + 12 * i, height - 12 - 5 * i);
+  await page.mouse.up();
+  await settled(page);
+  const turned = await page.evaluate(() => location.hash);
+  const other = await opened(turned);
+  seen.camera = { fitted, turned, here: await camera(page), there: await camera(other) };
+  await other.context().close();
+  await page.evaluate(() => document.getElementById("fit").click());
+  await settled(page);
+  seen.camera.again = await page.evaluate(() => location.hash);
 }
 
 /** A click on a ghost in the picture. */
@@ -206,8 +202,31 @@ async function typed() {
   seen.stepped = await state(page);
   await page.getByRole("button", { name: "left", exact: true }).evaluate((button) => button.click());
   seen.left = await state(page);
+  await dimension("lower a1").fill("28");
+  seen.lowerAlone = await page.evaluate(() => [...document.querySelectorAll(".wrong")].map((one) => one.textContent).filter(Boolean));
+  await dimension("upper a1").fill("60");
+  seen.bothEnds = await state(page);
+  await dimension("lower a1").fill("");
+  await page.locator("#axis-0").fill("-200");
+  seen.openEnd = await state(page);
+  seen.endFields = await page.evaluate(() => ["a1", "a2"].map((axis) => ["lower", "upper"].map((end) => [...document.querySelectorAll(".dimension")]
+    .find((one) => one.textContent.startsWith(`${end} ${axis}`)).querySelector("input").value)));
+  await page.getByRole("button", { name: "Python", exact: true }).evaluate((button) => button.click());
+  seen.openEndCopied = await page.locator("#panel textarea").inputValue();
+  await settled(page);
+  const third = await opened(await page.evaluate(() => location.hash));
+  seen.openEndRestored = await state(third);
+  await third.context().close();
+  await dimension("upper a1").fill("");
+  seen.noLimit = await state(page);
+  await dimension("upper a1").fill("60");
+  seen.upperAlone = await state(page);
   await page.locator("#canvas").press("g");
   seen.withoutGhosts = await state(page);
+  const away = () => page.evaluate(() => softkinPage.stage.camera.position.distanceTo(softkinPage.stage.orbit.target));
+  seen.away = [await away()];
+  await page.locator("#canvas").press("+");
+  seen.away.push(await away());
   seen.order = await page.evaluate(() => [...document.querySelectorAll("a, button, select, input, summary, canvas, textarea")]
     .filter((one) => one.tabIndex >= 0 && !one.disabled).map((one) => one.id || one.textContent.trim() || one.ariaLabel));
   await page.context().close();
@@ -298,9 +317,13 @@ async function own() {
   seen.own = await page.evaluate(() => ({
     names: softkinPage.model.names, at: softkinPage.stage.scene.getObjectByName("own").getWorldPosition(softkinPage.stage.handle.position.clone()).toArray(),
     body: softkinPage.model.pose.scene.bodies.find((body) => body.name === "A2").frame.position,
-    licence: document.documentElement.outerHTML.includes("three.js authors"),
+    licence: document.documentElement.outerHTML.includes("three.js authors"), report: document.getElementById("report").getAttribute("href"),
   }));
   await page.screenshot({ path: `${pictures}/tablet_light.png` });
+  await unfold(page);
+  seen.own.pose = await state(page);
+  await page.getByRole("button", { name: "Python", exact: true }).evaluate((button) => button.click());
+  seen.own.copied = await page.locator("#panel textarea").inputValue();
   await page.context().close();
 }
 
@@ -316,7 +339,8 @@ async function live() {
       }
     });
     send({ type: "machine", protocol: 1, name: "Kin_Scara4_ZCcoupled_Type1", source: { kind: "OPC UA" },
-      machine: { mechanism: "Kin_Scara4_ZCcoupled_Type1", link_length_1: 300, link_length_2: 200, pitch_zc: 10, limits: { A1: [-170, 170] } } });
+      machine: { mechanism: "Kin_Scara4_ZCcoupled_Type1", link_length_1: 300, link_length_2: 200,
+        limits: { A1: [-170, 170], A2: null, A3: [null, 0], A4: [-300, null] } } });
   });
   const told = (axes, quality) => page.evaluate(([values, words]) => {
     send({ type: "axes", status: "live", message: "", complete: values.every((value) => value !== null), axes: values, quality: words, reasons: values.map(() => "") });
@@ -331,12 +355,31 @@ async function live() {
   seen.liveWords.push(await told([50, null, -30, 40], ["good", "bad", "good", "good"]));
   seen.liveKept = await state(page);
   seen.liveAsked = await page.evaluate(() => asked);
+  seen.liveUnknown = await page.evaluate(() => {
+    send({ type: "machine", protocol: 1, name: "Kin_Gantry2", source: { kind: "OPC UA" }, machine: { mechanism: "Kin_Gantry2", tool: 7 } });
+    return document.getElementById("live").textContent;
+  });
+  seen.liveWords.push(await told([1, 2], ["good", "good"]));
+  seen.liveNotMoved = await state(page);
+  seen.liveMounted = await page.evaluate(() => {
+    const bare = { mechanism: "Kin_Gantry2", limits: { X: [-1, 99], Y: null } };
+    send({ type: "machine", protocol: 1, name: "Kin_Gantry2", source: { kind: "OPC UA" }, machine: { mechanism: "Mounted", bare, base: 1, tool: 2 } });
+    const said = document.getElementById("live").textContent;
+    send({ type: "axes", status: "live", message: "", complete: true, axes: [3, 4], quality: ["good", "good"], reasons: ["", ""] });
+    return { said, name: softkinPage.model.name, axes: softkinPage.model.axes, upper: softkinPage.model.machine.limits[0].upper };
+  });
   await page.evaluate(() => lose());
   seen.liveWords.push(await page.locator("#live").textContent());
   await page.context().close();
 }
 
-for (const work of [live, everyMachine, dragged, typed, line, marks, slice, own]) {
+/** The page of one machine again, at another time: how soon its picture is there depends on what else the machine does. */
+async function ownAgain() {
+  const page = await opened("", { file: ownPage });
+  await page.context().close();
+}
+
+for (const work of [live, ownAgain, everyMachine, dragged, ownAgain, typed, line, ownAgain, marks, slice, own]) {
   try {
     await work();
   } catch (error) {

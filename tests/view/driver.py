@@ -14,7 +14,15 @@ PACKAGES = ROOT / ".view-tests"
 """Where npm puts the driver and the browser, once."""
 BROWSER = ROOT / "build" / "view" / "browser.txt"
 """Which browser ran, in one line, or that none could be had; the summary of a test run prints it."""
-SCRIPTS = ("browser.mjs", "drive.mjs")
+SCRIPTS = ("browser.mjs", "drive.mjs", "follow.mjs", "shown.mjs")
+
+
+def prepared() -> Path:
+    """The folder in which the scripts stand beside what they import. Raises `MissingTool`."""
+    installed(Path(__file__).parent, PACKAGES)
+    for name in SCRIPTS:
+        shutil.copy(Path(__file__).with_name(name), PACKAGES / name)
+    return PACKAGES
 
 
 def driven(catalogue: Path, own: Path, folder: Path, which: str = "") -> dict[str, Any]:
@@ -23,9 +31,7 @@ def driven(catalogue: Path, own: Path, folder: Path, which: str = "") -> dict[st
     which: "installed" or "npm", or nothing for the first browser that is there. Raises `MissingTool` where none is.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    installed(Path(__file__).parent, PACKAGES)
-    for name in SCRIPTS:
-        shutil.copy(Path(__file__).with_name(name), PACKAGES / name)
+    prepared()
     result = folder / "seen.json"
     result.unlink(missing_ok=True)
     command = [node(), PACKAGES / "drive.mjs", catalogue, own, folder, result, *([which] if which else [])]

@@ -12,7 +12,8 @@ from derive.command.catalogue import OUTPUT
 from derive.command.view import PACKAGES, content_of
 from derive.emit.javascript import package as javascript
 from derive.pipeline import work_of
-from derive.view.page import page
+from derive.view.page import Content, page
+from tests.javascript.modules import files_of, part_of
 from tests.mechanisms import catalogue
 from tests.view.glb import triangle
 
@@ -34,10 +35,25 @@ def catalogue_page(folder: Path, modules: Mapping[str, bytes]) -> Path:
     return path
 
 
+def machine_page(folder: Path, name: str) -> Path:
+    """A page with one machine of the catalogue."""
+    path = folder / "machine.html"
+    files = {path: text.encode() for path, text in files_of(part_of(name)).items() if path.endswith(".js")}
+    content = Content(name, files, "softkin", {name: ""}, reports={name: ""})
+    path.write_text(page(content, PACKAGES), encoding="utf-8")
+    return path
+
+
 def own_page(folder: Path) -> Path:
-    """The page of the machine that `softkin new` describes, as the command line makes it; A2 is a mesh in metres."""
+    """The page of a machine of a user, as the command line makes it, and beside it, in `python`, its package.
+
+    A2 is a mesh in metres; the second link is called as no keyword of Python can be.
+    """
     (folder / "own.glb").write_bytes(triangle())
     _run(folder, "new", "my_machine.py")
+    path = folder / "my_machine.py"
+    path.write_text(path.read_text(encoding="utf-8").replace('"link_length_2"', '"lambda"'), encoding="utf-8")
+    _run(folder, "derive", "my_machine.py", "--out", "pages", "--language", "python")
     _run(folder, "view", "my_machine.py", "--out", "pages", "--model", "A2=own.glb*1000")
     return folder / "pages" / "my_machine.html"
 

@@ -71,10 +71,12 @@ def part(kinematics: Kinematics) -> Part:
     """The module of one mechanism, and its entry in the list."""
     module = module_name(kinematics.mechanism.name)
     entry = {"name": kinematics.mechanism.name, "module": module}
+    given = inputs(kinematics)
     return {
         "index": entry,
         "files": {f"{module}.js": _module(kinematics, module)},
-        "notes": list(inputs(kinematics).notes),
+        "notes": list(given.notes),
+        "inputs": dict(given.names),
     }
 
 

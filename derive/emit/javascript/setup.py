@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 
+import sympy as sp
+
 from derive.description.mechanism import Parameter
 from derive.emit.braces import block
 from derive.emit.inputs import Inputs
@@ -88,7 +90,7 @@ def _window(window: Window, read: Collection[str], values: dict[str, str]) -> li
     if window.fallback:
         condition, low, high = window.fallback[-1]
         interval = list_of([PRINTER.print(low), PRINTER.print(high)])
-        given.append(interval if condition == True else f"{PRINTER.print(condition)} ? {interval} : null")  # noqa: E712
+        given.append(interval if condition is sp.true else f"{PRINTER.print(condition)} ? {interval} : null")
     if window.has_turns and window.turns != 1:
         given += ["null"] * (2 - len(given)) + [PRINTER.print(window.turns)]
     for index, output in enumerate(window.outputs):

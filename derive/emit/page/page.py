@@ -56,10 +56,11 @@ class ShownProgram:
     outputs: tuple[Line, ...] = ()
 
 
-def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = True) -> Page:
+def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = True, viewer: str = "") -> Page:
     """The page of a machine. kinematics: what the build made of the mechanism, measured where a witness has.
 
     has_pictures: with the drawing, the machine in its singular poses, and maps; without, the formulas alone.
+    viewer: the file that shows the machine in the browser, from where this page stands; empty where there is none.
     """
     derived, spelling = derived_of(mechanism), spelling_of(kinematics)
     lines, plain = Lines(spelling, _numbered(derived)), Lines(spelling)
@@ -76,6 +77,7 @@ def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = T
             title=block,
             mechanism=kinematics.mechanism,
             derived=derived,
+            viewer=viewer,
             has_block=has_block(kinematics),
             found=found,
             axes=list(tables.axes(kinematics)),

@@ -73,7 +73,8 @@ _EXPORTS = (
 def part(kinematics: Kinematics) -> Part:
     """The files of one mechanism, and its entries in the lists."""
     found = {"index": index(kinematics), "files": modules(kinematics)}
-    return {**found, "notes": list(inputs(kinematics).notes)}
+    given = inputs(kinematics)
+    return {**found, "notes": list(given.notes), "inputs": dict(given.names)}
 
 
 def files(parts: Sequence[Part]) -> dict[str, str]:

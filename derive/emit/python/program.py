@@ -227,7 +227,7 @@ def names(shape: Shape) -> Iterator[str]:
 def constant_lines(method: Method, owner: str = "self._constants") -> list[str]:
     """The constants that a method reads, by their names."""
     constants = constants_of(method)
-    return [f"k = {owner}", *assigned({spelled(c): f"k.{c}" for c in constants})] if constants else []
+    return [f"k = {owner}", *assigned({spelled(c): f"k.{spelled(c)}" for c in constants})] if constants else []
 
 
 def constants_of(method: Method) -> list[str]:

@@ -69,7 +69,7 @@ def setup_body(kin: Kinematics, read: Collection[str]) -> list[str]:
         else:
             lines += binding_lines(statement, _PRINTER)
     ends = {o.name for window in by_refusal.values() for o in window.outputs}
-    values = {f"self.{o.name}": _PRINTER.print(o.value) for o in program.outputs if o.name not in ends}
+    values = {f"self.{spelled(o.name)}": _PRINTER.print(o.value) for o in program.outputs if o.name not in ends}
     return [*assigned(_given(kin, program, by_refusal.values())), *lines, *assigned(values)]
 
 
@@ -107,7 +107,7 @@ def _value(parameter: Parameter, name: str) -> str:
 
 def _window(window: Window, read: Collection[str]) -> list[str]:
     """The line that computes the range of an axis. It refuses invalid limits even where no program reads the range."""
-    targets = [f"self.{o.name}" if o.name in read else "_" for o in window.outputs]
+    targets = [f"self.{spelled(o.name)}" if o.name in read else "_" for o in window.outputs]
     call = f'machine._window("{window.key}"{_without_limits(window)}{_gear(window)})'
     while targets and targets[-1] == "_":
         targets.pop()

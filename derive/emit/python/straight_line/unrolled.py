@@ -143,7 +143,9 @@ def unrolled(kin: Kinematics) -> Unrolled:
         offsets = [c for c in constants if c in {j.offset.name for j in kin.mechanism.joints}]
         lines.append(f"{NO_OFFSETS} = not any({tuple_of(offsets)})")
     primitives = primitives_in([*lines, *(line for f in functions for line in f.body)])
-    return Unrolled(functions, assigned({spelled(c): f"k.{c}" for c in constants}), constants, lines, primitives)
+    return Unrolled(
+        functions, assigned({spelled(c): f"k.{spelled(c)}" for c in constants}), constants, lines, primitives
+    )
 
 
 def trusted_branch(kin: Kinematics) -> Function:
