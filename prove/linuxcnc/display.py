@@ -1,0 +1,210 @@
+#!/usr/bin/python3
+"""What LinuxCNC runs as its screen: homes the machine, runs two programs, asks for what cannot be reached, records.
+
+It runs inside the room alone, with the Python of Debian. `plan.json` says what to do; `record.json` and `samples.bin`
+say what happened.
+"""
+
+from __future__ import annotations
+
+import array
+import json
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import hal
+import linuxcnc
+
+PATIENCE = 20.0
+"""Seconds that one step may take."""
+TYPE = "motion.switchkins-type"
+"""The pin that chooses between the kinematics and identity."""
+NEAR = 1e-4
+"""Degrees or millimetres: a jog ends as near as that."""
+
+
+class Sampler:
+    """Reads what the sampler of the HAL has recorded, all the time."""
+
+    def __init__(self, kinds: str) -> None:
+        self.component = hal.component("proof")
+        self.component.ready()
+        self.stream = hal.stream(self.component, hal.sampler_base, kinds)
+        self.rows, self.values = 0, array.array("d")
+        self._runs = True
+        self._thread = threading.Thread(target=self._read)
+        self._thread.start()
+
+    def _read(self) -> None:
+        while self._runs:
+            while self.stream.readable:
+                self.values.extend(float(value) for value in self.stream.read())
+                self.rows += 1
+            time.sleep(0.005)
+
+    def end(self) -> int:
+        """Stop; how many periods were lost."""
+        self._runs = False
+        self._thread.join()
+        return int(self.stream.num_overruns)
+
+
+class Driver:
+    """The machine, as a person at its panel has it."""
+
+    def __init__(self, joints: int) -> None:
+        self.joints = joints
+        self.state, self.command, self.errors = linuxcnc.stat(), linuxcnc.command(), linuxcnc.error_channel()
+
+    def said(self) -> list[str]:
+        """What LinuxCNC has complained about since this was asked."""
+        found = []
+        while message := self.errors.poll():
+            found.append(str(message[1]))
+        return found
+
+    def until(self, is_so: Callable[[Any], bool], what: str) -> None:
+        """Wait until the status says so."""
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            self.state.poll()
+            if is_so(self.state):
+                return
+            time.sleep(0.005)
+        raise TimeoutError(f"LinuxCNC did not come to this: {what}; it says {self.said()}")
+
+    def seen(self) -> dict[str, object]:
+        """What the status says now."""
+        self.state.poll()
+        return {
+            "joints": list(self.state.joint_position[: self.joints]),
+            "pose": list(self.state.position[:6]),
+            "on": self.state.task_state == linuxcnc.STATE_ON,
+            "homed": all(self.state.homed[: self.joints]),
+            "parameters refused": bool(hal.get_value("softkin.parameters-refused")),
+        }
+
+    def mode(self, mode: int) -> None:
+        """Choose manual, single lines, or a program."""
+        self.command.mode(mode)
+        self.command.wait_complete(PATIENCE)
+        self.until(lambda state: state.task_mode == mode, "the mode")
+
+    def switch_on(self) -> None:
+        """Out of the emergency stop, and on."""
+        for state in (linuxcnc.STATE_ESTOP_RESET, linuxcnc.STATE_ON):
+            self.command.state(state)
+            self.command.wait_complete(PATIENCE)
+        self.until(lambda state: state.task_state == linuxcnc.STATE_ON, "switched on")
+
+    def home(self) -> None:
+        """All joints."""
+        self.mode(linuxcnc.MODE_MANUAL)
+        self.command.home(-1)
+        self.until(lambda state: all(state.homed[: self.joints]), "homed")
+        self.rest()
+
+    def rest(self) -> None:
+        """Wait until nothing moves, and nothing is about to."""
+        self.until(
+            lambda state: state.inpos and state.queue == 0 and state.interp_state == linuxcnc.INTERP_IDLE, "at rest"
+        )
+        time.sleep(0.05)
+
+    def run(self, program: str) -> None:
+        """A program, to its end."""
+        self.mode(linuxcnc.MODE_AUTO)
+        self.command.program_open(program)
+        self.command.wait_complete(PATIENCE)
+        self.command.auto(linuxcnc.AUTO_RUN, 0)
+        self.command.wait_complete(PATIENCE)
+        self.rest()
+
+    def line(self, text: str) -> None:
+        """A single line of a program."""
+        self.mode(linuxcnc.MODE_MDI)
+        self.command.mdi(text)
+        self.command.wait_complete(PATIENCE)
+        self.rest()
+
+    def bring(self, joints: list[float], slowest: float) -> None:
+        """Each joint by itself, all within the same seconds, to these values."""
+        self.mode(linuxcnc.MODE_MANUAL)
+        self.command.teleop_enable(0)
+        self.command.wait_complete(PATIENCE)
+        self.until(lambda state: state.motion_mode == linuxcnc.TRAJ_MODE_FREE, "joint by joint")
+        now = list(self.state.joint_position[: self.joints])
+        seconds = max(abs(to - at) for to, at in zip(joints, now, strict=True)) / slowest
+        for joint, (to, at) in enumerate(zip(joints, now, strict=True)):
+            if to != at:
+                self.command.jog(linuxcnc.JOG_INCREMENT, True, joint, (to - at) / seconds, abs(to - at))
+        self.until(
+            lambda state: all(abs(is_ - to) < NEAR for is_, to in zip(state.joint_position, joints, strict=False)),
+            f"at {joints}",
+        )
+        self.rest()
+        self.command.teleop_enable(1)
+        self.command.wait_complete(PATIENCE)
+
+
+def give(pin: str, value: str) -> None:
+    """Give a pin a value, and the kinematics some periods to read it."""
+    hal.set_p(pin, value)
+    time.sleep(0.05)
+
+
+def main() -> None:
+    """Do the plan."""
+    began = time.monotonic()
+    plan = json.loads(Path("plan.json").read_text(encoding="utf-8"))
+    driver, sampler = Driver(plan["joints"]), Sampler(plan["kinds"])
+    record: dict[str, Any] = {"stages": []}
+
+    def stage(name: str, act: Callable[[], None]) -> None:
+        first, before = sampler.rows, driver.seen()
+        act()
+        time.sleep(0.05)
+        record["stages"].append(
+            {"name": name, "rows": [first, sampler.rows], "before": before, "after": driver.seen(),
+             "said": driver.said()}
+        )  # fmt: skip
+
+    try:
+        driver.switch_on()
+        stage("home", driver.home)
+        hal.set_p("sampler.0.enable", "1")
+        stage("first", lambda: driver.run("first.ngc"))
+        stage("bring", lambda: driver.bring(plan["second"], 200.0))
+        stage("second", lambda: driver.run("second.ngc"))
+        stage("unreachable", lambda: driver.line(plan["unreachable"]))
+        stage("behind it", lambda: driver.line(plan["back"]))
+        pin, good, wrong = plan["parameter"]
+        give(pin, wrong)
+        stage("wrong parameter", lambda: driver.line(plan["on"]))
+        give(pin, good)
+        stage("right parameter", lambda: driver.line(plan["back"]))
+        give(TYPE, "1")
+        there, home = plan["identity"]
+        stage("identity", lambda: driver.line(there))
+        stage("identity back", lambda: driver.line(home))
+        give(TYPE, "0")
+        stage("kinematics again", lambda: driver.line(plan["on"]))
+        if plan["through"]:
+            beside, beyond = plan["through"]
+            stage("beside", lambda: driver.line(beside))
+            stage("through", lambda: driver.line(beyond))
+            stage("on again", driver.switch_on)
+            stage("behind that", lambda: driver.line(beside))
+    except TimeoutError as error:
+        record["error"] = str(error)
+    record["lost"] = sampler.end()
+    record["seconds"] = time.monotonic() - began
+    Path("samples.bin").write_bytes(sampler.values.tobytes())
+    Path("record.json").write_text(json.dumps(record), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
