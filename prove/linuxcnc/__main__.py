@@ -12,6 +12,7 @@ from pathlib import Path
 from prove.linuxcnc.machines import MACHINES
 from prove.linuxcnc.modules import written
 from prove.linuxcnc.packages import CannotRun, require_computer, unpacked
+from prove.linuxcnc.room import require_room
 from prove.linuxcnc.session import run
 from prove.linuxcnc.table import table
 from prove.linuxcnc.twin import Twin
@@ -31,6 +32,7 @@ def main(arguments: list[str]) -> int:
     try:
         require_computer()
         linuxcnc = unpacked(folder / "linuxcnc")
+        require_room(linuxcnc, folder / "work")
     except CannotRun as reason:
         print(f"The proof on LinuxCNC did not run: {reason}.", file=sys.stderr)
         return 0 if asked.if_possible else CANNOT

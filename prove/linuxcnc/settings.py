@@ -10,8 +10,8 @@ PERIOD = 0.001
 """Seconds between two calls of the kinematics."""
 FEED = 9000
 """Millimetres a minute."""
-JUMP = 5.0
-"""Degrees or millimetres: a joint that is commanded further in one period stops the machine (a following error)."""
+_FOLLOWING = 5.0
+"""Degrees or millimetres that a motor may be behind: those here follow at once."""
 _WIDE = 10_000.0
 _LINEAR = (400.0, 3000.0)
 _ANGULAR = (300.0, 3000.0)
@@ -48,8 +48,8 @@ def ini(machine: Machine, module: str, home: Mapping[str, float]) -> str:
             "HOME": value,
             "HOME_OFFSET": value,
             "HOME_SEQUENCE": 0,
-            "FERROR": JUMP,
-            "MIN_FERROR": JUMP,
+            "FERROR": _FOLLOWING,
+            "MIN_FERROR": _FOLLOWING,
             **_range(_LINEAR if linear else _ANGULAR),
         }
     return "\n".join(

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from prove.linuxcnc.machines import LETTERS, Stand
 from prove.linuxcnc.session import BESIDE, Record, Stage
-from prove.linuxcnc.settings import JUMP
 from prove.linuxcnc.twin import Rows, Twin, greatest
 
 ALIKE = 1e-9
 """Degrees and millimetres: two programs that compute the same differ by rounding, on values up to a thousand."""
 ON_THE_WAY = 0.01
 """Millimetres and degrees that the motors may leave the programmed way: they follow a spline."""
+JUMP = 5.0
+"""Degrees or millimetres that no joint moves within one period."""
 FEWEST = 500
 """Rows that a program gives at least: fewer would say that it did not run."""
 REFUSED = "fails kinematicsInverse"
@@ -119,6 +120,7 @@ def _incomplete(stage: Stage) -> Findings:
         yield f"the {stage.name} program: {'; '.join(stage.said)}"
     if len(_in_program(stage)) < FEWEST:
         yield f"the {stage.name} program has {len(_in_program(stage))} samples alone"
+    yield from _above(greatest(np.diff(stage.joints, axis=0)), JUMP, f"the {stage.name} program: a joint jumps")
 
 
 def _leaving(twin: Twin, programs: Iterable[tuple[Stage, Stand]]) -> Findings:

@@ -118,6 +118,7 @@ def _turned(was: Stage) -> Stage:
 PLANTED: dict[str, tuple[str, Callable[[Stage], Stage], str]] = {
     "a program that is not ended": ("second", _cut, "the end of a line is missed"),
     "a program with a complaint": ("first", lambda was: replace(was, said=["following error"]), "following error"),
+    "a joint that jumps": ("second", lambda was: replace(was, joints=was.joints * 9.0), "program: a joint jumps"),
     "motors beside the way": ("first", _leaving, "the motors leave the programmed way"),
     "not refused": ("unreachable", lambda was: replace(was, said=[]), "is not refused"),
     "moved": ("unreachable", _moving, "the machine moves"),
