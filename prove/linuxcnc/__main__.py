@@ -7,16 +7,18 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
+from datetime import date
 from pathlib import Path
 
-from prove.linuxcnc.machines import MACHINES
-from prove.linuxcnc.modules import written
-from prove.linuxcnc.packages import CannotRun, require_computer, unpacked
+from prove.linuxcnc.machines import MACHINES, Machine
+from prove.linuxcnc.modules import NotWritten, written
+from prove.linuxcnc.packages import CannotRun, LinuxCNC, require_computer, unpacked
 from prove.linuxcnc.room import require_room
 from prove.linuxcnc.session import run
 from prove.linuxcnc.table import table
 from prove.linuxcnc.twin import Twin
-from prove.linuxcnc.verdict import verdict
+from prove.linuxcnc.verdict import Verdict, verdict
 
 FAILED, CANNOT = 1, 3
 
@@ -36,18 +38,29 @@ def main(arguments: list[str]) -> int:
     except CannotRun as reason:
         print(f"The proof on LinuxCNC did not run: {reason}.", file=sys.stderr)
         return 0 if asked.if_possible else CANNOT
-    machines = tuple(machine for machine in MACHINES if not asked.only or machine.mechanism in asked.only)
+    machines = [machine for machine in MACHINES if not asked.only or machine.mechanism in asked.only]
+    try:
+        verdicts = judged(machines, linuxcnc, folder)
+    except NotWritten as reason:
+        print(reason, file=sys.stderr)
+        return FAILED
+    print(f"LinuxCNC {linuxcnc.version}, {date.today()}, without real time and without hardware:\n")
+    print(table(verdicts))
+    faults = [f"{one.says}: {fault}" for one in verdicts for fault in one.faults]
+    for fault in faults:
+        print(fault, file=sys.stderr)
+    return FAILED if faults else 0
+
+
+def judged(machines: Sequence[Machine], linuxcnc: LinuxCNC, folder: Path) -> list[Verdict]:
+    """The verdicts on these machines, one after the other."""
     modules = written(machines, folder / "modules")
     verdicts = []
     for machine in machines:
         twin, module = Twin(machine), modules[machine.mechanism]
         record = run(machine, module, linuxcnc, folder / "work" / machine.mechanism, twin.home())
         verdicts.append(verdict(twin, record))
-    print(f"LinuxCNC {linuxcnc.version}, without real time and without hardware:\n")
-    print(table(verdicts))
-    faults = [f"{one.says}: {fault}" for one in verdicts for fault in one.faults]
-    print("\n".join(["", *faults]) if faults else "", file=sys.stderr)
-    return FAILED if faults else 0
+    return verdicts
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -42,10 +43,11 @@ class Module:
 
 
 def written(machines: Sequence[Machine], folder: Path) -> dict[str, Module]:
-    """The modules of these machines, by the names of their mechanisms, in this folder.
+    """The modules of these machines, by the names of their mechanisms, in this folder, which is made anew.
 
     Raises `NotWritten` where the compiler fails.
     """
+    shutil.rmtree(folder, ignore_errors=True)
     names = [machine.mechanism for machine in machines]
     command = [sys.executable, "-m", "derive", "generate", "--language", "linuxcnc", "--output", str(folder), "--only"]
     done = subprocess.run([*command, *names], check=False, capture_output=True, text=True)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from prove.linuxcnc.verdict import Verdict
 
 HEAD = (
-    "mechanism", "samples", "joints differ by", "poses differ by", "off the way", "elbow kept", "unreachable refused",
+    "mechanism", "samples", "joints differ", "poses differ", "motors off the way", "elbow kept", "unreachable refused",
     "seconds",
 )  # fmt: skip
 
