@@ -115,6 +115,7 @@ DELTA = Machine(
         (g1(x=-190, y=30, z=-390), g2(-20, -20, x=-190, y=-10, z=-380), g0(x=-210, y=15, z=-370)),
     ),
     unreachable={"X": 0.0, "Y": 0.0, "Z": -700.0},
+    through=({"X": 108.0, "Y": -99.0, "Z": -274.0}, {"X": -158.0, "Y": 285.0, "Z": -229.0}),
 )
 FIVE_BAR = Machine(
     says="five-bar",
@@ -130,6 +131,7 @@ FIVE_BAR = Machine(
         (g1(x=60, y=-600), g2(-30, 40, x=-10, y=-590), g0(x=0, y=-580)),
     ),
     unreachable={"X": 500.0, "Y": -600.0},
+    through=({"X": 70.0, "Y": -380.0}, {"X": -400.0, "Y": -110.0}),  # its arms would be aligned on the way
 )
 SIX_AXES = Machine(
     says="six-axis arm",

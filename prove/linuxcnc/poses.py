@@ -89,4 +89,4 @@ def segments(begin: Reals, program: Sequence[Move]) -> list[Segment]:
 
 def filled(pose: Reals, to: Pose) -> Reals:
     """The pose (6,) with these letters changed."""
-    return np.array([to.get(letter, value) for letter, value in zip(LETTERS, pose, strict=True)])
+    return np.array([to.get(letter, value) for letter, value in zip(LETTERS, pose, strict=True)], dtype=float)

@@ -8,7 +8,7 @@ from prove.linuxcnc.machines import Machine
 
 PERIOD = 0.001
 """Seconds between two calls of the kinematics."""
-FEED = 9000
+FEED = 15_000
 """Millimetres a minute."""
 _FOLLOWING = 5.0
 """Degrees or millimetres that a motor may be behind: those here follow at once."""

@@ -14,7 +14,7 @@ from prove.linuxcnc.poses import filled, frames
 from prove.linuxcnc.session import Record, Stage
 from prove.linuxcnc.twin import Twin
 from prove.linuxcnc.verdict import ALIKE, verdict
-from tests.prove.pretended import pretended, stage
+from tests.prove.pretended import ROWS, answers, pretended, stage
 
 NAMED = {machine.mechanism: machine for machine in MACHINES}
 
@@ -47,6 +47,16 @@ def test_what_cannot_be_reached_cannot_be_reached(machine: str) -> None:
     end = filled(faultless(machine).stages["second"].poses[-1], twin.machine.unreachable)
     positions, rotations = frames(twin.machine, end[None])
     assert not any(one.axes for one in twin.robot.inverse_all((positions[0], rotations[0])))
+
+
+@pytest.mark.parametrize("machine", [machine.mechanism for machine in MACHINES if machine.through])
+def test_a_line_leaves_the_workspace_between_two_poses_that_are_reached(machine: str) -> None:
+    """The package refuses a pose in the middle, and answers at both ends."""
+    twin, stages = Twin(NAMED[machine]), faultless(machine).stages
+    assert ROWS < len(stages["through"].joints) < 9 * ROWS
+    assert twin.machine.through is not None
+    end = filled(stages["beside"].poses[-1], twin.machine.through[1])
+    assert len(answers(twin, twin.machine.second, end[None], stages["beside"].joints[-1])) == 1
 
 
 @pytest.mark.parametrize("machine", NAMED)
