@@ -9,13 +9,14 @@ from typing import Any
 
 from jinja2 import Environment
 
-from derive.description.mechanism import Parameter, Role
+from derive.description.mechanism import Role
 from derive.emit.c import package as c
-from derive.emit.c.description import in_words, inputs
+from derive.emit.c.description import inputs
 from derive.emit.c.layout import harmless, page
 from derive.emit.c.printer import C, list_of, member, number, text
 from derive.emit.c.program import searches
 from derive.emit.language import GENERATED, Part, environment
+from derive.emit.linuxcnc.head import head_of
 from derive.emit.linuxcnc.words import LETTERS, Orientation, Words, turn_row, words_of
 from derive.ir.constants import FREE_ANGLE, LARGEST, TIE
 from derive.kinematics.kinematics import Kinematics
@@ -116,15 +117,11 @@ def _known(kin: Kinematics, words: Words, module: str) -> dict[str, Any]:
         "kins_text": text(module_name(module)),
         "summary": harmless(kin.mechanism.summary),
         "name": harmless(kin.mechanism.name),
-        "joints": [
-            {"number": i, "name": harmless(j.name), "unit": "deg" if j.in_degrees else "machine unit",
-             "meaning": harmless(j.meaning), "letter": letter}
-            for i, (j, letter) in enumerate(zip(joints, words.of_joints, strict=True))
-        ],
+        "head": head_of(kin, words, pins),
+        "joints": len(joints),
         "joint_letters": list_of(map(str, letters)),
         "has_own": any(words.own),
         "own_letters": list_of(map(str, own)),
-        "own_list": words.own,
         "units": list_of("SOFTKIN_DEGREE" if j.in_degrees else "1.0" for j in joints),
         "upper": module.upper(),
         "rows": len(kin.rows),
@@ -132,7 +129,7 @@ def _known(kin: Kinematics, words: Words, module: str) -> dict[str, Any]:
         "first_own_row": len(words.position) + _TURNS[words.orientation],
         "turn_factors": list_of(_turn_factors(kin)) if words.orientation is Orientation.COUNTED else "",
         "linear_joints": list_of(str(i) for i, letter in enumerate(words.own) if not letter),
-        "words": "".join(words.letters),
+        "letters_used": "".join(words.letters),
         "position": [
             {"index": "XYZ".index(letter), "row": row} for letter, row in zip(words.position, rows, strict=True)
         ],
@@ -141,17 +138,11 @@ def _known(kin: Kinematics, words: Words, module: str) -> dict[str, Any]:
         "turn_row": kin.rows.index("turn z") if "turn z" in kin.rows else -1,
         "carrier": words.carrier,
         "branches": len(kin.branches),
-        "branch_names": [
-            {"name": harmless(b.name), "first": harmless(b.names[0]), "second": harmless(b.names[1]), "bit": 2 * i}
-            for i, b in enumerate(kin.branches)
-        ],
         "is_searched": any(searches(program) for program in kin.shared),
         "starts_forward": kin.forward_from is not None,
         "has_jacobian": _has_jacobian(kin, words),
         "parameters": [
-            {"pin": text(pins[p.name]), "name": pins[p.name], "is_flag": "true" if p.role is Role.FLAG else "false",
-             "kind": "bit" if p.role is Role.FLAG else "float",
-             "told": harmless(_told(p))}
+            {"pin": text(pins[p.name]), "name": pins[p.name], "is_flag": "true" if p.role is Role.FLAG else "false"}
             for p in kin.parameters
         ],
     }  # fmt: skip
@@ -163,10 +154,6 @@ def _turn_factors(kin: Kinematics) -> list[str]:
     joints = kin.mechanism.joints
     entries = [printer.print(entry) if entry != 0 else "0.0" for entry in turn_row(kin)]
     return [one if j.in_degrees else f"({one})*SOFTKIN_RADIAN" for one, j in zip(entries, joints, strict=True)]
-
-
-def _told(p: Parameter) -> str:
-    return f"{p.meaning}: {in_words(p)}; {'must be set' if p.default is None else f'{p.default:g} at first'}"
 
 
 def _still(kin: Kinematics, words: Words) -> bool:
