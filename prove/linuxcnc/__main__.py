@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from datetime import date
 from pathlib import Path
 
@@ -21,6 +22,8 @@ from prove.linuxcnc.twin import Twin
 from prove.linuxcnc.verdict import Verdict, verdict
 
 FAILED, CANNOT = 1, 3
+AT_ONCE = 3
+"""Rooms: a machine waits more than it computes."""
 
 
 def main(arguments: list[str]) -> int:
@@ -53,14 +56,15 @@ def main(arguments: list[str]) -> int:
 
 
 def judged(machines: Sequence[Machine], linuxcnc: LinuxCNC, folder: Path) -> list[Verdict]:
-    """The verdicts on these machines, one after the other."""
+    """The verdicts on these machines, some of which run at once: each has a room of its own."""
     modules = written(machines, folder / "modules")
-    verdicts = []
-    for machine in machines:
-        twin, module = Twin(machine), modules[machine.mechanism]
-        record = run(machine, module, linuxcnc, folder / "work" / machine.mechanism, twin.home())
-        verdicts.append(verdict(twin, record))
-    return verdicts
+
+    def one(machine: Machine) -> Verdict:
+        twin, work = Twin(machine), folder / "work" / machine.mechanism
+        return verdict(twin, run(machine, modules[machine.mechanism], linuxcnc, work, twin.home()))
+
+    with ThreadPoolExecutor(AT_ONCE) as rooms:
+        return list(rooms.map(one, machines))
 
 
 if __name__ == "__main__":
