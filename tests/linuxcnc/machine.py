@@ -15,11 +15,12 @@ from derive.emit.c.description import inputs
 from derive.emit.linuxcnc.words import Orientation, Words, words_of
 from tests.corpus.dimensions import DIMENSIONS
 from tests.corpus.recording import read
-from tests.linuxcnc.module import LETTERS, Module, Pose, module_of
+from tests.linuxcnc.module import Module, Pose, module_of
 from tests.mechanisms import kinematics_of, named
 
 NAMES = [name for name in DIMENSIONS if name != "Kin_Tool"]
-MOST_POSES = 60
+REGULAR, MOST_POSES = 12, 40
+"""How many recorded poses are taken of those at the begin, which are regular, and about how many of the others."""
 Axes = list[float]
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -48,7 +49,9 @@ class Machine:
         elif self.words.orientation is Orientation.ANGLES:
             rotation = about(2, c) @ about(1, b) @ about(0, a)
         else:
-            rotation = about(2, c) if "C" in self.words.letters else np.eye(3)
+            is_down = self.robot.forward(axes)[0].rotation[2][2] < 0.0
+            turned = about(2, c) if "C" in self.words.letters else np.eye(3)
+            rotation = turned @ about(0, 180.0) if is_down else turned
         return softkin.Frame(tuple(position), np.asarray(rotation).tolist())
 
 
@@ -87,7 +90,7 @@ def recorded(name: str) -> tuple[Axes, ...]:
         if isinstance(axes, list) and len(axes) == len(named(name).joints) and all(_is_real(v) for v in axes):
             found.append([float(v) for v in axes])
     step = max(1, len(found) // MOST_POSES)
-    return tuple(found[::step])
+    return (*found[:REGULAR], *found[REGULAR::step])
 
 
 def _is_real(value: Any) -> bool:
@@ -117,8 +120,3 @@ def regular(machine: Machine, least: float = 0.05) -> Iterator[tuple[Axes, Pose]
 def differs(one: Axes, other: Axes) -> float:
     """The largest difference."""
     return max(abs(a - b) for a, b in zip(one, other, strict=True))
-
-
-def zero() -> Pose:
-    """The pose of zeros."""
-    return dict.fromkeys(LETTERS, 0.0)

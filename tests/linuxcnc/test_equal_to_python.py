@@ -80,7 +80,7 @@ def test_inverse(name: str) -> None:
         else:
             _assert_reached(machine, pose, joints)
             singular += 1
-    assert found >= 10
+    assert found >= 3 and found + singular >= 10
 
 
 def _inverse_of_python(machine: Machine, pose: Pose, axes: list[float], given: Any) -> list[float] | None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from jinja2 import Environment
 
-from derive.description.mechanism import Role
+from derive.description.mechanism import Role, Turning
 from derive.emit.c import package as c
 from derive.emit.c.description import inputs
 from derive.emit.c.layout import harmless, page
@@ -17,7 +17,7 @@ from derive.emit.c.printer import C, list_of, member, number, text
 from derive.emit.c.program import searches
 from derive.emit.language import GENERATED, Part, environment
 from derive.emit.linuxcnc.head import head_of
-from derive.emit.linuxcnc.words import LETTERS, Orientation, Words, turn_row, words_of
+from derive.emit.linuxcnc.words import LETTERS, Orientation, Words, flange_of, turn_row, words_of
 from derive.ir.constants import FREE_ANGLE, LARGEST, TIE
 from derive.kinematics.kinematics import Kinematics
 
@@ -138,6 +138,9 @@ def _known(kin: Kinematics, words: Words, module: str) -> dict[str, Any]:
         "turn_row": kin.rows.index("turn z") if "turn z" in kin.rows else -1,
         "carrier": words.carrier,
         "branches": len(kin.branches),
+        "flange": _flange(kin),
+        "begins_near": kin.forward_from is not None
+        or words.orientation in (Orientation.NEAREST, Orientation.ANGLES),
         "is_searched": any(searches(program) for program in kin.shared),
         "starts_forward": kin.forward_from is not None,
         "has_jacobian": _has_jacobian(kin, words),
@@ -148,12 +151,22 @@ def _known(kin: Kinematics, words: Words, module: str) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _of_constants(kin: Kinematics) -> C:
+    """Expressions in the constants of the machine."""
+    return C({o.name: f"machine.{member(o.name)}" for o in kin.setup.outputs})
+
+
 def _turn_factors(kin: Kinematics) -> list[str]:
     """What each joint adds to the angle about z, in degrees by its unit."""
-    printer = C({o.name: f"machine.{member(o.name)}" for o in kin.setup.outputs})
-    joints = kin.mechanism.joints
+    printer, joints = _of_constants(kin), kin.mechanism.joints
     entries = [printer.print(entry) if entry != 0 else "0.0" for entry in turn_row(kin)]
     return [one if j.in_degrees else f"({one})*SOFTKIN_RADIAN" for one, j in zip(entries, joints, strict=True)]
+
+
+def _flange(kin: Kinematics) -> str:
+    """The z of the z axis of a flange that stays along that axis."""
+    found = flange_of(kin) if kin.mechanism.task.turning is Turning.ABOUT_Z else None
+    return "" if found is None else _of_constants(kin).value(found, found)
 
 
 def _still(kin: Kinematics, words: Words) -> bool:

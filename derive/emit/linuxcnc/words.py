@@ -25,7 +25,7 @@ class Orientation(Enum):
     NONE = "none"
     """Nothing: the machine follows no commanded rotation."""
     COUNTED = "counted"
-    """C is the angle about Z, and counts full turns: it is a sum of axis values, and a constant."""
+    """C is the angle about Z of the x axis of the flange. It counts turns: a sum of axis values and a constant."""
     NEAREST = "nearest"
     """C is the angle about Z; its turn is the one nearest to the pose before."""
     AXES = "axes"
@@ -79,11 +79,22 @@ def _orientation(kin: Kinematics, turning: Sequence[Joint]) -> Orientation:
     kind = kin.mechanism.task.turning
     if kind is Turning.NONE:
         return Orientation.NONE
-    if kind is Turning.ABOUT_Z:
+    if kind is Turning.ABOUT_Z and flange_of(kin) is not None:
         return Orientation.COUNTED if _turns_are_constant(kin) else Orientation.NEAREST
     if kind is Turning.DIRECTION and len(turning) == 2 and _others_are_straight(kin, turning):
         return Orientation.AXES
     return Orientation.ANGLES
+
+
+def flange_of(kin: Kinematics) -> sp.Expr | None:
+    """1 where the z axis of the flange is that of the machine, -1 where it looks down, or the constant that says which
+    of both; None where it is not along that axis.
+    """
+    entries = {o.name: o.value for o in kin.forward.outputs}
+    is_along = all(entries[name] == 0 for name in ("r13", "r23", "r31", "r32"))
+    found = sp.sympify(entries["r33"])
+    constants = {o.name for o in kin.setup.outputs}
+    return found if is_along and all(s.name in constants for s in symbols_of(found)) else None
 
 
 def _turning_axes(kin: Kinematics) -> list[Joint]:
