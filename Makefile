@@ -54,7 +54,7 @@ bench: $(READY) $(BENCH)/ready
 	PYTHONPATH=generated/python $(RUN) -m bench.blocks
 	PYTHONPATH=generated/python $(BENCH)/bin/python -m bench
 
-# The real LinuxCNC runs the modules of five machines, as docs/LINUXCNC.md says; it needs root on Debian 12, and installs nothing.
+# The real LinuxCNC runs the modules of six machines, as docs/LINUXCNC.md says; it needs root on Debian 12, and installs nothing.
 # IF_POSSIBLE=1: where it cannot run it says so in one line, and that is no failure.
 IF_POSSIBLE ?=
 prove-linuxcnc: $(READY)

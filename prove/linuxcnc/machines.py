@@ -1,4 +1,4 @@
-"""Five machines, what each is asked to do in LinuxCNC, and where it has to refuse."""
+"""Six machines, what each is asked to do in LinuxCNC, and where it has to refuse."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Machine:
     """The letters that it moves in."""
     first: Stand
     second: Stand
-    """In another configuration."""
+    """In another configuration, where there is one."""
     unreachable: Pose
     """The end of a line that it has to refuse, from where the second program ends."""
     through: tuple[Pose, Pose] | None = None
@@ -178,4 +178,36 @@ TRUNNION = Machine(
     ),
     unreachable={"A": -130.0},
 )
-MACHINES = (SCARA, DELTA, FIVE_BAR, SIX_AXES, TRUNNION)
+HEXAPOD = Machine(
+    says="hexapod",
+    mechanism="Kin_Hexapod",
+    sizes={
+        **{
+            f"{side}_{number}_{letter}": value
+            for side, points in (
+                ("base", ((338, -91), (338, 91), (-90, 338), (-248, 247), (-248, -247), (-90, -338))),
+                ("platform", ((142, -141), (142, 141), (52, 193), (-193, 52), (-193, -52), (52, -193))),
+            )
+            for number, point in enumerate(points, 1)
+            for letter, value in zip("xy", point, strict=True)
+        },
+        "home_z": 600.0,
+    },
+    letters="XYZABC",
+    linear=(0, 1, 2, 3, 4, 5),
+    limits={f"L{number}": (450.0, 850.0) for number in range(1, 7)},
+    first=Stand(
+        (630.0, 640.0, 635.0, 625.0, 632.0, 638.0),
+        (
+            g0(x=40, y=-30, z=620, a=5, b=-4, c=3),
+            g1(x=-50, y=40, z=580, a=-8, b=6, c=-5),
+            g2(40, -30, x=20, y=50, z=600, a=0, b=10, c=8),
+        ),
+    ),
+    second=Stand(
+        (650.0, 600.0, 640.0, 660.0, 610.0, 620.0),
+        (g1(x=30, y=40, z=560, a=4, b=-6, c=10), g2(-30, -40, x=0, y=-50, c=-6), g0(x=0, y=-20, z=640, a=-3, b=3)),
+    ),
+    unreachable={"Z": 1000.0},
+)
+MACHINES = (SCARA, DELTA, FIVE_BAR, SIX_AXES, TRUNNION, HEXAPOD)

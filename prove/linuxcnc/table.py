@@ -31,5 +31,7 @@ def _cells(verdict: Verdict) -> tuple[str, ...]:
     )
 
 
-def _yes(is_so: bool) -> str:
+def _yes(is_so: bool | None) -> str:
+    if is_so is None:
+        return "has one"
     return "yes" if is_so else "NO"

@@ -43,7 +43,8 @@ class Verdict:
     """Greatest difference of a pose from the package's forward kinematics, where joints were moved one by one."""
     off_the_way: float
     """How far the motors left the programmed way."""
-    elbow_kept: bool
+    elbow_kept: bool | None
+    """None where there is but one configuration."""
     refused: bool
     seconds: float
     faults: tuple[str, ...]
@@ -77,9 +78,10 @@ def verdict(twin: Twin, record: Record) -> Verdict:
         *left,
         *reached,
     ]
+    kept = not left if twin.robot.BRANCHES else None
     samples = sum(len(_in_program(stage)) for stage, _ in programs)
     return Verdict(
-        says, samples, max(joints), poses, max(ways), not left, not reached, record.seconds, tuple(faults)
+        says, samples, max(joints), poses, max(ways), kept, not reached, record.seconds, tuple(faults)
     )  # fmt: skip
 
 
@@ -128,7 +130,7 @@ def _leaving(twin: Twin, programs: Iterable[tuple[Stage, Stand]]) -> Findings:
     for stage, stand in programs:
         if twin.leaves_branches(stage, stand):
             yield f"the configuration changes in the {stage.name} program"
-    if twin.branches(twin.machine.first) == twin.branches(twin.machine.second):
+    if twin.robot.BRANCHES and twin.branches(twin.machine.first) == twin.branches(twin.machine.second):
         yield "both programs are in the same configuration"
 
 

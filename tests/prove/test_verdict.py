@@ -16,6 +16,7 @@ from prove.linuxcnc.twin import Twin
 from prove.linuxcnc.verdict import ALIKE, verdict
 from tests.prove.pretended import ROWS, answers, pretended, stage
 
+CHOSEN = [machine.mechanism for machine in MACHINES if Twin(machine).robot.BRANCHES]
 NAMED = {machine.mechanism: machine for machine in MACHINES}
 
 
@@ -32,10 +33,10 @@ def changed(record: Record, name: str, change: Callable[[Stage], Stage]) -> Reco
 
 @pytest.mark.parametrize("machine", NAMED)
 def test_a_faultless_record_is_proven(machine: str) -> None:
-    """Each of the five machines reaches all that it is asked for, and the verdict says so."""
+    """Each of the machines reaches all that it is asked for, and the verdict says so."""
     found = verdict(Twin(NAMED[machine]), faultless(machine))
     assert found.faults == ()
-    assert found.elbow_kept and found.refused
+    assert found.elbow_kept is not False and found.refused
     assert found.joints <= ALIKE and found.poses <= ALIKE
     assert found.samples >= 1000
 
@@ -85,7 +86,7 @@ def test_a_pose_of_the_wrong_sign_is_found(machine: str) -> None:
         assert any(fault.startswith("a pose differs") for fault in found.faults), column
 
 
-@pytest.mark.parametrize("machine", NAMED)
+@pytest.mark.parametrize("machine", CHOSEN)
 def test_another_configuration_is_found(machine: str) -> None:
     """Both programs in the configuration of the other one."""
     record, twin = faultless(machine), Twin(NAMED[machine])
@@ -190,7 +191,7 @@ def test_a_pose_is_its_frame(machine: str) -> None:
 def test_a_machine_says_where_it_cannot_go() -> None:
     """Every machine is asked for two configurations, and G0, G1 and G2 in each."""
     machines: tuple[Machine, ...] = MACHINES
-    assert len(machines) == 5
+    assert len(machines) == 6 and len(CHOSEN) == 5
     for machine in machines:
         for stand in (machine.first, machine.second):
             assert {move.code for move in stand.program} == {"G0", "G1", "G2"}
