@@ -34,6 +34,10 @@ PACKAGES = (
 COMMANDS = ("unshare", "mount", "gcc", "make", "apt-get", "apt-cache", "dpkg-deb", "dpkg-query")
 """What this computer brings itself."""
 
+_OPTIONS = ("APT::Sandbox::User=root", "Acquire::Retries=1", "Acquire::http::Timeout=20", "Acquire::https::Timeout=20")
+_PATIENCE = 180.0
+"""Seconds that a download may take."""
+
 
 class CannotRun(Exception):
     """The proof cannot be run here: the reason, in one sentence."""
@@ -104,21 +108,27 @@ def _is_installed(package: str) -> bool:
 def _downloaded(packages: Sequence[str], folder: Path) -> list[Path]:
     """The archives of these packages; the lists of packages are read again, beside it, where they are old."""
     folder.mkdir()
-    command = ["apt-get", "--quiet", "--option=APT::Sandbox::User=root", "--option=Acquire::Retries=2"]
-    first = subprocess.run([*command, "download", *packages], cwd=folder, check=False, capture_output=True, text=True)
-    if first.returncode != 0:
+    command = ["apt-get", "--quiet", *(f"--option={option}" for option in _OPTIONS)]
+    try:
+        _run([*command, "download", *packages], "", folder)
+    except CannotRun:
         lists = folder.parent / "lists"
         (lists / "partial").mkdir(parents=True)
         command += [f"--option=Dir::State::Lists={lists}", f"--option=Dir::Cache={folder.parent / 'cache'}"]
         said = "the packages of LinuxCNC cannot be downloaded"
         _run([*command, "update"], said)
         _run([*command, "download", *packages], said, folder)
+        shutil.rmtree(lists)
     return sorted(folder.glob("*.deb"))
 
 
 def _run(command: Sequence[str], said: str, folder: Path | None = None) -> None:
-    """Run it; raise `CannotRun` with these words, and the last line of its own, where it fails."""
-    done = subprocess.run(command, cwd=folder, check=False, capture_output=True, text=True)
+    """Run it; raise `CannotRun` with these words, and its own first error, where it fails."""
+    try:
+        done = subprocess.run(command, cwd=folder, check=False, capture_output=True, text=True, timeout=_PATIENCE)
+    except subprocess.TimeoutExpired:
+        raise CannotRun(f"{said}: it took more than {_PATIENCE:g} s") from None
     if done.returncode != 0:
-        words = (done.stderr.strip() or done.stdout.strip()).splitlines()
-        raise CannotRun(f"{said}: {words[-1] if words else 'no reason given'}")
+        words = [line.strip() for line in (*done.stderr.splitlines(), *done.stdout.splitlines()) if line.strip()]
+        errors = [line for line in words if line.startswith("E:")]
+        raise CannotRun(f"{said}: {[*errors, *words, 'no reason given'][0].removeprefix('E: ')}")
