@@ -20,6 +20,8 @@ import linuxcnc
 
 PATIENCE = 20.0
 """Seconds that one step may take."""
+JOG, JOG_SPEED = 3.0, 15.0
+"""Millimetres or degrees, and as many a second."""
 TYPE = "motion.switchkins-type"
 """The pin that chooses between the kinematics and identity."""
 NEAR = 1e-4
@@ -76,7 +78,7 @@ class Driver:
             time.sleep(0.005)
         raise TimeoutError(f"LinuxCNC did not come to this: {what}; it says {self.said()}")
 
-    def seen(self) -> dict[str, object]:
+    def seen(self) -> dict[str, Any]:
         """What the status says now."""
         self.state.poll()
         return {
@@ -130,6 +132,19 @@ class Driver:
         self.command.wait_complete(PATIENCE)
         self.rest()
 
+    def jog(self, letters: list[int]) -> None:
+        """Each of these coordinates of the pose, all at once."""
+        self.mode(linuxcnc.MODE_MANUAL)
+        self.command.teleop_enable(1)
+        self.until(lambda state: state.motion_mode == linuxcnc.TRAJ_MODE_TELEOP, "in the world's coordinates")
+        before = self.seen()["pose"]
+        for letter in letters:
+            self.command.jog(linuxcnc.JOG_INCREMENT, False, letter, JOG_SPEED, JOG)
+        self.until(
+            lambda state: all(abs(state.position[letter] - before[letter] - JOG) < NEAR for letter in letters), "jogged"
+        )
+        self.rest()
+
     def bring(self, joints: list[float], slowest: float) -> None:
         """Each joint by itself, all within the same seconds, to these values."""
         self.mode(linuxcnc.MODE_MANUAL)
@@ -179,6 +194,7 @@ def main() -> None:
         stage("first", lambda: driver.run("first.ngc"))
         stage("bring", lambda: driver.bring(plan["second"], 200.0))
         stage("second", lambda: driver.run("second.ngc"))
+        stage("jog", lambda: driver.jog(plan["jog"]))
         stage("unreachable", lambda: driver.line(plan["unreachable"]))
         stage("behind it", lambda: driver.line(plan["back"]))
         pin, good, wrong = plan["parameter"]

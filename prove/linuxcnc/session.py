@@ -41,7 +41,9 @@ class Stage:
     poses: Reals
     """What LinuxCNC asked the kinematics for (N, 6)."""
     in_program: NDArray[np.bool_]
-    """Whether a program moved (N,), else joint by joint."""
+    """Whether a program moves (N,)."""
+    in_world: NDArray[np.bool_]
+    """Whether the pose is jogged (N,): else, and without a program, joints are jogged one by one."""
     before: Mapping[str, Any]
     after: Mapping[str, Any]
     said: list[str]
@@ -98,8 +100,9 @@ def _plan(machine: Machine, module: Module) -> dict[str, object]:
     parameter, value = next(iter(machine.sizes.items()))
     return {
         "joints": len(machine.first.joints),
-        "kinds": "f" * (len(settings.sampled(machine)) - 1) + "b",
+        "kinds": settings.kinds(machine),
         "second": machine.second.joints,
+        "jog": ["XYZABC".index(letter) for letter in machine.letters],
         "unreachable": _line(machine.unreachable),
         "back": _line({letter: value + (BESIDE if letter in "XY" else 0.0) for letter, value in end.items()}),
         "on": _line(end),
@@ -124,8 +127,10 @@ def _record(machine: Machine, work: Path, seconds: float) -> Record:
     stages = {}
     for stage in said["stages"]:
         part = slice(*stage["rows"])
+        coarse, motors = rows[part, :joints], rows[part, joints : 2 * joints]
+        in_program, in_world = rows[part, -2] > 0.5, rows[part, -1] > 0.5
         stages[stage["name"]] = Stage(
-            stage["name"], rows[part, :joints], rows[part, joints : 2 * joints], poses[part], rows[part, -1] > 0.5,
-            stage["before"], stage["after"], stage["said"],
+            stage["name"], coarse, motors, poses[part], in_program, in_world, stage["before"], stage["after"],
+            stage["said"],
         )  # fmt: skip
     return Record(stages, said.get("error", ""), said["lost"], seconds)

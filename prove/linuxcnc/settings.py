@@ -64,14 +64,20 @@ def _range(speed: tuple[float, float]) -> dict[str, object]:
 
 
 def sampled(machine: Machine) -> list[str]:
-    """The pins whose values are recorded every period, in this order; the last one is true in a program's motion."""
+    """The pins whose values are recorded every period, in this order; the last two say what moves the machine."""
     joints = range(len(machine.first.joints))
     return [
         *(f"joint.{joint}.coarse-pos-cmd" for joint in joints),
         *(f"joint.{joint}.pos-cmd" for joint in joints),
         *(f"axis.{letter.lower()}.pos-cmd" for letter in machine.letters),
         "motion.coord-mode",
+        "motion.teleop-mode",
     ]
+
+
+def kinds(machine: Machine) -> str:
+    """What each of these pins holds: f a number, b yes or no."""
+    return "f" * (len(sampled(machine)) - 2) + "bb"
 
 
 def hal(machine: Machine, sizes: Sequence[str]) -> str:
@@ -80,7 +86,7 @@ def hal(machine: Machine, sizes: Sequence[str]) -> str:
     lines = [
         "loadrt [KINS]KINEMATICS",
         "loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS",
-        f"loadrt sampler depth=20000 cfg={'f' * (len(pins) - 1)}b",
+        f"loadrt sampler depth=20000 cfg={kinds(machine)}",
         *sizes,
         "addf motion-command-handler servo-thread",
         "addf motion-controller servo-thread",

@@ -71,6 +71,7 @@ def verdict(twin: Twin, record: Record) -> Verdict:
         *_above(poses, ALIKE, "a pose differs"),
         *_above(max(ways), ON_THE_WAY, "the motors leave the programmed way"),
         *_above(max(ends), ON_THE_WAY, "the end of a line is missed"),
+        *_ill_jogged(twin, stages["jog"]),
         *_spoilt(twin, stages),
         *_not_identical(twin, stages["identity"], BESIDE),
         *_not_identical(twin, stages["identity back"], -BESIDE),
@@ -113,7 +114,7 @@ def _changes(stage: Stage) -> NDArray[np.bool_]:
 
 def _one_by_one(stage: Stage) -> Rows:
     """The rows in which joints move one by one."""
-    return np.flatnonzero(~stage.in_program[1:] & _changes(stage)) + 1
+    return np.flatnonzero(~(stage.in_program | stage.in_world)[1:] & _changes(stage)) + 1
 
 
 def _incomplete(stage: Stage) -> Findings:
@@ -146,6 +147,15 @@ def _reaching(twin: Twin, stages: Mapping[str, Stage]) -> Findings:
     yield from _stuck(stages["behind it"])
     if twin.machine.through is not None:
         yield from _not_stopped(stages)
+
+
+def _ill_jogged(twin: Twin, stage: Stage) -> Findings:
+    """What says that joints do not follow where the pose is jogged."""
+    rows = np.flatnonzero(stage.in_world[1:] & _changes(stage)) + 1
+    differs, refusals = twin.inverse_differs(stage, twin.machine.second, rows)
+    yield from _above(differs, ALIKE, "the pose is jogged: a joint differs")
+    yield from _bad(refusals, "poses are refused by the package where the pose is jogged")
+    yield from _stuck(stage)
 
 
 def _spoilt(twin: Twin, stages: Mapping[str, Stage]) -> Findings:

@@ -16,18 +16,20 @@ from prove.linuxcnc.verdict import REFUSED, STOPPED
 
 ROWS = 200
 """Rows of a line."""
+JOG = 3.0
 JOGGED = 400
 """Rows of a way from one configuration to the other."""
 
 
-def stage(name: str, joints: Reals, poses: Reals, *said: str, in_program: bool = True, on: bool = True) -> Stage:
+def stage(name: str, joints: Reals, poses: Reals, *said: str, moves: str = "program", on: bool = True) -> Stage:
     """A stage whose motors follow at once."""
 
     def status(row: int) -> Mapping[str, Any]:
         seen = {"joints": joints[row].tolist(), "pose": poses[row].tolist(), "on": on, "homed": True}
         return {**seen, "parameters refused": False}
 
-    return Stage(name, joints, joints, poses, np.full(len(joints), in_program), status(0), status(-1), list(said))
+    in_program, in_world = (np.full(len(joints), moves == by) for by in ("program", "world"))
+    return Stage(name, joints, joints, poses, in_program, in_world, status(0), status(-1), list(said))
 
 
 def answers(twin: Twin, stand: Stand, poses: Reals, near: Reals) -> Reals:
@@ -56,7 +58,7 @@ def brought(twin: Twin, begin: Stage) -> Stage:
     one, other = begin.joints[-1], np.array(twin.machine.second.joints)
     joints = one + np.linspace(0.0, 1.0, JOGGED)[:, None] * (other - one)
     poses = np.array([twin.pose(row) for row in joints])
-    return stage("bring", joints, np.concatenate([poses[:1], poses[:-1]]), in_program=False)
+    return stage("bring", joints, np.concatenate([poses[:1], poses[:-1]]), moves="joints")
 
 
 def line(twin: Twin, name: str, begin: Stage, to: Pose, *said: str, on: bool = True) -> Stage:
@@ -64,6 +66,12 @@ def line(twin: Twin, name: str, begin: Stage, to: Pose, *said: str, on: bool = T
     way = Segment(begin.poses[-1], filled(begin.poses[-1], to)).at(np.linspace(0.0, 1.0, 10 * ROWS))
     joints = answers(twin, twin.machine.second, way, begin.joints[-1])
     return stage(name, joints, way[: len(joints)], *said, on=on)
+
+
+def jogged(twin: Twin, begin: Stage) -> Stage:
+    """Some millimetres in X by hand."""
+    there = line(twin, "jog", begin, {"X": begin.poses[-1, 0] + JOG})
+    return stage("jog", there.joints, there.poses, moves="world")
 
 
 def refused(name: str, begin: Stage) -> Stage:
@@ -90,7 +98,8 @@ def pretended(machine: Machine) -> Record:
     """What the proof would record if all were right."""
     twin = Twin(machine)
     first, second = ran(twin, "first", machine.first), ran(twin, "second", machine.second)
-    asked = refused("unreachable", second)
+    by_hand = jogged(twin, second)
+    asked = refused("unreachable", by_hand)
     end, beside = ({"X": asked.poses[-1, 0] + by} for by in (0.0, BESIDE))
     behind = line(twin, "behind it", asked, beside)
     wrong = told(line(twin, "wrong parameter", behind, end))
@@ -101,6 +110,7 @@ def pretended(machine: Machine) -> Record:
         first,
         brought(twin, first),
         second,
+        by_hand,
         asked,
         behind,
         wrong,

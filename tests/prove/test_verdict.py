@@ -131,6 +131,8 @@ PLANTED: dict[str, tuple[str, Callable[[Stage], Stage], str]] = {
     "a program with a complaint": ("first", lambda was: replace(was, said=["following error"]), "following error"),
     "a joint that jumps": ("second", lambda was: replace(was, joints=was.joints * 9.0), "program: a joint jumps"),
     "motors beside the way": ("first", _leaving, "the motors leave the programmed way"),
+    "jogged elsewhere": ("jog", lambda was: replace(was, poses=was.poses + 1e-3), "is jogged: a joint differs"),
+    "not jogged": ("jog", lambda was: replace(was, in_world=was.in_program), "the pose is jogged: a joint differs"),
     "not refused": ("unreachable", lambda was: replace(was, said=[]), "is not refused"),
     "moved": ("unreachable", _moving, "the machine moves"),
     "switched off": (
