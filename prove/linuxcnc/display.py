@@ -20,6 +20,8 @@ import linuxcnc
 
 PATIENCE = 20.0
 """Seconds that one step may take."""
+BRING_SPEED = 200.0
+"""Of the fastest joint, in its unit a second."""
 JOG, JOG_SPEED = 3.0, 15.0
 """Millimetres or degrees, and as many a second."""
 TYPE = "motion.switchkins-type"
@@ -37,7 +39,7 @@ class Sampler:
         self.stream = hal.stream(self.component, hal.sampler_base, kinds)
         self.rows, self.values = 0, array.array("d")
         self._runs = True
-        self._thread = threading.Thread(target=self._read)
+        self._thread = threading.Thread(target=self._read, daemon=True)
         self._thread.start()
 
     def _read(self) -> None:
@@ -171,53 +173,75 @@ def give(pin: str, value: str) -> None:
     time.sleep(0.05)
 
 
-def main() -> None:
-    """Do the plan."""
-    began = time.monotonic()
-    plan = json.loads(Path("plan.json").read_text(encoding="utf-8"))
-    driver, sampler = Driver(plan["joints"]), Sampler(plan["kinds"])
-    record: dict[str, Any] = {"stages": []}
+class Recorder:
+    """Does one thing after the other, and notes what the machine said of itself before and behind each."""
 
-    def stage(name: str, act: Callable[[], None]) -> None:
-        first, before = sampler.rows, driver.seen()
-        act()
+    def __init__(self, driver: Driver, sampler: Sampler) -> None:
+        self.driver, self.sampler = driver, sampler
+        self.stages: list[dict[str, object]] = []
+
+    def stage(self, name: str, act: Callable[..., None], *given: Any) -> None:
+        """Do this, and call it so."""
+        first, before = self.sampler.rows, self.driver.seen()
+        act(*given)
         time.sleep(0.05)
-        record["stages"].append(
-            {"name": name, "rows": [first, sampler.rows], "before": before, "after": driver.seen(),
-             "said": driver.said()}
+        self.stages.append(
+            {"name": name, "rows": [first, self.sampler.rows], "before": before, "after": self.driver.seen(),
+             "said": self.driver.said()}
         )  # fmt: skip
 
-    try:
-        driver.switch_on()
-        stage("home", driver.home)
+    def move(self, plan: dict[str, Any]) -> None:
+        """Home, the two programs with a way between them, and a way by hand."""
+        self.driver.switch_on()
+        self.stage("home", self.driver.home)
         hal.set_p("sampler.0.enable", "1")
-        stage("first", lambda: driver.run("first.ngc"))
-        stage("bring", lambda: driver.bring(plan["second"], 200.0))
-        stage("second", lambda: driver.run("second.ngc"))
-        stage("jog", lambda: driver.jog(plan["jog"]))
-        stage("unreachable", lambda: driver.line(plan["unreachable"]))
-        stage("behind it", lambda: driver.line(plan["back"]))
+        self.stage("first", self.driver.run, "first.ngc")
+        self.stage("bring", self.driver.bring, plan["second"], BRING_SPEED)
+        self.stage("second", self.driver.run, "second.ngc")
+        self.stage("jog", self.driver.jog, plan["jog"])
+
+    def refuse(self, plan: dict[str, Any]) -> None:
+        """An end that cannot be reached, a parameter that is not allowed."""
         pin, good, wrong = plan["parameter"]
+        self.stage("unreachable", self.driver.line, plan["unreachable"])
+        self.stage("behind it", self.driver.line, plan["back"])
         give(pin, wrong)
-        stage("wrong parameter", lambda: driver.line(plan["on"]))
+        self.stage("wrong parameter", self.driver.line, plan["on"])
         give(pin, good)
-        stage("right parameter", lambda: driver.line(plan["back"]))
-        give(TYPE, "1")
+        self.stage("right parameter", self.driver.line, plan["back"])
+
+    def switch(self, plan: dict[str, Any]) -> None:
+        """Identity, and the kinematics again."""
         there, home = plan["identity"]
-        stage("identity", lambda: driver.line(there))
-        stage("identity back", lambda: driver.line(home))
+        give(TYPE, "1")
+        self.stage("identity", self.driver.line, there)
+        self.stage("identity back", self.driver.line, home)
         give(TYPE, "0")
-        stage("kinematics again", lambda: driver.line(plan["on"]))
+        self.stage("kinematics again", self.driver.line, plan["on"])
+
+    def leave(self, beside: str, beyond: str) -> None:
+        """A line that leaves the workspace halfway, and a way back."""
+        self.stage("beside", self.driver.line, beside)
+        self.stage("through", self.driver.line, beyond)
+        self.stage("on again", self.driver.switch_on)
+        self.stage("behind that", self.driver.line, beside)
+
+
+def main() -> None:
+    """Do the plan."""
+    plan = json.loads(Path("plan.json").read_text(encoding="utf-8"))
+    sampler = Sampler(plan["kinds"])
+    recorder = Recorder(Driver(plan["joints"]), sampler)
+    fault = ""
+    try:
+        recorder.move(plan)
+        recorder.refuse(plan)
+        recorder.switch(plan)
         if plan["through"]:
-            beside, beyond = plan["through"]
-            stage("beside", lambda: driver.line(beside))
-            stage("through", lambda: driver.line(beyond))
-            stage("on again", driver.switch_on)
-            stage("behind that", lambda: driver.line(beside))
+            recorder.leave(*plan["through"])
     except TimeoutError as error:
-        record["error"] = str(error)
-    record["lost"] = sampler.end()
-    record["seconds"] = time.monotonic() - began
+        fault = str(error)
+    record = {"stages": recorder.stages, "fault": fault, "lost": sampler.end()}
     Path("samples.bin").write_bytes(sampler.values.tobytes())
     Path("record.json").write_text(json.dumps(record), encoding="utf-8")
 

@@ -3,10 +3,12 @@
 # /usr and /etc have what ROOT holds as well, and what is written there is gone afterwards; WORK is /mnt/work. Nothing of this is
 # seen outside: not the mounts, not the shared memory, not the processes, and no port is open.
 set -e
+exec 3< "$1" 4< "$2" # they may lie below what is mounted over
 mount -t tmpfs tmpfs /mnt
 mkdir /mnt/root /mnt/work /mnt/tmp /mnt/home /mnt/usr /mnt/usr.work /mnt/etc /mnt/etc.work
-mount --bind "$1" /mnt/root
-mount --bind "$2" /mnt/work
+mount --bind /proc/$$/fd/3 /mnt/root
+mount --bind /proc/$$/fd/4 /mnt/work
+exec 3<&- 4<&-
 for part in usr etc; do
   mount -t overlay overlay -o "lowerdir=/mnt/root/$part:/$part,upperdir=/mnt/$part,workdir=/mnt/$part.work" "/$part"
 done

@@ -133,4 +133,4 @@ def _record(machine: Machine, work: Path, seconds: float) -> Record:
             stage["name"], coarse, motors, poses[part], in_program, in_world, stage["before"], stage["after"],
             stage["said"],
         )  # fmt: skip
-    return Record(stages, said.get("error", ""), said["lost"], seconds)
+    return Record(stages, said["fault"], said["lost"], seconds)

@@ -39,24 +39,27 @@ def ini(machine: Machine, module: str, home: Mapping[str, float]) -> str:
         },
         "KINS": {"KINEMATICS": module, "JOINTS": len(machine.first.joints)},
     }
-    for letter in machine.letters:
-        sections[f"AXIS_{letter}"] = _range(_LINEAR if letter in "XYZ" else _ANGULAR)
-    for number, value in enumerate(machine.first.joints):
-        linear = number in machine.linear
-        sections[f"JOINT_{number}"] = {
-            "TYPE": "LINEAR" if linear else "ANGULAR",
-            "HOME": value,
-            "HOME_OFFSET": value,
-            "HOME_SEQUENCE": 0,
-            "FERROR": _FOLLOWING,
-            "MIN_FERROR": _FOLLOWING,
-            **_range(_LINEAR if linear else _ANGULAR),
-        }
+    sections |= {f"AXIS_{letter}": _range(_LINEAR if letter in "XYZ" else _ANGULAR) for letter in machine.letters}
+    sections |= {f"JOINT_{number}": _joint(machine, number) for number in range(len(machine.first.joints))}
     return "\n".join(
         line
         for section, entries in sections.items()
         for line in (f"[{section}]", *(f"{name} = {value}" for name, value in entries.items()), "")
     )
+
+
+def _joint(machine: Machine, number: int) -> dict[str, object]:
+    """A joint that is where it homes as soon as it is told to."""
+    linear, value = number in machine.linear, machine.first.joints[number]
+    return {
+        "TYPE": "LINEAR" if linear else "ANGULAR",
+        "HOME": value,
+        "HOME_OFFSET": value,
+        "HOME_SEQUENCE": 0,
+        "FERROR": _FOLLOWING,
+        "MIN_FERROR": _FOLLOWING,
+        **_range(_LINEAR if linear else _ANGULAR),
+    }
 
 
 def _range(speed: tuple[float, float]) -> dict[str, object]:

@@ -99,3 +99,17 @@ echo 'E: 404' >&2; exit 100""",
     assert all(f"Dir::State::Lists={tmp_path}" in line for line in said[1:])
     assert unpacked(tmp_path / "linuxcnc") == found
     assert log.read_text(encoding="utf-8").splitlines() == said
+
+
+def test_a_room_that_cannot_be_made_is_a_reason(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Where a mount is refused, or a library is missing, the proof did not run: it did not fail."""
+    every = dict.fromkeys((name.replace("-", "_") for name in packages.COMMANDS), "true")
+    room = "case \"$*\" in *room.sh*) echo 'mount: /usr: wrong fs type.'; exit 32 ;; esac"
+    apt = 'case "$*" in *download*) : > linuxcnc-uspace_2.9.1_amd64.deb ;; esac'
+    _debian(tmp_path, monkeypatch, **{**every, "unshare": room, "apt_get": apt, "dpkg_query": "exit 1"})
+    assert main(["--folder", str(tmp_path / "build")]) == CANNOT
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "LinuxCNC is not complete in its room: mount: /usr: wrong fs type" in said
