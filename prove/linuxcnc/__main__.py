@@ -29,7 +29,7 @@ AT_ONCE = 3
 def main(arguments: list[str]) -> int:
     """Run it, and print the table."""
     parser = argparse.ArgumentParser(prog="prove.linuxcnc", description=__doc__)
-    parser.add_argument("--folder", type=Path, default=Path("build/linuxcnc-2.9"), help="where LinuxCNC is unpacked")
+    parser.add_argument("--folder", type=Path, default=Path(".linuxcnc"), help="where LinuxCNC is unpacked")
     parser.add_argument("--if-possible", action="store_true", help="end with 0 where it cannot be run")
     parser.add_argument("--only", nargs="*", default=[], metavar="NAME", help="these mechanisms alone")
     asked = parser.parse_args(arguments)
@@ -39,7 +39,7 @@ def main(arguments: list[str]) -> int:
         linuxcnc = unpacked(folder / "linuxcnc")
         require_room(linuxcnc, folder / "work")
     except CannotRun as reason:
-        print(f"The proof on LinuxCNC did not run: {reason}.", file=sys.stderr)
+        print(f"The proof on LinuxCNC did not run: {str(reason).rstrip('.')}.", file=sys.stderr)
         return 0 if asked.if_possible else CANNOT
     machines = [machine for machine in MACHINES if not asked.only or machine.mechanism in asked.only]
     try:
