@@ -151,7 +151,7 @@ def _known(kin: Kinematics, words: Words, module: str) -> dict[str, Any]:
         "starts_forward": kin.forward_from is not None,
         "has_jacobian": _has_jacobian(kin, words),
         "parameters": [
-            {"pin": text(pins[p.name]), "name": pins[p.name], "is_flag": "true" if p.role is Role.FLAG else "false"}
+            {"pin": text(f"softkin.{pins[p.name]}"), "is_flag": "true" if p.role is Role.FLAG else "false"}
             for p in kin.parameters
         ],
     }  # fmt: skip
