@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any
 
@@ -63,14 +63,20 @@ def module_name(module: str) -> str:
 
 def pin_names(kin: Kinematics) -> dict[str, str]:
     """What the pin of each parameter is called behind `softkin.`: the name inside the derivation → the name."""
-    found: dict[str, str] = {}
-    for parameter, given in inputs(kin).names.items():
-        wish = given.replace("_", "-").strip("-")
+    given = inputs(kin).names
+    return dict(zip(given, short_names(given.values()), strict=True))
+
+
+def short_names(names: Iterable[str]) -> list[str]:
+    """Names as the HAL has them, none longer than a pin may have, and no two alike."""
+    found: list[str] = []
+    for name in names:
+        wish = name.replace("_", "-").strip("-")
         short, count = wish[:_LONGEST], 1
-        while short in found.values():
+        while short in found:
             count += 1
             short = f"{wish[: _LONGEST - 4]}-{count}"
-        found[parameter] = short
+        found.append(short)
     return found
 
 
@@ -145,7 +151,7 @@ def _known(kin: Kinematics, words: Words, module: str) -> dict[str, Any]:
         "starts_forward": kin.forward_from is not None,
         "has_jacobian": _has_jacobian(kin, words),
         "parameters": [
-            {"pin": text(pins[p.name]), "name": pins[p.name], "is_flag": "true" if p.role is Role.FLAG else "false"}
+            {"pin": text(f"softkin.{pins[p.name]}"), "is_flag": "true" if p.role is Role.FLAG else "false"}
             for p in kin.parameters
         ],
     }  # fmt: skip
