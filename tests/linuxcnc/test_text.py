@@ -42,7 +42,7 @@ def test_one_source(name: str) -> None:
     assert all(macro in gone or macro.startswith(guards) for macro in own)
     pins = re.findall(r'"(softkin\.[^"]*|kinstype[^"]*)"', text)
     assert len(pins) == len(set(pins)) >= 8 and max(map(len, pins)) <= 47
-    assert ("roots of a trial" in text) == _is_searched(name)
+    assert ("double SHIFTS[]" in text) == _is_searched(name)
 
 
 def _is_searched(name: str) -> bool:
