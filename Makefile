@@ -58,7 +58,7 @@ bench: $(READY) $(BENCH)/ready
 # IF_POSSIBLE=1: where it cannot run it says so in one line, and that is no failure.
 IF_POSSIBLE ?=
 prove-linuxcnc: $(READY)
-	PYTHONPATH=generated/python $(RUN) -m prove.linuxcnc $(if $(IF_POSSIBLE),--if-possible)
+	PYTHONPATH=generated/python $(RUN) -m prove.linuxcnc $(if $(IF_POSSIBLE),--if-possible) $(if $(FRESH),--fresh)
 
 $(BENCH)/ready: bench/requirements.txt
 	$(PYTHON) -m venv $(BENCH)
