@@ -43,7 +43,7 @@ _LANGUAGES = {
 _BOUNDS = {
     StructuredTextFiles.name: "no block: it has {axes} axes, and SoftMotion knows six",
     c.name: f"no C: its calls hold {c.MOST_AXES} axes and {c.MOST_BRANCHES} branches",
-    linuxcnc.name: f"no module for LinuxCNC: it has {{axes}} axes, and a pose there has 1 to {linuxcnc.MOST_AXES}",
+    linuxcnc.name: f"no module for LinuxCNC: it has {{axes}} axes, a pose there 1 to {linuxcnc.MOST_AXES}, or no C",
 }
 """Why a language does not hold a machine."""
 Told = Callable[[str, str], None]

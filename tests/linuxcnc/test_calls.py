@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from derive.description.mechanism import Turning
 from derive.emit.c.description import inputs
 from derive.emit.linuxcnc import package
 from tests.linuxcnc.machine import NAMES, Machine, about, differs, machine_of, recorded
@@ -22,6 +23,8 @@ SCARA, ARM, TRUNNION = "Kin_Scara4_ZCcoupled_Type1", "Kin_ArticulatedRobot_6DOF"
 AXES = [30.0, 40.0, -50.0, 60.0]
 LENGTHS = {"link_length_1": 325.0, "link_length_2": 225.0}
 IN, OUT, BIT, FLOAT, S32 = 16, 32, 1, 2, 3
+COUNTED = [name for name in NAMES if named(name).task.turning is Turning.ABOUT_Z and name != "Softkin_Planar_3RRR"]
+"""Machines of which C is a sum of joints."""
 WRITTEN = {
     "softkin.parameters-refused": BIT, "softkin.parameter-refused": S32, "softkin.is-singular": BIT,
     "softkin.forward-status": S32, "softkin.inverse-status": S32, "softkin.missing": FLOAT,
@@ -187,6 +190,25 @@ def test_turns_are_counted(offset: float) -> None:
     assert machine.module.inverse(pose_of(machine, [30.0, 40.0, 5.0, 160.0]), AXES) is not None
     assert machine.module.inverse(pose_of(machine, [30.0, 40.0, 5.0, 200.0]), AXES) is None
     assert machine.module.get("softkin.inverse-status") == 3.0
+
+
+@pytest.mark.parametrize("name", COUNTED)
+def test_every_counted_turn(name: str) -> None:
+    """A full turn of C is a full turn of the tool, which stays where it is; the pose says so again."""
+    machine = machine_of(name)
+    compared = 0
+    for axes in recorded(name)[:4]:
+        pose = machine.module.forward(axes)
+        for turn in (-360.0, 360.0) if pose else ():
+            asked = pose | {"C": pose["C"] + turn}
+            joints = machine.module.inverse(asked, axes)
+            if joints is not None:
+                assert differs(joints, axes) > 90.0
+                assert pose_of(machine, joints) == pytest.approx(asked, abs=1e-8)
+                compared += 1
+            else:
+                assert machine.module.get("softkin.inverse-status") == 3.0
+    assert compared >= 3
 
 
 def test_a_pitch_follows_the_turn() -> None:

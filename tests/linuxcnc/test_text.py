@@ -10,6 +10,7 @@ import pytest
 from derive.command.line import main
 from derive.emit.linuxcnc import package
 from derive.emit.linuxcnc.words import LETTERS, Orientation, words_of
+from derive.pipeline import Built, languages, unwritten
 from tests.linuxcnc.machine import NAMES
 from tests.linuxcnc.module import STRICT, STUBS, compiled, includes, loaded, part_of, run
 from tests.machines.odd_names import ODD
@@ -117,8 +118,11 @@ def test_letters(name: str, orientation: Orientation, letters: str) -> None:
 
 
 def test_a_mechanism_without_joints() -> None:
-    """There is no module of it."""
+    """There is no module of it, and the command says why."""
     assert package.part(kinematics_of(named("Kin_Tool"))) is None
+    built = Built("", "", None, {}, {})
+    (said,) = unwritten(built, languages(wanted=["linuxcnc"]), named("Kin_Tool"))
+    assert said.startswith("no module for LinuxCNC: it has 0 axes, a pose there 1 to 9")
 
 
 def test_the_command_writes_it_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

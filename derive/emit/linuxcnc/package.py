@@ -112,49 +112,59 @@ def _macros(source: str) -> list[str]:
 
 def _known(kin: Kinematics, words: Words, module: str) -> dict[str, Any]:
     """What the template arranges."""
-    joints = kin.mechanism.joints
-    letters = [LETTERS.index(letter) for letter in words.of_joints]
-    own = [LETTERS.index(letter) if letter else -1 for letter in words.own]
-    rows = [kin.rows.index(letter.lower()) for letter in words.position]
     pins = pin_names(kin)
     return {
         "module": module,
+        "upper": module.upper(),
         "kins": module_name(module),
         "kins_text": text(module_name(module)),
         "summary": harmless(kin.mechanism.summary),
         "name": harmless(kin.mechanism.name),
         "head": head_of(kin, words, pins),
-        "joints": len(joints),
-        "joint_letters": list_of(map(str, letters)),
-        "has_own": any(words.own),
-        "own_letters": list_of(map(str, own)),
-        "units": list_of("SOFTKIN_DEGREE" if j.in_degrees else "1.0" for j in joints),
-        "upper": module.upper(),
-        "rows": len(kin.rows),
-        "turn_x_row": kin.rows.index("turn x") if "turn x" in kin.rows else -1,
-        "first_own_row": len(words.position) + _TURNS[words.orientation],
-        "turn_factors": list_of(_turn_factors(kin)) if words.orientation is Orientation.COUNTED else "",
-        "linear_joints": list_of(str(i) for i, letter in enumerate(words.own) if not letter),
         "letters_used": "".join(words.letters),
-        "position": [
-            {"index": "XYZ".index(letter), "row": row} for letter, row in zip(words.position, rows, strict=True)
-        ],
-        "still": _still(kin, words),
-        "orientation": words.orientation.value,
-        "turn_row": kin.rows.index("turn z") if "turn z" in kin.rows else -1,
-        "carrier": words.carrier,
+        "joints": len(kin.mechanism.joints),
         "branches": len(kin.branches),
-        "flange": _flange(kin),
-        "begins_near": kin.forward_from is not None
-        or words.orientation in (Orientation.NEAREST, Orientation.ANGLES),
         "is_searched": any(searches(program) for program in kin.shared),
         "starts_forward": kin.forward_from is not None,
-        "has_jacobian": _has_jacobian(kin, words),
         "parameters": [
             {"pin": text(f"softkin.{pins[p.name]}"), "is_flag": "true" if p.role is Role.FLAG else "false"}
             for p in kin.parameters
         ],
-    }  # fmt: skip
+        **_of_letters(kin, words),
+        **_of_rates(kin, words),
+    }
+
+
+def _of_letters(kin: Kinematics, words: Words) -> dict[str, Any]:
+    """What it arranges about the letters of a pose."""
+    own = [LETTERS.index(letter) if letter else -1 for letter in words.own]
+    rows = [kin.rows.index(letter.lower()) for letter in words.position]
+    near = words.orientation in (Orientation.NEAREST, Orientation.ANGLES)
+    return {
+        "joint_letters": list_of(str(LETTERS.index(letter)) for letter in words.of_joints),
+        "has_own": any(words.own),
+        "own_letters": list_of(map(str, own)),
+        "position": [{"index": "XYZ".index(one), "row": row} for one, row in zip(words.position, rows, strict=True)],
+        "still": _still(kin, words),
+        "orientation": words.orientation.value,
+        "turn_factors": list_of(_turn_factors(kin)) if words.orientation is Orientation.COUNTED else "",
+        "carrier": words.carrier,
+        "flange": _flange(kin),
+        "begins_near": kin.forward_from is not None or near,
+    }
+
+
+def _of_rates(kin: Kinematics, words: Words) -> dict[str, Any]:
+    """What it arranges about the Jacobian."""
+    return {
+        "rows": len(kin.rows),
+        "turn_row": kin.rows.index("turn z") if "turn z" in kin.rows else -1,
+        "turn_x_row": kin.rows.index("turn x") if "turn x" in kin.rows else -1,
+        "first_own_row": len(words.position) + _TURNS[words.orientation],
+        "linear_joints": list_of(str(i) for i, letter in enumerate(words.own) if not letter),
+        "units": list_of("SOFTKIN_DEGREE" if j.in_degrees else "1.0" for j in kin.mechanism.joints),
+        "has_jacobian": _has_jacobian(kin, words),
+    }
 
 
 def _of_constants(kin: Kinematics) -> C:
