@@ -15,7 +15,7 @@ READY := $(ENVIRONMENT)/ready
 
 BENCH := .venv-bench
 
-.PHONY: generate check test quick report bench javascript c view
+.PHONY: generate check test quick report bench javascript c linuxcnc view prove-linuxcnc
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -27,6 +27,12 @@ javascript: $(READY)
 # Header and source of every machine, and the source that they share, into build/c.
 c: $(READY)
 	$(RUN) -m derive generate --language c --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
+
+# Kinematics modules of LinuxCNC, into build/linuxcnc: of the catalogue; with MECHANISM=Kin_Scara3_Z of this machine; with
+# MECHANISM=my_machine.py of a machine of your own.
+linuxcnc: $(READY)
+	$(RUN) -m derive $(if $(wildcard $(MECHANISM)),derive $(MECHANISM) --out $(OUT),generate --output $(OUT) \
+		$(if $(MECHANISM),--only $(MECHANISM)) $(if $(FRESH),--fresh)) --language linuxcnc $(OPTIONS)
 
 # One page with all machines, build/viewer.html, which opens in a browser from disk; MECHANISM=my_machine.py: that machine alone.
 view: $(READY)
@@ -47,6 +53,12 @@ report: $(READY)
 bench: $(READY) $(BENCH)/ready
 	PYTHONPATH=generated/python $(RUN) -m bench.blocks
 	PYTHONPATH=generated/python $(BENCH)/bin/python -m bench
+
+# The real LinuxCNC runs the modules of six machines, as docs/LINUXCNC.md says; it needs root on Debian 12, and installs nothing.
+# IF_POSSIBLE=1: where it cannot run it says so in one line, and that is no failure.
+IF_POSSIBLE ?=
+prove-linuxcnc: $(READY)
+	PYTHONPATH=generated/python $(RUN) -m prove.linuxcnc $(if $(IF_POSSIBLE),--if-possible) $(if $(FRESH),--fresh)
 
 $(BENCH)/ready: bench/requirements.txt
 	$(PYTHON) -m venv $(BENCH)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 _BY_PRODUCTS = ("__pycache__", "build", "dist")
 """Folders that running or packing the generated code leaves behind."""
-_BESIDE = ("report", "javascript", "c", "view")
+_BESIDE = ("report", "javascript", "c", "linuxcnc", "view")
 """Folders that other commands write into the same folder; they write pages (`.html`) there, too."""
 
 

@@ -21,6 +21,7 @@ from derive.description.places import in_place
 from derive.emit.c import package as c
 from derive.emit.javascript import package as javascript
 from derive.emit.language import Language, Part
+from derive.emit.linuxcnc import package as linuxcnc
 from derive.emit.named_package import NamedPackage
 from derive.emit.python import package as python
 from derive.emit.softmotion.library import StructuredTextFiles, most_axes
@@ -32,15 +33,17 @@ from derive.witness.disagreement import Disagreement
 PROCESSES = 2
 WRITTEN = (python.name, StructuredTextFiles.name)
 """The languages that are written unless others are asked for."""
-LANGUAGES = (*WRITTEN, javascript.name, c.name)
+LANGUAGES = (*WRITTEN, javascript.name, c.name, linuxcnc.name)
 UNFIT = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
 """What a wrong description leads to: the message says enough."""
 _LANGUAGES = {
     python.name: "Python", StructuredTextFiles.name: "Structured Text", javascript.name: "JavaScript", c.name: "C",
+    linuxcnc.name: "LinuxCNC",
 }  # fmt: skip
 _BOUNDS = {
     StructuredTextFiles.name: "no block: it has {axes} axes, and SoftMotion knows six",
     c.name: f"no C: its calls hold {c.MOST_AXES} axes and {c.MOST_BRANCHES} branches",
+    linuxcnc.name: f"no module for LinuxCNC: it has {{axes}} axes, a pose there 1 to {linuxcnc.MOST_AXES}, or no C",
 }
 """Why a language does not hold a machine."""
 Told = Callable[[str, str], None]
@@ -224,6 +227,7 @@ def languages(
             StructuredTextFiles(profile),
             javascript,
             c,
+            linuxcnc,
         )
     except ValueError as problem:
         raise GenerationError(str(problem)) from None

@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parents[1]
 IMPORT_LINTER = "from importlinter.cli import lint_imports_command as lint; lint(['--no-cache'])"
 TOOLS = {
     "ruff": ("-m", "ruff", "check", "--no-cache", "."),
-    "ruff format": ("-m", "ruff", "format", "--check", "--no-cache", "derive", "tests", "bench"),
-    "mypy": ("-m", "mypy", "--strict", "derive"),
+    "ruff format": ("-m", "ruff", "format", "--check", "--no-cache", "derive", "tests", "bench", "prove"),
+    "mypy": ("-m", "mypy", "--strict", "derive", "prove"),
     "mypy of the generated package": ("-m", "mypy", "--strict", "generated/python/softkin"),
     "directions of imports": ("-c", IMPORT_LINTER),
 }

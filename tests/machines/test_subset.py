@@ -76,6 +76,25 @@ def test_a_loop_closes_in_both_languages(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", LOOPS)
+def test_the_jacobian_of_a_loop_is_that_of_its_differences(name: str) -> None:
+    """Also where a refusal has decided the very value that the program gives."""
+    robot, _ = loop(name)
+    count, step = len(LOOPS[name].joints), 1e-4
+    compared = 0
+    for axes in np.random.default_rng(4).uniform(-60.0, 60.0, (20, count)):
+        try:
+            given = robot.jacobian(axes)
+            ends = [[robot.forward(axes + s * step * e)[0].position for s in (-1, 1)] for e in np.eye(count)]
+        except KinematicsError:
+            continue
+        rows = ["xyz".index(row) for row in robot.JACOBIAN_ROWS]
+        rates = [(np.array(high) - np.array(low))[rows] / np.radians(2.0 * step) for low, high in ends]
+        assert np.allclose(given, np.array(rates).T, atol=1e-3 * max(1.0, float(np.abs(given).max())))
+        compared += 1
+    assert compared > 5
+
+
+@pytest.mark.parametrize("name", LOOPS)
 def test_a_loop_refuses_what_it_cannot_command(name: str) -> None:
     robot, controller = loop(name)
     axes = (65.0, 90.0)[: len(robot.AXES)]

@@ -17,6 +17,7 @@ from derive.ir.primitives import Select
 from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, binds
 from derive.ir.symbols import PLACE
 from derive.ir.tree import If, Item, grouped
+from derive.lowering.decided import decided
 from derive.lowering.scheduling import structured
 from derive.report.reasons import Reasons
 
@@ -31,7 +32,7 @@ def function_lines(function: Function, machine: str, constants: Mapping[str, str
     own = [(name, place) for name, place in function.given.items() if name in read]
     head = taken(own, types)
     lines = body.lines(structured(program))
-    values = {o.name: body.printer.print(o.value) for o in program.outputs}
+    values = {o.name: body.printer.print(o.value) for o in decided(program).outputs}
     writes = [f"{place} = {values[name]};" for name, place in function.results]
     inner = [*head, *lines, *writes, "return SOFTKIN_OK;"]
     if function.is_of_machine:

@@ -16,6 +16,7 @@ from derive.ir.primitives import Select
 from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, binds, expressions, told
 from derive.ir.symbols import PLACE, symbols_of
 from derive.ir.tree import If, Item, grouped
+from derive.lowering.decided import decided
 from derive.lowering.scheduling import structured
 
 _PLACE = "({ tried, side, freed, freed_angle }) => "
@@ -29,7 +30,7 @@ def function_lines(function: Function, refusals: Refusals) -> list[str]:
     arguments = [(name, shape) for name, shape in function.arguments]
     head += [f"const {_target(shape, read)} = {name};" for name, shape in arguments if read & set(names(shape))]
     lines = _Body(refusals).lines(structured(function.program))
-    values = {o.name: PRINTER.print(o.value) for o in function.program.outputs}
+    values = {o.name: PRINTER.print(o.value) for o in decided(function.program).outputs}
     result = "null" if function.result is None else _value(function.result, values)
     given = ", ".join(["k", *(name for name, _ in arguments)])
     text = block(f"function {function.name}({given})", [*head, *lines, f"return {result};"])

@@ -38,6 +38,7 @@ from derive.ir.symbols import (
 )
 from derive.ir.tree import If, Item, grouped
 from derive.ir.verify import verify
+from derive.lowering.decided import decided
 from derive.lowering.scheduling import structured
 
 Shape = str | tuple["Shape", ...]
@@ -88,7 +89,8 @@ class Method:
 def scalar_body(method: Method, refusals: Refusals = PLAIN) -> list[str]:
     """The body on plain numbers: the first condition that does not hold refuses."""
     lines = [*unpacked(method), *constant_lines(method), *statement_lines(method.program, refusals, _SCALAR)]
-    return [*lines, f"return {values_of(method, _SCALAR) or refusals.success}"]
+    behind = replace(method, program=decided(method.program))
+    return [*lines, f"return {values_of(behind, _SCALAR) or refusals.success}"]
 
 
 def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:

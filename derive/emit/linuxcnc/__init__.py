@@ -1,0 +1,1 @@
+"""Kinematics modules of LinuxCNC: one C source a mechanism, around what the language C writes of it."""

@@ -1,0 +1,1 @@
+"""The proof on LinuxCNC, as far as it can be tested without LinuxCNC."""

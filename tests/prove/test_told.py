@@ -1,0 +1,50 @@
+"""What is said of the proof: the table in the README is the one that is printed, and documents name what there is."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from prove.linuxcnc.machines import MACHINES
+from prove.linuxcnc.table import HEAD, table
+from prove.linuxcnc.twin import Twin
+from prove.linuxcnc.verdict import ALIKE, ON_THE_WAY, Verdict
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def shown() -> list[list[str]]:
+    """The rows of the table in the README."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    part = readme.partition("## On a real controller")[2].partition("\n## ")[0]
+    assert re.search(r"On 20\d\d-\d\d-\d\d, LinuxCNC 2\.9", part)
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in part.splitlines() if line[:1] == "|"]
+
+
+def test_the_readme_shows_every_machine_proven() -> None:
+    """Its head is that of the printed table, and no row claims what the verdict would call a fault."""
+    head, _, *rows = shown()
+    assert tuple(head) == HEAD
+    assert [row[0] for row in rows] == [machine.says for machine in MACHINES]
+    for row, machine in zip(rows, MACHINES, strict=True):
+        samples, joints, poses, away = (float(cell.replace(",", "")) for cell in row[1:5])
+        assert samples > 1000 and joints <= ALIKE and poses <= ALIKE and away <= ON_THE_WAY
+        assert row[5:7] == ["yes" if Twin(machine).robot.BRANCHES else "has one", "yes"]
+
+
+def test_a_table_says_what_failed() -> None:
+    """A machine that did not run has no number, and is not said to have refused anything."""
+    nan = float("nan")
+    failed = Verdict("SCARA", 0, nan, nan, nan, False, False, 7.4, ("why",))
+    proven = Verdict("hexapod", 12345, 1e-13, 0.0, 2e-4, None, True, 12.0, ())
+    assert table([failed, proven]).splitlines()[2:] == [
+        "| SCARA | 0 | nan | nan | nan | NO | NO | 7 |",
+        "| hexapod | 12,345 | 1.0e-13 | 0.0e+00 | 2.0e-04 | has one | yes | 12 |",
+    ]
+
+
+def test_continuous_integration_runs_it_before_the_tests() -> None:
+    """The closing line stays that of the tests."""
+    lines = (ROOT / ".ci/run").read_text(encoding="utf-8").splitlines()
+    assert lines[-1] == "make test"
+    assert lines.index("make prove-linuxcnc IF_POSSIBLE=1") < lines.index("make test")
