@@ -60,6 +60,8 @@ EXPECTED = {
     **angle_machines.EXPECTED,
     **TASK_SOLUTIONS,
     **SUBSET_SOLUTIONS,
+    "three axes that miss each other, the elbow across": 4,
+    "three axes that miss each other, each across the next": 4,
     **CHAIN_SOLUTIONS,
 }
 """The largest number of solutions, as a search of the closure from many starts finds them."""
