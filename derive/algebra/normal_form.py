@@ -11,6 +11,7 @@ from functools import cache
 
 import sympy as sp
 
+from derive.algebra.rings import is_rational, reduced_in_ring
 from derive.ir.constants import (
     DEGREE,
 )
@@ -30,16 +31,30 @@ def polynomial(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence
 def _polynomial(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> sp.Expr:
     if _is_expanded(expression) and not expression.has(sp.sin, sp.cos):
         return reduce_units(expression, angles, signs)
+    plain = _in_symbols(expression, angles, signs)
+    if is_rational(plain):
+        return reduce_units(plain, angles, signs)
     terms = sp.expand_trig(sp.expand(expression))  # first: a sign leaves an argument only where nothing is added
     expanded = _without_signs(terms, signs)
     expanded = expanded.subs(sp.pi, 180 * DEGREE) if expanded.has(sp.pi) else expanded
-    table: dict[sp.Expr, sp.Expr] = {}
-    for angle in angles:
-        table[sp.sin(angle)] = sine(angle)
-        table[sp.cos(angle)] = cosine(angle)
-        table[sp.sin(angle * DEGREE)] = sine(angle)  # an angle of the machine, which is given in degrees
-        table[sp.cos(angle * DEGREE)] = cosine(angle)
-    return reduce_units(expanded.xreplace(table), angles, signs)
+    return reduce_units(expanded.xreplace(_functions(angles)), angles, signs)
+
+
+def _in_symbols(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> sp.Expr:
+    """The expression with the symbols of sines and cosines, those of sums too where no sign stands in them."""
+    plain = expression.xreplace(_functions(angles))
+    left = plain.atoms(sp.sin, sp.cos)
+    if not left or any(node.free_symbols & {*signs} for node in left):
+        return plain
+    opened = {node: sp.expand_trig(node.func(sp.expand(node.args[0]))).xreplace(_functions(angles)) for node in left}
+    return plain.xreplace(opened)
+
+
+@cache
+def _functions(angles: tuple[sp.Symbol, ...]) -> dict[sp.Expr, sp.Expr]:
+    """The symbols of sines and cosines; an angle of the machine is given in degrees."""
+    written = ((angle, angle * unit) for angle in angles for unit in (1, DEGREE))
+    return {of(w): name(a) for a, w in written for of, name in ((sp.sin, sine), (sp.cos, cosine))}
 
 
 def _without_signs(expression: sp.Expr, signs: Sequence[sp.Symbol]) -> sp.Expr:
@@ -77,6 +92,8 @@ def reduce_units(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequen
 @cache
 def _reduced(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> sp.Expr:
     table = _reduction(angles, signs)
+    if is_rational(expression):
+        return reduced_in_ring(expression, table)
 
     def lower(power: sp.Pow) -> sp.Expr:
         return table[power.base] ** (power.exp // 2) * power.base ** (power.exp % 2)

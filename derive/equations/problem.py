@@ -87,6 +87,8 @@ class StepDeterminant:
     """(h, e) where the step has solutions for |e| <= h; earlier steps then move their angles to meet this."""
     legs: Legs | None = None
     """The triangle whose root, near zero, magnifies the rounding error of its radicand."""
+    beside: tuple[sp.Expr, sp.Expr] | None = None
+    """(H, d) where the step has solutions for |d| <= H, both as small as the leg that it turns: see `other_leg`."""
 
     @property
     def sigma(self) -> sp.Symbol:

@@ -122,7 +122,8 @@ def joined(*parts: Cells) -> Cells:
 
 
 class Verdicts(NamedTuple):
-    """The kind of every cell: at most one of these is true, none where the cell has no root."""
+    """The kind of every cell: at most one of these is true, none where the cell has no root; where the two sides join,
+    a jump is touched, too."""
 
     jumps: Flags
     ends: Flags
@@ -140,7 +141,7 @@ def look(cells: Cells) -> Verdicts:
     (f, df, g, dg), (f1, df1, g1, dg1) = (e[:, :DIRECTIONS].T for e in (cells.first, cells.last))
     turned = turned_over(cells)
     fast = turned.min(axis=1, initial=1.0) < TURNED
-    seam = cells.curved & (cells.low >= -2.0 * SEAM) & (cells.high <= 2.0 * SEAM)
+    seam = at_seam(cells)
     wide = (cells.extent() > NARROW) & ~seam
     jumps = fast & ~wide & ((g >= -GAP) | (g1 >= -GAP))
     slow = ~fast
@@ -152,9 +153,14 @@ def look(cells: Cells) -> Verdicts:
     doubtful = seen & _hides_roots(f, df, f1, df1, width)
     small = np.minimum(np.abs(f), np.abs(f1)) <= TOUCHED
     again = doubtful & ~small & (width > FINEST) & ~seam
-    touches = doubtful & (small | seam) & ~changes
+    touches = doubtful & (small | seam) & ~changes | jumps & seam
     holds = seen & changes & ~again
     return Verdicts(jumps, ends, holds, touches, (fast & wide) | returns | again, returns)
+
+
+def at_seam(cells: Cells) -> Flags:
+    """Whether a cell lies where the two sides join, and is cut no more."""
+    return np.asarray(cells.curved & (cells.low >= -2.0 * SEAM) & (cells.high <= 2.0 * SEAM))
 
 
 def turned_over(cells: Cells) -> Reals:

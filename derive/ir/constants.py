@@ -58,7 +58,7 @@ NEARLY = sp.Float("1e-6")
 `BOUNDARY`."""
 TRIALS = 760
 """Trials of a search for a root, at most."""
-FINISHED = 12
+FINISHED = 24
 """Roots of a search that are looked at, at most."""
 MET = sp.Float("1e-10")
 """A root of a search meets the pose: what is left is at most this share of the machine, and so many radians."""

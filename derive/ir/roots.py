@@ -28,6 +28,7 @@ from derive.ir.cells import (
     Reals,
     Rows,
     Trial,
+    at_seam,
     joined,
     look,
     turned_over,
@@ -230,9 +231,19 @@ def _closed_in(trial: Trial, cells: Cells) -> list[At]:
 
 
 def _touched(cells: Cells) -> At:
-    """The end that is nearer to zero."""
-    nearer = np.abs(cells.first[:, VALUE]) <= np.abs(cells.last[:, VALUE])
-    return _places(cells, np.where(nearer, cells.low, cells.high))
+    """The end that is nearer to zero. Where the two sides join, both roots of the parabola with the slopes of both
+    ends, or its extremum where it has none.
+    """
+    width, f = cells.high - cells.low, cells.first[:, VALUE]
+    a, b = cells.first[:, SLOPE] * width, cells.last[:, SLOPE] * width
+    nearer = np.where(np.abs(f) <= np.abs(cells.last[:, VALUE]), 0.0, 1.0)
+    turns = at_seam(cells) & (a * b < 0.0)
+    bend = np.where(turns, b - a, 1.0)
+    half = np.sqrt(np.maximum(a * a - 2.0 * bend * f, 0.0)) / np.abs(bend)
+    below, above = (np.clip(side * half - a / bend, 0.0, 1.0) for side in (-1.0, 1.0))
+    one, other = cells.low + width * np.where(turns, below, nearer), cells.low + width * above
+    two = turns & (half > 0.0)
+    return _all([_places(cells, one), _places(cells.take(two), other[two])])
 
 
 def _jumps(trial: Trial, cells: Cells) -> At:

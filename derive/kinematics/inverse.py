@@ -65,6 +65,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
+from derive.kinematics.scan.machine_checks import MachineCheck, apart
 from derive.optimize.simplify import shorter
 from derive.plate.passive import commanded, passive_statements, spelled
 from derive.solver.solve import Derivation, solve
@@ -80,6 +81,8 @@ class Inverse:
     """Statements whose names the derivation reads: the heading, the tool, frozen joints, references."""
     moving: tuple[Joint, ...]
     frozen: tuple[Joint, ...] = ()
+    checks: tuple[MachineCheck, ...] = ()
+    """Of a trial: what the machine must have, whatever the pose."""
 
     @property
     def known(self) -> tuple[Statement, ...]:
@@ -112,7 +115,9 @@ def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:
     moving = tuple(j for j in mechanism.solved_joints if j != known)
     kept = tuple(s for j in held for s in frozen_lets(j))
     naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *closure.lets)
-    return Inverse(closure, _solve(mechanism, closure, moving, is_overdetermined=True), naming, moving, held)
+    derivation = _solve(mechanism, closure, moving, is_overdetermined=True)
+    statements, checks = apart(derivation.statements, fixed_names(mechanism))
+    return Inverse(closure, replace(derivation, statements=statements), naming, moving, held, checks)
 
 
 def solve_offset(mechanism: Mechanism) -> Inverse:

@@ -118,10 +118,9 @@ class DerivationRecord:
 
 
 def _renamed(determinant: StepDeterminant, names: Mapping[sp.Symbol, sp.Expr]) -> StepDeterminant:
-    reach = (
-        None
-        if determinant.reach is None
-        else (determinant.reach[0].xreplace(names), determinant.reach[1].xreplace(names))
+    reach, beside = (
+        None if pair is None else (pair[0].xreplace(names), pair[1].xreplace(names))
+        for pair in (determinant.reach, determinant.beside)
     )
     legs = None if determinant.legs is None else determinant.legs.renamed(names)
-    return replace(determinant, value=determinant.value.xreplace(names), reach=reach, legs=legs)
+    return replace(determinant, value=determinant.value.xreplace(names), reach=reach, legs=legs, beside=beside)

@@ -43,6 +43,7 @@ from derive.solver.subproblems.quadratic import quadratic
 from derive.solver.subproblems.spheres import spheres
 from derive.solver.subproblems.trigonometric import lateral, trigonometric
 from derive.solver.unsolved import undetermined, unsolved
+from derive.solver.within_legs import within_legs
 
 Rule = Callable[[Problem, tuple[Equation, ...]], Iterator[Binding]]
 RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quadratic, spheres)
@@ -162,7 +163,8 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         left = [residual / problem.scale**2 for residual in record.residuals[:1]]  # it implies those that follow
     statements = record.statements
     if not problem.is_overdetermined:
-        unfolded = beyond_folds(statements, record.determinants, record.conditionings, problem.scale)
+        held = within_legs(statements, record.determinants)
+        unfolded = beyond_folds(held, record.determinants, record.conditionings, problem.scale)
         moved = within_reach(unfolded, record.determinants, record.conditionings)
         statements = with_lost_arms_free(moved, record.determinants)
     signs = known_signs(problem, record.determinants)

@@ -131,6 +131,10 @@ PARAMETERS_DECIDE = {
     ),
 }
 
+M_HEIGHT = length("height_m", "base to shoulder", nominal=0.36)
+M_UPPER = length("link_u", "upper arm", nominal=0.42)
+M_FORE = length("link_f", "forearm", nominal=0.4)
+
 HELD = {
     **FROM_FLANGE,
     "rail and arm with two links": _machine(
@@ -178,6 +182,14 @@ HELD = {
             ),
             branch("wrist", sin(A5), positive=+1, negative=-1),
         ),
+        held=(E1,),
+    ),
+    "arm in metres with a held turn of its upper arm": _machine(
+        "HeldTurn",
+        (A1, A2, E1, A3),
+        Rz(A1) * Tz(M_HEIGHT) * Ry(A2) * Rz(E1) * Tz(M_UPPER) * Ry(A3) * Tz(M_FORE),
+        (M_HEIGHT, M_UPPER, M_FORE),
+        Task("xyz"),
         held=(E1,),
     ),
 }

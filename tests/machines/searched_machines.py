@@ -45,6 +45,36 @@ def _arm(name: str, chain: object, parameters: tuple[object, ...], branches: tup
     )
 
 
+_BESIDE = tuple(distance(f"beside_{k}", f"shift {k} beside the axes", nominal=50.0) for k in range(1, 5))
+REACH = length("reach_a", "last axis to the point", nominal=200.0)
+
+
+def _point(name: str, chain: object) -> Mechanism:
+    return Mechanism(
+        name=f"Kin_{name}",
+        vendor=Vendor.TEXTBOOK,
+        family="articulated",
+        source="the tests",
+        summary="An arm with three axes that miss each other.",
+        joints=(A1, A2, A3),
+        parameters=(*_BESIDE, REACH),
+        chain=chain,  # type: ignore[arg-type]
+        task=Task("xyz"),
+        offset_interface=False,
+    )
+
+
+_B1, _B2, _B3, _B4 = _BESIDE
+POINTS = {
+    "three axes that miss each other, the elbow across": _point(
+        "PointAcross", Ry(A1) * Tz(_B1) * Ty(_B2) * Rx(A2) * Tz(_B3) * Ty(_B4) * Ry(A3) * Tz(REACH)
+    ),
+    "three axes that miss each other, each across the next": _point(
+        "PointCrossed", Rx(A1) * Ty(_B1) * Tz(_B2) * Rz(A2) * Tx(_B3) * Ty(_B4) * Rx(A3) * Ty(REACH)
+    ),
+}
+"""Arms that turn a point: with a shift of zero a branch may meet the next one where two solutions of it meet."""
+
 SEARCHED = {
     "arm whose wrist goes sideways": _arm(
         "Sideways",
@@ -73,5 +103,6 @@ SEARCHED = {
             branch("elbow", cos(A3), up=+1, down=-1),
         ),
     ),
+    **POINTS,
 }
-"""One without any branch stated, one with a branch that no step of the trial decides."""
+"""One without any branch stated, one with a branch that no step of the trial decides; and arms that turn a point."""

@@ -47,6 +47,7 @@ EXPECTED = {
     "SCARA on a rail": 2,
     "arm on a track": 8,
     "seven axes": 8,
+    "arm in metres with a held turn of its upper arm": 4,
     "seven axes beside each other, the first held": 8,
     "arm whose elbow bends one way": 2,
     "SCARA that bends to the left alone": 1,
@@ -60,6 +61,8 @@ EXPECTED = {
     **angle_machines.EXPECTED,
     **TASK_SOLUTIONS,
     **SUBSET_SOLUTIONS,
+    "three axes that miss each other, the elbow across": 4,
+    "three axes that miss each other, each across the next": 4,
     **CHAIN_SOLUTIONS,
 }
 """The largest number of solutions, as a search of the closure from many starts finds them."""

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, Search, Turning, crossing
-from derive.equations.closure import closure_at
+from derive.equations.closure import closure_at, fixed_lets
 from derive.equations.conditions import with_conditions
 from derive.ir.program import Let
 from derive.ir.symbols import cosine, names_in, sine
@@ -97,7 +97,10 @@ def _searched(mechanism: Mechanism, found: _Candidate) -> Mechanism:
     chosen = replace(mechanism, branches=(*others, *last), search=Search(found.joint))
     named = with_named_steps(chosen, trial, forward)
     noted = replace(named, notes=(*mechanism.notes, _note(named, found.joint)))
-    return with_conditions(noted, trial.derivation.conditions)
+    lets = fixed_lets(mechanism)
+    checks = tuple(check.constraint(lets) for check in dict.fromkeys(trial.checks))
+    held = replace(noted, constraints=(*noted.constraints, *checks))
+    return with_conditions(held, trial.derivation.conditions)
 
 
 def _note(mechanism: Mechanism, joint: Joint) -> str:

@@ -49,6 +49,7 @@ from derive.solver.subproblems.direction import free_angle
 from derive.solver.subproblems.lateral import Row, aimed_at_point
 from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.origin import from_origin
+from derive.solver.subproblems.other_leg import other_leg, with_leg
 from derive.solver.subproblems.shortfall import out_of_reach
 from derive.solver.subproblems.small_entries import with_small_entries
 
@@ -301,6 +302,11 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     size = sp.Abs if amplitude.is_signed else sp.Add
     less, more = amplitude.factors or (_product(length - right), _product(length + right))
     (less, more), column = with_small_entries(problem, equation, (less, more))
+    told, larger, leg = (less, more), tuple[Let, ...](), None
+    if amplitude.aimable is not None:  # joints change the arm, which may be stretched along the coordinate
+        leg = other_leg(problem, equation, angle, amplitude.determinant, amplitude.naming.lets)
+    if leg is not None:
+        (less, more), larger, column = with_leg(angle, (length, right), leg)
     scale: tuple[Let, ...] = (
         Let(twice, less_cos + plus_cos, "twice the scale, as the sum of both: then cosine and sine agree"),
         Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
@@ -312,15 +318,19 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
         *(let for let in amplitude.naming.lets if let not in column),
         *column,
         *amplitude.guard,
+        *larger,
         Let(less_cos, less, f"law of cosines for {angle.name} ({equation.label}): 1 - cosine, times a scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
         *scale,
-        *_cosine(angle, amplitude, cos_name, (plus_cos - less_cos) / below, (less, more)),
+        *_cosine(angle, amplitude, cos_name, (plus_cos - less_cos) / below, told),
         Let(square, less_cos * plus_cos, "sine squared, times the squared scale"),
         Let(sin_name, 2 * sigma * Root(square) / size(below)),
         *(_turned(problem, equation, angle, amplitude, (cos_name, sin_name)) if turned else ()),
     ]
-    determinant = StepDeterminant(angle, amplitude.determinant, amplitude.determinant_scale, (length, right))
+    beside = None if leg is None else leg[:2]
+    determinant = StepDeterminant(
+        angle, amplitude.determinant, amplitude.determinant_scale, (length, right), beside=beside
+    )
     return Binding("trigonometric", (angle,), tuple(statements), determinant, cosine_alone=True, yields_to_a_sum=True)
 
 

@@ -32,7 +32,7 @@ TOUCHED = 1e-12
 TURNED = 0.7
 VANISHING = 1e-10
 _TRIALS = 760
-_FINISHED = 12
+_FINISHED = 24
 _PLACE = ("tried", "side", "freed", "freed_angle")
 _THIRD = 2.0 * pi / 3.0
 Values = tuple[Any, ...]
@@ -185,6 +185,8 @@ class _Search:
                 return self.halves(cell, low + ASIDE * width)
             if g >= -GAP or g1 >= -GAP:
                 self.jump(cell)
+                if seam:
+                    self.touch(cell, seam)
             return []
         if not curved and width > FLAT and _hides_roots(g, dg, g1, dg1, width):
             return self.halves(cell, low + self.where(depth, g, dg, g1, dg1, width))
@@ -201,7 +203,7 @@ class _Search:
         if changes:
             self.close_in(cell)
         elif doubtful and (small or seam):
-            self.found.append(self.place(base, scale, curved, low if abs(f) <= abs(f1) else high))
+            self.touch(cell, seam)
         return []
 
     @staticmethod
@@ -210,6 +212,21 @@ class _Search:
         if depth % 3 == 2:
             return ASIDE * width
         return min(max(_between(f, df, f1, df1, width), 0.02 * width), 0.98 * width)
+
+    def touch(self, cell: Cell, seam: bool) -> None:
+        """Store the end that is nearer to zero. Where the two sides join, both roots of the parabola with the slopes
+        of both ends, or its extremum where it has none.
+        """
+        base, scale, curved, _, low, first, high, last = cell
+        width, f = high - low, first[0]
+        a, b = first[1] * width, last[1] * width
+        if not (seam and a * b < 0.0):
+            self.found.append(self.place(base, scale, curved, low if abs(f) <= abs(last[0]) else high))
+            return
+        bend = b - a
+        half = sqrt(max(a * a - 2.0 * bend * f, 0.0)) / abs(bend)
+        for side in (-half, half) if half > 0.0 else (half,):
+            self.found.append(self.place(base, scale, curved, low + width * min(max(side - a / bend, 0.0), 1.0)))
 
     def halves(self, cell: Cell, s: float) -> list[Cell]:
         """The two parts of a cell that is cut at s."""

@@ -29,9 +29,9 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 142 additions, 207 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 94397 additions, 143669 multiplications, 8105 divisions, 3898 square roots, 5304 sines
-    inverse, all 16 branches open: 1510625 additions, 2298800 multiplications, 129680 divisions, 62368 square
-    roots, 84864 sines
+    inverse: 108941 additions, 163421 multiplications, 8609 divisions, 3994 square roots, 6048 sines
+    inverse, all 16 branches open: 1743329 additions, 2614832 multiplications, 137744 divisions, 63904 square
+    roots, 96768 sines
     repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 28 additions, 50 multiplications, 11 divisions, 3 square roots, 12
     sines

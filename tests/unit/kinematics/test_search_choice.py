@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from sympy import cos, sin
 
-from derive.description.mechanism import Mechanism, Parameter, Task, Turning, branch, length
+from derive.description.mechanism import Mechanism, Parameter, Task, Turning, branch, distance, length
 from derive.description.validate import validate
 from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
 from derive.kinematics.build import build
@@ -54,6 +54,19 @@ def chosen(mechanism: Mechanism) -> str | None:
 def test_the_joint(chain: Chain, joint: str | None) -> None:
     """Of the arm that stands on its flange the first joint, for the same reason."""
     assert chosen(arm(chain)) == joint
+
+
+def test_an_arm_that_may_have_no_length_is_refused_with_its_machine() -> None:
+    """A forearm that is a distance may be zero: no trial is refused for it, but the machine is."""
+    forearm = distance("forearm", "a forearm", nominal=300.0)
+    chain = Rz(A1) * Ry(A2) * Tz(L[1]) * Ry(A3) * Tx(forearm) * Rx(A4) * Ty(L[3]) * Ry(A5) * Rx(A6) * Tx(L[4])
+    machine = with_search(arm(chain, parameters=(*LENGTHS, forearm)))
+    assert machine.search is not None and machine.search.joint.name == "A6"
+    (check,) = (c for c in machine.constraints if "no length" in c.message)
+    assert check.message == "forearm must not vanish: the arm that Q3 turns would have no length"
+    sizes = {L[1].symbol: 400.0}
+    held = [bool(check.condition.xreplace({**sizes, forearm.symbol: size})) for size in (300.0, -2.0, 0.0, 1e-9)]
+    assert held == [True, True, False, False]
 
 
 def test_steps_that_no_branch_names_get_one() -> None:
