@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import time
-import traceback
 from base64 import b64decode, b64encode
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -17,24 +16,20 @@ from typing import Any
 from derive.cache import Cache, entry_key, key_of
 from derive.description.catalogue import Entry
 from derive.description.mechanism import DescriptionError, Mechanism
-from derive.description.places import in_place
+from derive.description.remedies import with_remedy
 from derive.emit.c import package as c
 from derive.emit.javascript import package as javascript
 from derive.emit.language import Language, Part
 from derive.emit.named_package import NamedPackage
 from derive.emit.python import package as python
 from derive.emit.softmotion.library import StructuredTextFiles, most_axes
-from derive.ir.verify import BrokenProgram
+from derive.faults import Failure, GenerationError, failure, one_line
 from derive.kinematics.kinematics import Evidence, Kinematics
-from derive.solver.solve import Unsolved
-from derive.witness.disagreement import Disagreement
 
 PROCESSES = 2
 WRITTEN = (python.name, StructuredTextFiles.name)
 """The languages that are written unless others are asked for."""
 LANGUAGES = (*WRITTEN, javascript.name, c.name)
-UNFIT = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
-"""What a wrong description leads to: the message says enough."""
 _LANGUAGES = {
     python.name: "Python", StructuredTextFiles.name: "Structured Text", javascript.name: "JavaScript", c.name: "C",
 }  # fmt: skip
@@ -45,17 +40,6 @@ _BOUNDS = {
 """Why a language does not hold a machine."""
 Told = Callable[[str, str], None]
 """What is told about a stage: its name, and its result, which is empty at its begin."""
-
-
-class GenerationError(Exception):
-    """Nothing can be generated; the message names the file and the thing."""
-
-
-@dataclass(frozen=True)
-class Failure:
-    """A mechanism that cannot be derived, in one message with file, line and remedy."""
-
-    message: str
 
 
 @dataclass(frozen=True)
@@ -132,7 +116,7 @@ def derive_all(work: Work, profile: str | None) -> Iterator[Built]:
     """Every mechanism, in the order of the catalogue; raises `GenerationError` at the first that cannot be derived."""
     for result in attempts(work, profile):
         if isinstance(result, Failure):
-            raise GenerationError(result.message)
+            raise result.error
         yield result
 
 
@@ -183,7 +167,7 @@ def derive_one(mechanism: Mechanism, profile: str | None = None, told: Told = _n
 
 
 def derive_and_measure(mechanism: Mechanism, told: Told = _nobody) -> Kinematics:
-    """Derive one mechanism and measure it. Raises what `UNFIT` lists, where one of them fails."""
+    """Derive one mechanism and measure it. Raises what `faults.UNFIT` lists, where one of them fails."""
     from derive.kinematics.build import build
     from derive.report.branch_meanings import with_meanings
     from derive.report.self_test import self_test
@@ -205,9 +189,9 @@ def _pictures(kinematics: Kinematics) -> tuple[Mapping[str, bytes], str]:
     try:
         return pictures_of(kinematics), ""
     except DescriptionError as problem:
-        return {}, _one_line(problem)
+        return {}, with_remedy(one_line(problem))
     except Exception as problem:  # whatever a drawing meets, the formulas are proven without it
-        return {}, f"{type(problem).__name__}: {_one_line(problem)}"
+        return {}, f"{type(problem).__name__}: {one_line(problem)}"
 
 
 def languages(
@@ -288,16 +272,4 @@ def _attempt(profile: str | None, entry: Entry) -> Built | Failure:
     try:
         return derive_one(mechanism, profile)
     except Exception as problem:
-        return Failure(in_place(path, reason_of(problem)))
-
-
-def reason_of(problem: Exception) -> str:
-    """What a problem says: of one that no description should lead to, also where it was met."""
-    if isinstance(problem, UNFIT):
-        return _one_line(problem)
-    place = traceback.extract_tb(problem.__traceback__)[-1]
-    return f"{type(problem).__name__}: {_one_line(problem)} ({Path(place.filename).name}:{place.lineno})"
-
-
-def _one_line(problem: Exception) -> str:
-    return " ".join(str(problem).split())
+        return failure(path, problem)

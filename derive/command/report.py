@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from derive.command.catalogue import chosen
-from derive.command.own import complain
+from derive.command.own import refused
 from derive.command.stages import Stages
 from derive.description.catalogue import Entry, catalogue
 from derive.description.mechanism import Mechanism
-from derive.description.places import in_place
-from derive.pipeline import PROCESSES, Failure, GenerationError, Told, derive_and_measure, reason_of
+from derive.faults import Failure, error, failure
+from derive.pipeline import PROCESSES, Told, derive_and_measure
 from derive.progress import Progress
 
 if TYPE_CHECKING:
@@ -29,16 +29,15 @@ _INDEX = "index.html"
 
 
 def report(options: argparse.Namespace) -> int:
-    """Write the pages and their index; 1 where a mechanism could not be derived."""
+    """Write the pages and their index; 1 where a mechanism could not be derived, 3 by a mistake of the compiler."""
     from derive.emit.page.page import index_of
 
     entries = chosen(catalogue(options.mechanisms), options.only)
     pages: list[Page] = []
-    progress, faults = Progress(len(entries), sys.stdout), 0
+    progress, status = Progress(len(entries), sys.stdout), 0
     for made in _pages(entries):
         if isinstance(made, Failure):
-            complain(made.message)
-            faults += 1
+            status = max(status, refused(made.error, options.traceback, status=1))
             continue
         path = _write(options.out, made.file, made.text)
         progress.step(f"{path}  {path.stat().st_size // 1000} kB", took_time=True)
@@ -47,7 +46,7 @@ def report(options: argparse.Namespace) -> int:
     if pages:
         index = _write(options.out, _INDEX, index_of(pages))
         print(f"{len(pages)} page{'' if len(pages) == 1 else 's'}, listed in {index}")
-    return 1 if faults else 0
+    return status
 
 
 def written(path: Path, mechanism: Mechanism, folder: Path, stages: Stages) -> None:
@@ -55,7 +54,7 @@ def written(path: Path, mechanism: Mechanism, folder: Path, stages: Stages) -> N
     try:
         page = _page(mechanism, stages.told)
     except Exception as problem:
-        raise GenerationError(in_place(path, reason_of(problem))) from None
+        raise error(path, problem) from None
     target = _write(folder, page.file, page.text)
     stages.line(f"  {target}  {target.stat().st_size // 1000} kB")
 
@@ -83,7 +82,7 @@ def _attempt(entry: Entry) -> Page | Failure:
     try:
         return _page(mechanism, lambda stage, found: None)
     except Exception as problem:
-        return Failure(in_place(path, reason_of(problem)))
+        return failure(path, problem)
 
 
 def _write(folder: Path, name: str, text: str) -> Path:

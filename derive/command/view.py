@@ -14,8 +14,9 @@ from derive.command.stages import Stages
 from derive.description.catalogue import MECHANISMS, Entry, catalogue, load
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.emit.python.entries import class_name
+from derive.faults import GenerationError
 from derive.output import write_file
-from derive.pipeline import GenerationError, derive_one, files_of, languages
+from derive.pipeline import derive_one, files_of, languages
 from derive.view.node import MissingTool
 from derive.view.page import BrokenPage, Content, Model, page
 
@@ -37,7 +38,12 @@ def view(options: argparse.Namespace) -> int:
     if options.model and len(files_given) > 1:
         raise GenerationError("--model names a body of one machine: view one file at a time")
     models = tuple(map(_model, options.model))
-    return own.each(files_given, lambda path, stages: _own(path, stages, options, models), keep_going=True)
+    return own.each(
+        files_given,
+        lambda path, stages: _own(path, stages, options, models),
+        keep_going=True,
+        with_trace=options.traceback,
+    )
 
 
 def content_of(entries: Sequence[Entry], modules: Mapping[str, bytes]) -> Content:

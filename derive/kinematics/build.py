@@ -291,7 +291,7 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
     allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS)}
     strangers = [s.name for s in program.inputs if s.name not in allowed]
     if strangers:
-        raise DescriptionError(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
+        raise BrokenProgram(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
 
 
 def _check_outputs(program: Program) -> None:

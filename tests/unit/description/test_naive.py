@@ -10,7 +10,8 @@ import pytest
 
 from derive.description.catalogue import load
 from derive.description.mechanism import DescriptionError, Mechanism
-from derive.pipeline import Failure, _attempt
+from derive.faults import Failure
+from derive.pipeline import _attempt
 
 HEAD = """from sympy import cos, sin, pi, sqrt
 from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz, denavit_hartenberg
