@@ -112,16 +112,16 @@ def work_of(entries: Sequence[Entry], cache: Cache | None, foundation: str) -> W
     return Work(tuple(entries), keys, tuple(None if data is None else from_plain(data) for data in found))
 
 
-def derive_all(work: Work, profile: str | None) -> Iterator[Built]:
+def derive_all(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES) -> Iterator[Built]:
     """Every mechanism, in the order of the catalogue; raises `GenerationError` at the first that cannot be derived."""
-    for result in attempts(work, profile):
+    for result in attempts(work, profile, wanted):
         if isinstance(result, Failure):
             raise result.error
         yield result
 
 
-def attempts(work: Work, profile: str | None) -> Iterator[Built | Failure]:
-    """What came of every mechanism, in the order of the catalogue."""
+def attempts(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES) -> Iterator[Built | Failure]:
+    """What came of every mechanism, in the order of the catalogue. wanted: the languages that are written of it."""
     if not work.missing:
         yield from (kept for kept in work.kept if kept is not None)
         return
@@ -129,7 +129,7 @@ def attempts(work: Work, profile: str | None) -> Iterator[Built | Failure]:
     # time.
     _load()
     with ProcessPoolExecutor(max_workers=min(PROCESSES, len(work.missing)), initializer=gc.disable) as pool:
-        derived = pool.map(partial(_attempt, profile), work.missing)
+        derived = pool.map(partial(_attempt, profile, wanted), work.missing)
         try:
             for kept in work.kept:
                 yield next(derived) if kept is None else kept
@@ -143,21 +143,24 @@ def _load() -> None:
         import_module(f"derive.{room}")
 
 
-def derive_one(mechanism: Mechanism, profile: str | None = None, told: Told = _nobody) -> Built:
-    """Derive one mechanism, measure it, draw it, and write it in every language.
+def derive_one(
+    mechanism: Mechanism, profile: str | None = None, told: Told = _nobody, wanted: Sequence[str] = LANGUAGES
+) -> Built:
+    """Derive one mechanism, measure it, draw it, and write it in the languages that are wanted.
 
     told: called at the begin of each of these stages with its name and "", at its end with its name and the result.
     """
     # Not loaded where nothing is derived: CasADi and matplotlib take longer to start than the rest of such a run.
     start = time.perf_counter()
     whole = derive_and_measure(mechanism, told)
-    outputs = languages(profile, wanted=LANGUAGES)
-    told("draw", "")
+    outputs = languages(profile, wanted=wanted)
     drawn: Mapping[str, bytes] = {}
-    if len(mechanism.joints) <= most_axes(profile):
-        drawn, undrawn = _pictures(whole)
-        whole = replace(whole, undrawn=undrawn)
-    told("draw", whole.undrawn or ", ".join(drawn) or "nothing: it has no block")
+    if StructuredTextFiles.name in wanted:  # the pictures stand beside the blocks
+        told("draw", "")
+        if len(mechanism.joints) <= most_axes(profile):
+            drawn, undrawn = _pictures(whole)
+            whole = replace(whole, undrawn=undrawn)
+        told("draw", whole.undrawn or ", ".join(drawn) or "nothing: it has no block")
     found = ((language.name, language.part(whole)) for language in outputs)
     parts = {name: part for name, part in found if part is not None}
     pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in drawn.items()}
@@ -266,10 +269,10 @@ def _measured(seen: Evidence) -> str:
     return f"{poses}  round trip {found.round_trip:.0e}  Jacobian {found.jacobian:.0e}  {solutions}"
 
 
-def _attempt(profile: str | None, entry: Entry) -> Built | Failure:
+def _attempt(profile: str | None, wanted: Sequence[str], entry: Entry) -> Built | Failure:
     """Derive in a worker process: a problem comes back as text, because not every exception can travel."""
     path, mechanism = entry
     try:
-        return derive_one(mechanism, profile)
+        return derive_one(mechanism, profile, wanted=wanted)
     except Exception as problem:
         return failure(path, problem)

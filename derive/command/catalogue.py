@@ -16,7 +16,7 @@ from derive.command.own import complain, refused
 from derive.description.catalogue import MECHANISMS, Entry, catalogue, catalogue_and_faults
 from derive.faults import Failure, GenerationError
 from derive.output import differences, replace_folder, replace_parts
-from derive.pipeline import WRITTEN, Built, Work, attempts, files_of, languages, work_of
+from derive.pipeline import LANGUAGES, WRITTEN, Built, Work, attempts, files_of, languages, work_of
 from derive.progress import Progress
 
 _ROOT = MECHANISMS.parents[1]
@@ -70,7 +70,8 @@ def _files(options: argparse.Namespace, entries: tuple[Entry, ...]) -> tuple[dic
     cache = None if options.fresh else Cache(Path(f"{OUTPUT if options.language else options.output}.cache"))
     before = foundation(options.profile) if cache else ""
     work = work_of(chosen(entries, options.only), cache, before)
-    built, keys, faults = _derived(work, options.profile, cache, before)
+    wanted = LANGUAGES if cache else [language.name for language in outputs]  # the cache has all of them
+    built, keys, faults = _derived(work, options.profile, wanted, cache, before)
     is_unchanged = cache is not None and foundation(options.profile) == before
     files = files_of(built, outputs, cache, keys if is_unchanged else ()) if built else {}
     if cache:
@@ -81,14 +82,14 @@ def _files(options: argparse.Namespace, entries: tuple[Entry, ...]) -> tuple[dic
 
 
 def _derived(
-    work: Work, profile: str | None, cache: Cache | None, before: str
+    work: Work, profile: str | None, wanted: Sequence[str], cache: Cache | None, before: str
 ) -> tuple[list[Built], list[str | None], list[Failure]]:
     """What was derived, with its keys, and the faults; what is new is kept."""
     built: list[Built] = []
     keys: list[str | None] = []
     faults: list[Failure] = []
     progress = Progress(len(work.missing), sys.stdout)
-    for key, one in zip(work.keys, attempts(work, profile), strict=True):
+    for key, one in zip(work.keys, attempts(work, profile, wanted), strict=True):
         if isinstance(one, Failure):
             faults.append(one)
             continue

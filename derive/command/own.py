@@ -138,7 +138,7 @@ def _derived(path: Path, package: str, options: argparse.Namespace, stages: Stag
     mechanism = load(path)
     stages.line(f"  {_described(mechanism)}")
     try:
-        built = derive_one(mechanism, profile, stages.told)
+        built = derive_one(mechanism, profile, stages.told, [language.name for language in outputs])
         files = files_of([built], [one for one in outputs if one.name in built.parts])
     except Exception as problem:
         raise error(path, problem) from None

@@ -55,7 +55,7 @@ def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[
     """The page of one machine of a user."""
     mechanism = load(path)
     package = own.package_of(path, None)
-    built = derive_one(mechanism, None, stages.told)
+    built = derive_one(mechanism, None, stages.told, [_LANGUAGE])
     files = files_of([built], languages(None, package, [_LANGUAGE]))
     classes = {mechanism.name: _class(mechanism)}
     content = Content(f"{mechanism.name}: Softkin", _modules(files), package, classes, models)
