@@ -24,7 +24,8 @@ from derive.description.validate import validate
 from derive.emit.python import package
 from derive.emit.python.entries import class_name, module_name
 from derive.emit.python.layout import formatted
-from derive.pipeline import UNFIT, GenerationError, derive_and_measure, reason_of
+from derive.faults import UNFIT, GenerationError, one_line
+from derive.pipeline import derive_and_measure
 
 _PARTS = ("", "_array_programs", "_unrolled")
 """The packages that hold modules of a mechanism."""
@@ -40,7 +41,7 @@ def compiled(description: Mechanism | str | Path) -> type[Any]:
         mechanism = validate(description) if isinstance(description, Mechanism) else load(Path(description))
         kinematics = derive_and_measure(mechanism)
     except UNFIT as problem:
-        reason = reason_of(problem)
+        reason = one_line(problem)
         is_placed = path is not None and reason.startswith(str(path))
         raise type(problem)(reason if is_placed else in_place(path, reason) if path else with_remedy(reason)) from None
     runtime = _runtime()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import time
-import traceback
 from base64 import b64decode, b64encode
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -17,7 +16,7 @@ from typing import Any
 from derive.cache import Cache, entry_key, key_of
 from derive.description.catalogue import Entry
 from derive.description.mechanism import DescriptionError, Mechanism
-from derive.description.places import in_place
+from derive.description.remedies import with_remedy
 from derive.emit.c import package as c
 from derive.emit.javascript import package as javascript
 from derive.emit.language import Language, Part
@@ -25,17 +24,13 @@ from derive.emit.linuxcnc import package as linuxcnc
 from derive.emit.named_package import NamedPackage
 from derive.emit.python import package as python
 from derive.emit.softmotion.library import StructuredTextFiles, most_axes
-from derive.ir.verify import BrokenProgram
+from derive.faults import Failure, GenerationError, failure, one_line
 from derive.kinematics.kinematics import Evidence, Kinematics
-from derive.solver.solve import Unsolved
-from derive.witness.disagreement import Disagreement
 
 PROCESSES = 2
 WRITTEN = (python.name, StructuredTextFiles.name)
 """The languages that are written unless others are asked for."""
 LANGUAGES = (*WRITTEN, javascript.name, c.name, linuxcnc.name)
-UNFIT = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
-"""What a wrong description leads to: the message says enough."""
 _LANGUAGES = {
     python.name: "Python", StructuredTextFiles.name: "Structured Text", javascript.name: "JavaScript", c.name: "C",
     linuxcnc.name: "LinuxCNC",
@@ -48,17 +43,6 @@ _BOUNDS = {
 """Why a language does not hold a machine."""
 Told = Callable[[str, str], None]
 """What is told about a stage: its name, and its result, which is empty at its begin."""
-
-
-class GenerationError(Exception):
-    """Nothing can be generated; the message names the file and the thing."""
-
-
-@dataclass(frozen=True)
-class Failure:
-    """A mechanism that cannot be derived, in one message with file, line and remedy."""
-
-    message: str
 
 
 @dataclass(frozen=True)
@@ -131,16 +115,16 @@ def work_of(entries: Sequence[Entry], cache: Cache | None, foundation: str) -> W
     return Work(tuple(entries), keys, tuple(None if data is None else from_plain(data) for data in found))
 
 
-def derive_all(work: Work, profile: str | None) -> Iterator[Built]:
+def derive_all(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES) -> Iterator[Built]:
     """Every mechanism, in the order of the catalogue; raises `GenerationError` at the first that cannot be derived."""
-    for result in attempts(work, profile):
+    for result in attempts(work, profile, wanted):
         if isinstance(result, Failure):
-            raise GenerationError(result.message)
+            raise result.error
         yield result
 
 
-def attempts(work: Work, profile: str | None) -> Iterator[Built | Failure]:
-    """What came of every mechanism, in the order of the catalogue."""
+def attempts(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES) -> Iterator[Built | Failure]:
+    """What came of every mechanism, in the order of the catalogue. wanted: the languages that are written of it."""
     if not work.missing:
         yield from (kept for kept in work.kept if kept is not None)
         return
@@ -148,7 +132,7 @@ def attempts(work: Work, profile: str | None) -> Iterator[Built | Failure]:
     # time.
     _load()
     with ProcessPoolExecutor(max_workers=min(PROCESSES, len(work.missing)), initializer=gc.disable) as pool:
-        derived = pool.map(partial(_attempt, profile), work.missing)
+        derived = pool.map(partial(_attempt, profile, wanted), work.missing)
         try:
             for kept in work.kept:
                 yield next(derived) if kept is None else kept
@@ -162,21 +146,24 @@ def _load() -> None:
         import_module(f"derive.{room}")
 
 
-def derive_one(mechanism: Mechanism, profile: str | None = None, told: Told = _nobody) -> Built:
-    """Derive one mechanism, measure it, draw it, and write it in every language.
+def derive_one(
+    mechanism: Mechanism, profile: str | None = None, told: Told = _nobody, wanted: Sequence[str] = LANGUAGES
+) -> Built:
+    """Derive one mechanism, measure it, draw it, and write it in the languages that are wanted.
 
     told: called at the begin of each of these stages with its name and "", at its end with its name and the result.
     """
     # Not loaded where nothing is derived: CasADi and matplotlib take longer to start than the rest of such a run.
     start = time.perf_counter()
     whole = derive_and_measure(mechanism, told)
-    outputs = languages(profile, wanted=LANGUAGES)
-    told("draw", "")
+    outputs = languages(profile, wanted=wanted)
     drawn: Mapping[str, bytes] = {}
-    if len(mechanism.joints) <= most_axes(profile):
-        drawn, undrawn = _pictures(whole)
-        whole = replace(whole, undrawn=undrawn)
-    told("draw", whole.undrawn or ", ".join(drawn) or "nothing: it has no block")
+    if StructuredTextFiles.name in wanted:  # the pictures stand beside the blocks
+        told("draw", "")
+        if len(mechanism.joints) <= most_axes(profile):
+            drawn, undrawn = _pictures(whole)
+            whole = replace(whole, undrawn=undrawn)
+        told("draw", whole.undrawn or ", ".join(drawn) or "nothing: it has no block")
     found = ((language.name, language.part(whole)) for language in outputs)
     parts = {name: part for name, part in found if part is not None}
     pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in drawn.items()}
@@ -186,7 +173,7 @@ def derive_one(mechanism: Mechanism, profile: str | None = None, told: Told = _n
 
 
 def derive_and_measure(mechanism: Mechanism, told: Told = _nobody) -> Kinematics:
-    """Derive one mechanism and measure it. Raises what `UNFIT` lists, where one of them fails."""
+    """Derive one mechanism and measure it. Raises what `faults.UNFIT` lists, where one of them fails."""
     from derive.kinematics.build import build
     from derive.report.branch_meanings import with_meanings
     from derive.report.self_test import self_test
@@ -208,9 +195,9 @@ def _pictures(kinematics: Kinematics) -> tuple[Mapping[str, bytes], str]:
     try:
         return pictures_of(kinematics), ""
     except DescriptionError as problem:
-        return {}, _one_line(problem)
+        return {}, with_remedy(one_line(problem))
     except Exception as problem:  # whatever a drawing meets, the formulas are proven without it
-        return {}, f"{type(problem).__name__}: {_one_line(problem)}"
+        return {}, f"{type(problem).__name__}: {one_line(problem)}"
 
 
 def languages(
@@ -286,22 +273,10 @@ def _measured(seen: Evidence) -> str:
     return f"{poses}  round trip {found.round_trip:.0e}  Jacobian {found.jacobian:.0e}  {solutions}"
 
 
-def _attempt(profile: str | None, entry: Entry) -> Built | Failure:
+def _attempt(profile: str | None, wanted: Sequence[str], entry: Entry) -> Built | Failure:
     """Derive in a worker process: a problem comes back as text, because not every exception can travel."""
     path, mechanism = entry
     try:
-        return derive_one(mechanism, profile)
+        return derive_one(mechanism, profile, wanted=wanted)
     except Exception as problem:
-        return Failure(in_place(path, reason_of(problem)))
-
-
-def reason_of(problem: Exception) -> str:
-    """What a problem says: of one that no description should lead to, also where it was met."""
-    if isinstance(problem, UNFIT):
-        return _one_line(problem)
-    place = traceback.extract_tb(problem.__traceback__)[-1]
-    return f"{type(problem).__name__}: {_one_line(problem)} ({Path(place.filename).name}:{place.lineno})"
-
-
-def _one_line(problem: Exception) -> str:
-    return " ".join(str(problem).split())
+        return failure(path, problem)

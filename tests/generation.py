@@ -15,8 +15,9 @@ from derive.command import catalogue as command
 from derive.command.line import main
 from derive.emit.javascript import package as javascript
 from derive.emit.language import Part
+from derive.faults import Failure
 from derive.kinematics.kinematics import Evidence
-from derive.pipeline import Built, Failure, Work
+from derive.pipeline import Built, Work
 
 
 def generate(output: str, evidence: str) -> int:

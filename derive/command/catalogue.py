@@ -12,10 +12,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from derive.cache import Cache, foundation
-from derive.command.own import complain
+from derive.command.own import complain, refused
 from derive.description.catalogue import MECHANISMS, Entry, catalogue, catalogue_and_faults
+from derive.faults import Failure, GenerationError
 from derive.output import differences, replace_folder, replace_parts
-from derive.pipeline import WRITTEN, Built, Failure, GenerationError, Work, attempts, files_of, languages, work_of
+from derive.pipeline import LANGUAGES, WRITTEN, Built, Work, attempts, files_of, languages, work_of
 from derive.progress import Progress
 
 _ROOT = MECHANISMS.parents[1]
@@ -23,7 +24,7 @@ OUTPUT = _ROOT / "generated" if (_ROOT / "pyproject.toml").is_file() else Path("
 
 
 def generate(options: argparse.Namespace) -> int:
-    """Write the output folder; 1 where a mechanism could not be derived."""
+    """Write the output folder; 1 where a mechanism could not be derived, 3 by a mistake of the compiler."""
     if options.output == OUTPUT and (options.only or options.language):
         what = "--only" if options.only else "--language"
         raise GenerationError(f"{what} needs --output: the output folder of the project holds every mechanism")
@@ -33,16 +34,15 @@ def generate(options: argparse.Namespace) -> int:
     if unread and not (options.keep_going and entries):
         return 1
     files, underived = _files(options, entries)
-    for fault in underived:
-        complain(fault)
+    statuses = [refused(fault.error, options.traceback, status=1) for fault in underived]
     if underived and not (options.keep_going and files):
-        return 1
+        return max(statuses)
     if options.language:
         replace_parts(options.output, files)
     elif any(differences(options.output, files)):
         replace_folder(options.output, files)
     print(f"{len(files)} files in {options.output}")
-    return 1 if unread or underived else 0
+    return max([*statuses, 1 if unread else 0])
 
 
 def compare(options: argparse.Namespace) -> int:
@@ -60,17 +60,18 @@ def machine_files(options: argparse.Namespace) -> dict[str, bytes]:
     """The files of all mechanisms in the languages that are asked for. Raises `GenerationError` at the first fault."""
     files, faults = _files(options, catalogue(options.mechanisms))
     if faults:
-        raise GenerationError(faults[0])
+        raise faults[0].error
     return files
 
 
-def _files(options: argparse.Namespace, entries: tuple[Entry, ...]) -> tuple[dict[str, bytes], list[str]]:
+def _files(options: argparse.Namespace, entries: tuple[Entry, ...]) -> tuple[dict[str, bytes], list[Failure]]:
     """All files of a run, from the cache what it has, and what could not be derived."""
     outputs = languages(options.profile, wanted=options.language or WRITTEN)
     cache = None if options.fresh else Cache(Path(f"{OUTPUT if options.language else options.output}.cache"))
     before = foundation(options.profile) if cache else ""
     work = work_of(chosen(entries, options.only), cache, before)
-    built, keys, faults = _derived(work, options.profile, cache, before)
+    wanted = LANGUAGES if cache else [language.name for language in outputs]  # the cache has all of them
+    built, keys, faults = _derived(work, options.profile, wanted, cache, before)
     is_unchanged = cache is not None and foundation(options.profile) == before
     files = files_of(built, outputs, cache, keys if is_unchanged else ()) if built else {}
     if cache:
@@ -81,16 +82,16 @@ def _files(options: argparse.Namespace, entries: tuple[Entry, ...]) -> tuple[dic
 
 
 def _derived(
-    work: Work, profile: str | None, cache: Cache | None, before: str
-) -> tuple[list[Built], list[str | None], list[str]]:
+    work: Work, profile: str | None, wanted: Sequence[str], cache: Cache | None, before: str
+) -> tuple[list[Built], list[str | None], list[Failure]]:
     """What was derived, with its keys, and the faults; what is new is kept."""
     built: list[Built] = []
     keys: list[str | None] = []
-    faults: list[str] = []
+    faults: list[Failure] = []
     progress = Progress(len(work.missing), sys.stdout)
-    for key, one in zip(work.keys, attempts(work, profile), strict=True):
+    for key, one in zip(work.keys, attempts(work, profile, wanted), strict=True):
         if isinstance(one, Failure):
-            faults.append(one.message)
+            faults.append(one)
             continue
         progress.step(_line(one), one.seconds is not None)
         if cache and key and one.seconds is not None and foundation(profile) == before:

@@ -15,8 +15,8 @@ from derive.command.report import opened, written
 from derive.command.stages import Stages
 from derive.description.catalogue import load
 from derive.description.mechanism import Mechanism
-from derive.description.places import in_place
 from derive.equations.problem import Equation
+from derive.faults import error
 from derive.kinematics.assembly import assembled, with_derived_assembly
 from derive.kinematics.branch_assignment import Assignment, assign
 from derive.kinematics.build import prepared
@@ -25,7 +25,6 @@ from derive.kinematics.forward import pose_at_axes, solve_for_position
 from derive.kinematics.inverse import Inverse, solve_at, solve_pose
 from derive.kinematics.scan.choice import with_search
 from derive.kinematics.scan.derivations import without_search
-from derive.pipeline import GenerationError, reason_of
 from derive.plate.passive import solve_passive
 from derive.report.used import equations_of
 from derive.solver.solve import Step, Unsolved
@@ -61,9 +60,9 @@ def explain(options: argparse.Namespace) -> int:
             for line in explanation(mechanism):
                 stages.line(line)
         except Exception as problem:
-            raise GenerationError(in_place(path, reason_of(problem))) from None
+            raise error(path, problem) from None
 
-    return each(described(options.files), told, keep_going=True)
+    return each(described(options.files), told, keep_going=True, with_trace=options.traceback)
 
 
 def explanation(mechanism: Mechanism) -> Iterator[str]:

@@ -8,7 +8,8 @@ softkin derive my_machine.py --out build   derive it: Python package, Structured
 softkin view my_machine.py                 write a page that shows it in a browser
 softkin live --machine my_machine.json     show it in the browser, moved by the axis values of its controller
 
-Status 0 is success; 2 a machine, or a command, that cannot be right; 1 a catalogue that is not as it should be.
+Status 0 is success; 2 a machine, or a command, that cannot be right; 1 a catalogue that is not as it should be;
+3 a mistake of the compiler, which says what to report.
 """
 
 from __future__ import annotations
@@ -21,22 +22,24 @@ from pathlib import Path
 from derive.command import catalogue, explain, live, new, own, report, view
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
+from derive.faults import GenerationError, error
 from derive.importing import line as importing
 from derive.output import ForeignFolder
-from derive.pipeline import LANGUAGES, GenerationError
+from derive.pipeline import LANGUAGES
 
-_WRONG, _STALE, _INTERRUPTED = 2, 1, 130
+_STALE, _INTERRUPTED = 1, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; 0 where it succeeded, else one message a fault on stderr, and 1 or 2."""
+    """Run a command; 0 where it succeeded, else one message a fault on stderr, and 1, 2 or 3."""
     options = _options(arguments)
     is_catalogue = options.run in (catalogue.generate, catalogue.compare, report.report)
     try:
         return int(options.run(options))
     except (DescriptionError, GenerationError, ForeignFolder, OSError) as problem:
-        own.complain(str(problem))
-        return _STALE if is_catalogue else _WRONG
+        return own.refused(problem, options.traceback, _STALE if is_catalogue else own.WRONG)
+    except Exception as problem:
+        return own.refused(error(None, problem), options.traceback)
     except KeyboardInterrupt:
         return _INTERRUPTED
 
@@ -51,6 +54,8 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     _own_commands(commands)
     _catalogue_commands(commands)
+    for command in commands.choices.values():
+        command.add_argument("--traceback", action="store_true", help="print where a mistake of the compiler was met")
     options = parser.parse_args(arguments)
     if options.command == "check":
         options.run = own.check if options.files else catalogue.compare

@@ -13,10 +13,13 @@ from pathlib import Path
 from derive.command.stages import Stages
 from derive.description.catalogue import load
 from derive.description.mechanism import DescriptionError, Mechanism
-from derive.description.places import in_place
+from derive.description.places import line_of
+from derive.faults import CompilerError, GenerationError, error
 from derive.output import ForeignFolder, differences, replace_beside_others, replace_parts
-from derive.pipeline import WRITTEN, GenerationError, derive_one, files_of, languages, reason_of, unwritten
+from derive.pipeline import WRITTEN, derive_one, files_of, languages, unwritten
 
+WRONG, MISTAKEN = 2, 3
+"""Status of a machine that cannot be right, and of a mistake of the compiler."""
 _TAKEN = ("softkin", "derive", "numpy", "scipy", "sympy", "casadi", "matplotlib")
 """Packages that a user of the machine may have installed, besides the modules of Python."""
 
@@ -26,8 +29,21 @@ def complain(message: str) -> None:
     print(f"error: {message.replace(f'{Path.cwd()}/', '')}", file=sys.stderr, flush=True)
 
 
+def refused(problem: Exception, with_trace: bool, status: int = WRONG) -> int:
+    """Say what was refused, and answer the status: of a mistake of the compiler its own, else the one given.
+
+    with_trace: whether the traceback of such a mistake is printed.
+    """
+    complain(str(problem))
+    if not isinstance(problem, CompilerError):
+        return status
+    if with_trace:
+        print(problem.trace, file=sys.stderr, flush=True)
+    return MISTAKEN
+
+
 def derive(options: argparse.Namespace) -> int:
-    """Derive machines and write them; 2 where one of them cannot be derived."""
+    """Derive machines and write them; 2 where one of them cannot be derived, 3 by a mistake of the compiler."""
     files = described(options.files)
     if options.package and len(files) > 1:
         raise GenerationError("--package names the package of one machine: derive one file at a time")
@@ -49,16 +65,17 @@ def derive(options: argparse.Namespace) -> int:
             replace_beside_others(folder, data)
         stages.told("write", f"{len(data)} files in {folder}")
 
-    return each(files, written, options.keep_going)
+    return each(files, written, options.keep_going, options.traceback)
 
 
 def check(options: argparse.Namespace) -> int:
-    """Derive and measure machines, and write nothing; 2 where one of them cannot be derived."""
+    """Derive and measure machines, and write nothing; status as of `derive`."""
     files = described(options.files)
     return each(
         files,
         lambda path, stages: stages.line(f"  {len(_derived(path, 'checked', options, stages))} files, not written"),
         options.keep_going,
+        options.traceback,
     )
 
 
@@ -93,9 +110,11 @@ def refuse_another(folder: Path, package: str) -> None:
             )
 
 
-def each(files: Sequence[Path], work: Callable[[Path, Stages], None], keep_going: bool) -> int:
-    """Do the work for every file, and say what each of them came to."""
-    wrong: list[Path] = []
+def each(
+    files: Sequence[Path], work: Callable[[Path, Stages], None], keep_going: bool, with_trace: bool = False
+) -> int:
+    """Do the work for every file, and say what each of them came to; the status is that of the worst."""
+    statuses: list[int] = []
     for path in files:
         stages = Stages(sys.stdout)
         try:
@@ -103,14 +122,13 @@ def each(files: Sequence[Path], work: Callable[[Path, Stages], None], keep_going
             work(path, stages)
         except Exception as problem:  # one bad file never stops another, whatever is wrong with it
             is_told = isinstance(problem, DescriptionError | GenerationError | ForeignFolder | OSError)
-            wrong.append(path)
             stages.line("  refused")
-            complain(str(problem) if is_told else in_place(path, reason_of(problem)))
+            statuses.append(refused(problem if is_told else error(path, problem), with_trace))
             if not keep_going:
                 break
     if len(files) > 1:
-        print(f"{len(files) - len(wrong)} of {len(files)} machines")
-    return 2 if wrong else 0
+        print(f"{len(files) - len(statuses)} of {len(files)} machines")
+    return max(statuses, default=0)
 
 
 def _derived(path: Path, package: str, options: argparse.Namespace, stages: Stages) -> dict[str, bytes]:
@@ -120,12 +138,12 @@ def _derived(path: Path, package: str, options: argparse.Namespace, stages: Stag
     mechanism = load(path)
     stages.line(f"  {_described(mechanism)}")
     try:
-        built = derive_one(mechanism, profile, stages.told)
+        built = derive_one(mechanism, profile, stages.told, [language.name for language in outputs])
         files = files_of([built], [one for one in outputs if one.name in built.parts])
     except Exception as problem:
-        raise GenerationError(in_place(path, reason_of(problem))) from None
+        raise error(path, problem) from None
     if built.undrawn:
-        stages.line(f"  warning: {in_place(path, f'not drawn: {built.undrawn}')}")
+        stages.line(f"  warning: {path}:{line_of(path, built.undrawn)}: not drawn: {built.undrawn}")
     for note in built.notes(options.language or ()):
         stages.line(f"  note: {note}")
     for note in unwritten(built, outputs, mechanism):

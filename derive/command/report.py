@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from derive.command.catalogue import chosen
-from derive.command.own import complain, package_of
+from derive.command.own import package_of, refused
 from derive.command.stages import Stages
 from derive.description.catalogue import Entry, catalogue
 from derive.description.mechanism import Mechanism
-from derive.description.places import in_place
-from derive.pipeline import PROCESSES, Failure, GenerationError, Told, derive_and_measure, reason_of
+from derive.faults import Failure, GenerationError, error, failure
+from derive.pipeline import PROCESSES, Told, derive_and_measure
 from derive.progress import Progress
 
 if TYPE_CHECKING:
@@ -33,16 +33,15 @@ _DESKTOPS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
 def report(options: argparse.Namespace) -> int:
-    """Write the pages and their index; 1 where a mechanism could not be derived."""
+    """Write the pages and their index; 1 where a mechanism could not be derived, 3 by a mistake of the compiler."""
     from derive.emit.page.page import index_of
 
     entries = chosen(catalogue(options.mechanisms), options.only)
     pages: list[Page] = []
-    progress, faults = Progress(len(entries), sys.stdout), 0
+    progress, status = Progress(len(entries), sys.stdout), 0
     for made in _pages(entries, _is_beside_viewer(options.out)):
         if isinstance(made, Failure):
-            complain(made.message)
-            faults += 1
+            status = max(status, refused(made.error, options.traceback, status=1))
             continue
         path = _write(options.out, made.file, made.text)
         progress.step(f"{path}  {path.stat().st_size // 1000} kB", took_time=True)
@@ -51,7 +50,7 @@ def report(options: argparse.Namespace) -> int:
     if pages:
         index = _write(options.out, _INDEX, index_of(pages))
         print(f"{len(pages)} page{'' if len(pages) == 1 else 's'}, listed in {index}")
-    return 1 if faults else 0
+    return status
 
 
 def written(path: Path, mechanism: Mechanism, folder: Path, stages: Stages) -> Path:
@@ -59,7 +58,7 @@ def written(path: Path, mechanism: Mechanism, folder: Path, stages: Stages) -> P
     try:
         page = _page(mechanism, stages.told, _viewer(path) if _is_beside_viewer(folder) else "")
     except Exception as problem:
-        raise GenerationError(in_place(path, reason_of(problem))) from None
+        raise error(path, problem) from None
     target = _write(folder, page.file, page.text)
     stages.line(f"  {target}  {target.stat().st_size // 1000} kB")
     return target
@@ -109,7 +108,7 @@ def _attempt(has_viewer: bool, entry: Entry) -> Page | Failure:
         viewer = f"../viewer.html#machine={mechanism.name}" if has_viewer else ""
         return _page(mechanism, lambda stage, found: None, viewer)
     except Exception as problem:
-        return Failure(in_place(path, reason_of(problem)))
+        return failure(path, problem)
 
 
 def _write(folder: Path, name: str, text: str) -> Path:

@@ -15,8 +15,9 @@ from derive.command.stages import Stages
 from derive.description.catalogue import MECHANISMS, Entry, catalogue, load
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.emit.python.entries import class_name
+from derive.faults import GenerationError
 from derive.output import write_file
-from derive.pipeline import Built, GenerationError, derive_one, files_of, languages
+from derive.pipeline import Built, derive_one, files_of, languages
 from derive.view.node import MissingTool
 from derive.view.page import BrokenPage, Content, Model, page
 
@@ -38,7 +39,12 @@ def view(options: argparse.Namespace) -> int:
     if options.model and len(files_given) > 1:
         raise GenerationError("--model names a body of one machine: view one file at a time")
     models = tuple(map(_model, options.model))
-    return own.each(files_given, lambda path, stages: _own(path, stages, options, models), keep_going=True)
+    return own.each(
+        files_given,
+        lambda path, stages: _own(path, stages, options, models),
+        keep_going=True,
+        with_trace=options.traceback,
+    )
 
 
 def content_of(entries: Sequence[Entry], modules: Mapping[str, bytes]) -> Content:
@@ -52,7 +58,7 @@ def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[
     """The page of one machine of a user."""
     mechanism = load(path)
     package = own.package_of(path, None)
-    built = derive_one(mechanism, None, stages.told)
+    built = derive_one(mechanism, None, stages.told, [_LANGUAGE, "python"])
     files = files_of([built], languages(None, package, [_LANGUAGE]))
     content = Content(
         f"{mechanism.name}: Softkin",

@@ -16,7 +16,8 @@ from derive.description.places import in_place, line_of_field
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
 
-MECHANISMS = Path(__file__).resolve().parents[1] / "mechanisms"
+_COMPILER = Path(__file__).resolve().parents[1]
+MECHANISMS = _COMPILER / "mechanisms"
 Entry = tuple[Path, Mechanism]
 
 
@@ -57,6 +58,8 @@ def load(path: Path) -> Mechanism:
     except DescriptionError as problem:
         raise DescriptionError(in_place(path, str(problem))) from None
     except Exception as problem:  # what no check foresees is still about this file
+        if _is_of_the_compiler(problem):
+            raise
         raise DescriptionError(in_place(path, f"{type(problem).__name__}: {_text(problem)}")) from None
 
 
@@ -71,6 +74,8 @@ def _executed(path: Path) -> ModuleType:
     try:
         spec.loader.exec_module(module)
     except (Exception, SystemExit) as problem:
+        if _is_of_the_compiler(problem):
+            raise
         raise DescriptionError(_fault(problem, path)) from None
     return module
 
@@ -108,6 +113,14 @@ def _line_of(problem: BaseException, path: Path) -> str:
     frames = traceback.extract_tb(problem.__traceback__)
     lines = [frame.lineno for frame in frames if Path(frame.filename).resolve() == path.resolve()]
     return f"{path}:{lines[-1]}" if lines else str(path)
+
+
+def _is_of_the_compiler(problem: BaseException) -> bool:
+    """Whether a name is missing in the compiler itself, and not in a file that describes a machine."""
+    frames = traceback.extract_tb(problem.__traceback__)
+    place = Path(frames[-1].filename).resolve() if frames else Path()
+    is_inside = _COMPILER in place.parents and MECHANISMS not in place.parents
+    return is_inside and isinstance(problem, NameError | ImportError | SyntaxError)
 
 
 def _text(problem: BaseException) -> str:

@@ -45,21 +45,16 @@ from derive.description.joints import (
     rotary,
 )
 from derive.description.kinds import expressions
-from derive.description.quantity import Quantity
+from derive.description.loops import ROTATION, Bound, Limited, Plane, Rod, X, Y, Z, bound, guide, limited, on_plate, rod
 from derive.geometry.frames import Chain
 from derive.geometry.half_turns import with_half_turns_last
 from derive.ir.symbols import (
     COORDINATE_NAMES,
     ROTATION_ENTRIES,
-    real,
 )
 
 TURN = 2 * sp.pi
 COORDINATE_NAMES_OF_A_PLANE = "xy"
-X, Y, Z = (Quantity(real(name)) for name in COORDINATE_NAMES)
-"""The commanded position, for closures that are not a chain."""
-ROTATION = sp.ImmutableMatrix(3, 3, ROTATION_ENTRIES)
-"""The commanded rotation, for closures that follow the whole of it."""
 
 
 __all__ = [
@@ -133,70 +128,6 @@ class Search:
     joint: Joint
     where: Parameter | None = None
     """The parameter without which the closure has a closed form; None where it has none for any machine."""
-
-
-@dataclass(frozen=True)
-class Rod:
-    """A rigid rod of a loop: its end on the base side (moved by joints), its end on the plate, its length."""
-
-    name: str
-    base: tuple[sp.Expr, ...]
-    plate: tuple[sp.Expr, ...]
-    length: sp.Expr
-    base_cone: sp.Expr | None = None
-    """The largest angle between the rod and its direction at the home pose, at its joint on the base (radians)."""
-    plate_cone: sp.Expr | None = None
-    """The same angle at its joint on the plate."""
-
-    @property
-    def key(self) -> str:
-        """What programs call it."""
-        return self.name
-
-    @property
-    def equation(self) -> sp.Expr:
-        """|plate - base|^2 - length^2."""
-        return sp.Add(*[(p - b) ** 2 for p, b in zip(self.plate, self.base, strict=True)]) - self.length**2
-
-
-@dataclass(frozen=True)
-class Plane:
-    """A plane in which a point of the plate stays: normal . point = offset. Joints may shift it."""
-
-    name: str
-    normal: tuple[sp.Expr, ...]
-    """Made of numbers and parameters; of length one, or as long as tolerances are to be in units of length."""
-    plate: tuple[sp.Expr, ...]
-    offset: sp.Expr
-
-    @property
-    def key(self) -> str:
-        """What programs call it, beside the rods."""
-        return f"guide_{self.name}"
-
-    @property
-    def equation(self) -> sp.Expr:
-        """normal . point - offset."""
-        return sp.Add(*[n * p for n, p in zip(self.normal, self.plate, strict=True)]) - self.offset
-
-
-@dataclass(frozen=True)
-class Bound:
-    """A quantity of joints and position whose absolute value has a bound (the swing of a ball joint)."""
-
-    value: sp.Expr
-    largest: sp.Expr
-    meaning: str
-
-
-@dataclass(frozen=True)
-class Limited:
-    """A quantity with limits of its own that is no axis (the relative angle of an elbow, X of an H-gantry)."""
-
-    name: str
-    value: sp.Expr
-    is_angle: bool
-    meaning: str
 
 
 class Turning(Enum):
@@ -413,51 +344,3 @@ def _axes_in_words(joints: Sequence[Joint]) -> str:
 def search(joint: Joint, *, where: Parameter) -> Search:
     """Scan a joint for roots where the parameter is not zero; where it is zero, the closure has a closed form."""
     return Search(joint, where)
-
-
-def rod(
-    name: str,
-    base: Sequence[object],
-    plate: Sequence[object],
-    length: object,
-    base_cone: sp.Expr | None = None,
-    plate_cone: sp.Expr | None = None,
-) -> Rod:
-    """A rigid rod between a point that joints move and a point of the plate."""
-    if len(base) != len(plate):
-        raise DescriptionError(
-            f"rod {name!r}: its ends have {len(base)} and {len(plate)} coordinates: give both in the plane, or both in "
-            "space"
-        )
-    return Rod(
-        name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length), base_cone, plate_cone
-    )
-
-
-def guide(name: str, normal: Sequence[object], plate: Sequence[object], offset: object = 0) -> Plane:
-    """A plane in which a point of the plate stays: `guide("1", (0, 1, 0), on_plate(R, 0, 0))`; shifted by joints it
-    lifts the plate: `guide("lift", (0, 0, 1), on_plate(0, 0, 0), S1 + HEIGHT)`.
-    """
-    if len(normal) != len(plate):
-        raise DescriptionError(
-            f"guide {name!r}: its normal and its point have {len(normal)} and {len(plate)} coordinates: give both in "
-            "the plane, or both in space"
-        )
-    return Plane(name, tuple(map(sp.sympify, normal)), tuple(map(sp.sympify, plate)), sp.sympify(offset))
-
-
-def on_plate(x: object, y: object, z: object | None = None) -> tuple[sp.Expr, ...]:
-    """The position of a point of the plate, from its coordinates in the frame of the plate; without z, in the plane."""
-    point = sp.Matrix([x, y] if z is None else [x, y, z])
-    size = len(point)
-    return tuple(sp.Matrix([X.symbol, Y.symbol, Z.symbol][:size]) + ROTATION[:size, :size] * point)
-
-
-def bound(value: object, largest: object, meaning: str) -> Bound:
-    """|value| must not exceed `largest`."""
-    return Bound(sp.sympify(value), sp.sympify(largest), meaning)
-
-
-def limited(name: str, value: object, meaning: str, *, angle: bool) -> Limited:
-    """A quantity with limits of its own, in radians or lengths."""
-    return Limited(name, sp.sympify(value), angle, meaning)

@@ -68,10 +68,6 @@ REMEDIES: tuple[tuple[str, str], ...] = (
         r"the home pose has \d+ assembly modes",
         "choose a home= at which every rod has a side, and no two legs are in line",
     ),
-    (
-        r"which nothing gives|nothing has chosen a turn|the slope of the residual is not",
-        "this is a mistake of the compiler: report it with the description",
-    ),
     (r"closure equations for \d+ commanded", "state one equation for each commanded coordinate"),
     (r"conditions are left, not one|may be out of reach in its", "search another joint, or leave search= out"),
     (r"is taken by|declares ", ""),

@@ -45,6 +45,7 @@ from derive.ir.symbols import (
     symbols_of,
 )
 from derive.ir.verify import RepeatedName, verify
+from derive.kept import kept_by_identity
 
 
 def normalise(name: str, statements: Iterable[Statement], outputs: Sequence[Output]) -> Program:
@@ -90,7 +91,8 @@ def without_assumptions(statements: Iterable[Statement]) -> tuple[Statement, ...
 def renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> Statement:
     """The statement with the names that it binds changed."""
     if isinstance(statement, Let):
-        return replace(statement, name=name(statement.name))
+        other = name(statement.name)
+        return statement if other is statement.name else replace(statement, name=other)
     if isinstance(statement, Solve):
         determinant = None if statement.determinant is None else name(statement.determinant)
         return replace(statement, names=tuple(map(name, statement.names)), determinant=determinant)
@@ -187,7 +189,8 @@ def told_in(statement: Statement, bound: Container[sp.Symbol], values: Mapping[s
     """The statement with its reason in names that are bound; `values` has the values of all others."""
     if not isinstance(statement, Require) or statement.reason is None:
         return statement
-    return replace(statement, reason=statement.reason.rewritten(partial(_in_full, bound=bound, values=values)))
+    reason = statement.reason.rewritten(partial(_in_full, bound=bound, values=values))
+    return statement if reason is statement.reason else replace(statement, reason=reason)
 
 
 def _in_full(value: sp.Basic, bound: Container[sp.Symbol], values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
@@ -199,8 +202,11 @@ def _in_full(value: sp.Basic, bound: Container[sp.Symbol], values: Mapping[sp.Sy
     return value
 
 
+@kept_by_identity(200)
 def untold(program: Program) -> Program:
     """The program for callers that get a status alone: its reasons compute nothing."""
+    if not any(next(told(s), None) is not None for s in program.body):
+        return program
     body = tuple(
         replace(s, reason=replace(s.reason, amount=None, unit=Unit.NONE, turns=()))
         if isinstance(s, Require) and s.reason

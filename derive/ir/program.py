@@ -282,7 +282,9 @@ def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> S
         return statement if value is statement.value else replace(statement, value=value)
     if isinstance(statement, Require):
         reason = None if statement.reason is None else statement.reason.rewritten(change)
-        return replace(statement, condition=change(statement.condition), reason=reason)
+        condition = change(statement.condition)
+        is_same = condition is statement.condition and reason is statement.reason
+        return statement if is_same else replace(statement, condition=condition, reason=reason)
     if isinstance(statement, Solve):
         return replace(
             statement, matrix=tuple(map(change, statement.matrix)), right=tuple(map(change, statement.right))

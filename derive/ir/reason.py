@@ -140,6 +140,8 @@ class Reason:
     def rewritten(self, change: Callable[[sp.Basic], sp.Expr]) -> Reason:
         """The same with every expression changed."""
         amount = None if self.amount is None else change(self.amount)
+        if amount is self.amount and not self.turns:
+            return self
         return replace(self, amount=amount, turns=tuple(turn.rewritten(change) for turn in self.turns))
 
 

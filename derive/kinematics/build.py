@@ -41,17 +41,15 @@ from derive.kinematics.coupling import coupling_programs
 from derive.kinematics.derived_branches import with_derived_branches
 from derive.kinematics.differential import (
     TWIST_ROWS,
-    Factor,
-    factor_of,
     jacobian_program,
     jacobian_rows,
-    samples_anywhere,
-    singularity_program,
     twist_program,
 )
 from derive.kinematics.forward import at_point, derivation_at_axes, forward_program, orientation_program, pose_at_axes
 from derive.kinematics.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics.kinematics import Freedom, Kinematics, Margin
+from derive.kinematics.margins.candidates import Factor, factor_of
+from derive.kinematics.margins.determinant import samples_anywhere, singularity_program
 from derive.kinematics.no_pose import near_home
 from derive.kinematics.number_of_joints import check_joints
 from derive.kinematics.parameters import machine_parameters, setup_program
@@ -291,7 +289,7 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
     allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS)}
     strangers = [s.name for s in program.inputs if s.name not in allowed]
     if strangers:
-        raise DescriptionError(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
+        raise BrokenProgram(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
 
 
 def _check_outputs(program: Program) -> None:

@@ -76,4 +76,4 @@ def _met(mechanism: Mechanism, inner: Mechanism, problem: Exception) -> frozense
     """The inputs whose names a derivation has met, or may have met where it came to nothing."""
     if isinstance(problem, SharedName | RepeatedName):
         return inputs_named(mechanism, inner, problem.names)
-    return frozenset() if isinstance(problem, BrokenProgram) else suspects(inner)
+    return suspects(inner)

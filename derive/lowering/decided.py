@@ -7,6 +7,7 @@ divisor = select(length > tolerance, length, 1)      →  length is read where d
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import is_
 
 import sympy as sp
 
@@ -37,4 +38,6 @@ def decided(program: Program) -> Program:
             about |= names_in(changed.condition)
         body.append(changed)
     outputs = tuple(Output(o.name, read(o.value)) for o in program.outputs)
+    if len(body) == len(program.body) and all(map(is_, body, program.body)) and outputs == program.outputs:
+        return program
     return with_inputs(replace(program, body=tuple(body), outputs=outputs))

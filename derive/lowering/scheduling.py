@@ -38,7 +38,7 @@ from derive.lowering.decided import decided
 from derive.lowering.stretches import follows, gathered
 
 
-@kept_by_identity(100)
+@kept_by_identity(400)
 def structured(program: Program) -> tuple[Item, ...]:
     """A program for a language that returns at the first refusal, and runs one side of a choice alone."""
     program = decided(replace(program, body=_together(program.body)))

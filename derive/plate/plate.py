@@ -1,4 +1,4 @@
-"""A platform that a loop turns: its home pose, the checks of its inverse, and its Jacobian.
+"""A platform that a loop turns: its home pose, and the checks of its inverse.
 
 det A (see `legs`) is the margin: it is zero where the lines of the rods belong to one linear complex (type 2). The
 inverse computes it from the spans of the legs, and divides by their lengths at the end.
@@ -15,15 +15,12 @@ from derive.description.mechanism import (
     Branch,
     DescriptionError,
     Mechanism,
-    Plane,
     Rod,
     Turning,
 )
-from derive.equations.closure import all_angles, fixed_angles, fixed_lets, signs_of, with_fixed_names
-from derive.equations.trigonometry import named_trigonometry
+from derive.equations.closure import all_angles, fixed_angles, signs_of, with_fixed_names
 from derive.ir.constants import (
     DEGREE,
-    FREE_ANGLE,
     SHORTEST_LINK,
     SINGULAR,
 )
@@ -39,7 +36,7 @@ from derive.ir.program import (
     Statement,
     Status,
 )
-from derive.ir.reason import Why, about, about_leg, about_machine, about_parameters
+from derive.ir.reason import Why, about, about_leg, about_parameters
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
     COORDINATE_NAMES,
@@ -56,7 +53,6 @@ from derive.plate.cones import cone_axes, cone_checks, cone_constants
 from derive.plate.legs import (
     MARGIN,
     RADIUS,
-    Leg,
     by_angles,
     divisor,
     home_angles,
@@ -346,42 +342,3 @@ def _long_enough(rod: Rod) -> Require:
     return Require(
         sp.Gt(rod.length, SHORTEST_LINK * SCALE), Status.UNREACHABLE, reason=about_leg(rod.name, Why.WITHOUT_LENGTH)
     )
-
-
-def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
-    """The Jacobian A^-1 (-B) at a pose that forward kinematics has found."""
-    joints = [j.symbol for j in mechanism.joints]
-    driven = sp.Matrix([_driven(mechanism, leg).jacobian(joints) for leg in legs_of(mechanism)]) * motors
-    lets, named = named_trigonometry(mechanism, list(driven))
-    width, shifts = len(joints), len(mechanism.motion.position)
-    words = (*(f"v{c}" for c in mechanism.motion.position), *(f"w{c}" for c in spins(mechanism)))
-    entries = [real(f"column_{column}_{word}") for word in words for column in range(1, width + 1)]
-    held = Require(sp.Gt(sp.Abs(DETERMINANT), FREE_ANGLE), Status.IMPOSSIBLE, reason=about_machine(Why.UNCONTROLLED))
-    system = Solve(
-        tuple(entries), rows(mechanism), tuple(named), None, "twist of the platform per velocity of each axis"
-    )
-    values = [e if k // width < shifts else e / RADIUS for k, e in enumerate(entries)]
-    return (held, *fixed_lets(mechanism), *lets, system), _of_the_task(mechanism, values)
-
-
-def _of_the_task(mechanism: Mechanism, twists: list[sp.Expr]) -> list[sp.Expr]:
-    """The rows of the task among those of the platform: commanded coordinates, and tilts about the axes of the tool."""
-    if not mechanism.passive:
-        return twists
-    width, position = len(mechanism.joints), mechanism.motion.position
-    matrix = sp.Matrix(len(twists) // width, width, twists)
-    spin = matrix[len(position) :, :]
-    if mechanism.task.turning is Turning.DIRECTION:
-        spin = (rotation_of(mechanism).T * spin)[:2, :]
-    kept = [position.index(c) for c in mechanism.task.position]
-    return list(sp.Matrix.vstack(matrix.extract(kept, list(range(width))), spin))
-
-
-def _driven(mechanism: Mechanism, leg: Leg) -> sp.Matrix:
-    """The negative of a leg's residual as a function of the joints, at a constant direction: along . base + length; of
-    a plane its offset.
-    """
-    if isinstance(leg, Plane):
-        return sp.Matrix([with_fixed_names(mechanism, leg.offset)])
-    ahead = sum((a * b for a, b in zip(names("along", leg), leg.base, strict=True)), leg.length)
-    return sp.Matrix([with_fixed_names(mechanism, ahead)])

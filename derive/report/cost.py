@@ -180,6 +180,17 @@ def cost_of(program: Program, of_sides: _OfSides = _most, repeats: Repeats | Non
     """The cost of one run of a program in the worst case. of_sides: what counts of the costs of
     both sides of a choice; repeats: how often the bodies of loops run, else as often as they may.
     """
+    if of_sides is _most and repeats is None:
+        return _at_most(program)
+    return _counted(program, of_sides, repeats)
+
+
+@kept_by_identity(400)
+def _at_most(program: Program) -> Cost:
+    return _counted(program, _most, None)
+
+
+def _counted(program: Program, of_sides: _OfSides, repeats: Repeats | None) -> Cost:
     items = (_item(item, of_sides, repeats) for item in structured(program))
     return _total(items) + _total(map(expression_cost, (o.value for o in program.outputs)))
 

@@ -23,9 +23,9 @@ from derive.kinematics.assembly import Assembled, assembled, with_derived_assemb
 from derive.kinematics.branch_assignment import Assignment, assign, with_branch_signs
 from derive.kinematics.build import prepared
 from derive.kinematics.derived_branches import with_derived_branches
-from derive.kinematics.differential import Factor, factor_of
 from derive.kinematics.forward import pose_at_axes, solve_for_position
 from derive.kinematics.inverse import Inverse, solve_pose
+from derive.kinematics.margins.candidates import Factor, factor_of
 from derive.kinematics.scan.choice import with_search
 from derive.kinematics.scan.derivations import solve_both
 from derive.plate.passive import GUIDES, guides_determinant, solve_passive

@@ -287,7 +287,7 @@ class Formulas:
     def _of(self, expressions: tuple[sp.Expr, ...], names: tuple[sp.Symbol, ...]) -> Formula:
         if (names, expressions) not in self._made:
             told = [sp.sympify(e).xreplace(self._turned) for e in expressions]
-            formula = sp.lambdify((*names, *self._constants), told, modules="numpy")
+            formula = sp.lambdify((*names, *self._constants), told, modules="numpy", cse=True)
             self._made[names, expressions] = formula
         return self._made[names, expressions]
 

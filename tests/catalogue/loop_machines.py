@@ -166,8 +166,10 @@ class LoopMachine(Machine):
     @cached_property
     def pool(self) -> Array:
         """Axis values of regular poses inside every bound."""
-        axes = self._assembled
-        axes = axes[self.is_possible(axes)]
+        joints, positions = self._closed
+        with np.errstate(invalid="ignore"):
+            regular = (self._indicators_at(joints, positions) > REGULAR * self._scales).all(axis=1)
+            axes = self._assembled[regular & (self.closure.room(joints, positions) > 1e-3)]
         assert len(axes) >= 30, (self.mechanism.name, self.given)
         return axes
 
@@ -178,12 +180,18 @@ class LoopMachine(Machine):
         return axes[self.robot.forward_batch(axes)[3] == softkin.Status.OK][:600]
 
     @cached_property
+    def _closed(self) -> tuple[Array, Array]:
+        """Joint values and positions there, by the closure."""
+        return self.closure.joints(self._assembled), self.closure.poses(self._assembled)[0]
+
+    @cached_property
     def _scales(self) -> Array:
-        return np.nanmax(self._indicators(self._assembled), axis=0)
+        return np.nanmax(self._indicators_at(*self._closed), axis=0)
 
     def _indicators(self, axes: Array) -> Array:
-        joints = self.closure.joints(axes)
-        positions = self.closure.poses(axes)[0]
+        return self._indicators_at(self.closure.joints(axes), self.closure.poses(axes)[0])
+
+    def _indicators_at(self, joints: Array, positions: Array) -> Array:
         sides = self.closure.side(joints, positions)
         return np.column_stack([np.abs(self.closure.indicators_at(joints, positions)), sides])
 

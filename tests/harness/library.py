@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from ast import Module
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from itertools import count
 from types import CodeType
 from typing import Any
 
@@ -27,7 +26,10 @@ from .universe import Universe
 
 __all__ = ["Cell", "Library", "StError", "StFault", "compile_st"]
 
-_numbers = count(1)
+FILENAME = "<structured text>"
+"""The file of all translations, as their traces name it."""
+Instrument = Callable[[str], Module]
+"""What reads a part of a translation, and changes it."""
 
 
 def compile_st(
@@ -35,11 +37,11 @@ def compile_st(
     order: str = "rows",
     matrix_size: int = 72,
     max_config_data: int = 31,
-    instrument: Callable[[str], Module] | None = None,
+    instrument: Instrument | None = None,
 ) -> Library:
     """Parse, check and translate texts (name -> Structured Text). Raises StError.
 
-    `instrument` may read the translated source and change it, so that running it can be watched.
+    `instrument` may read the translated source, part by part, and change it, so that running it can be watched.
     """
     translated = _translated(tuple(texts.items()), matrix_size, max_config_data)
     return Library(translated, stubs.MatrixAccess(order), matrix_size, instrument)
@@ -52,7 +54,6 @@ class Translated:
     universe: Universe
     own: tuple[ast.Declaration, ...]
     source: Source
-    filename: str
 
     @cached_property
     def python(self) -> str:
@@ -60,14 +61,35 @@ class Translated:
         return "\n".join(self.source.lines)
 
     @cached_property
-    def code(self) -> CodeType:
-        """What defines all objects."""
-        return compile(self.python, self.filename, "exec")
+    def parts(self) -> tuple[str, ...]:
+        """The translation text by text, each below as many empty lines as stand before it: what many libraries begin
+        with is compiled once.
+        """
+        lines, places = self.source.lines, self.source.places
+        starts = [n for n, line in enumerate(lines) if line and not line[0].isspace()]
+        files = ["" if (place := places[n]) is None else place.file for n in starts]
+        first = [n for n, file, before in zip(starts, files, [None, *files], strict=False) if file != before]
+        ends = [*first[1:], len(lines)]
+        return tuple("\n" * start + "\n".join(lines[start:end]) for start, end in zip(first, ends, strict=True))
+
+    def code(self, instrument: Instrument | None) -> Iterator[CodeType]:
+        """What defines all objects, in the order of the texts."""
+        return (_code(part, instrument) for part in self.parts)
 
     @cached_property
     def marked_code(self) -> dict[str, CodeType]:
         """The same, function by function, with a flag set before every statement."""
-        return marked_code(self.python, self.filename)
+        return {name: code for part in self.parts for name, code in _marked(part).items()}
+
+
+@lru_cache(maxsize=500)
+def _code(part: str, instrument: Instrument | None) -> CodeType:
+    return compile(part if instrument is None else instrument(part), FILENAME, "exec")
+
+
+@lru_cache(maxsize=500)
+def _marked(part: str) -> dict[str, CodeType]:
+    return marked_code(part, FILENAME)
 
 
 @lru_cache(maxsize=8)
@@ -83,7 +105,7 @@ def _translated(texts: tuple[tuple[str, str], ...], matrix_size: int, max_config
     everything = library_declarations + own
     facts = check(universe, everything)
     source = translate(universe, everything, facts, stubs.EXTRA_INITIALISATION)
-    return Translated(universe, tuple(own), source, f"<structured text {next(_numbers)}>")
+    return Translated(universe, tuple(own), source)
 
 
 @lru_cache(maxsize=256)
@@ -106,12 +128,12 @@ class Library:
         translated: Translated,
         access: stubs.MatrixAccess,
         matrix_size: int,
-        instrument: Callable[[str], Module] | None = None,
+        instrument: Instrument | None = None,
     ) -> None:
         # Typed loosely: what a declaration has depends on its kind, and a test knows the kind.
         self.objects: dict[str, Any] = {declaration.name: declaration for declaration in translated.own}
         self.python = translated.python
-        self.origin = Origin(translated.filename, translated.source.places)
+        self.origin = Origin(FILENAME, translated.source.places)
         self._translated, self._universe = translated, translated.universe
         self._access = access
         self._functions: dict[str, Function] = {}
@@ -120,8 +142,8 @@ class Library:
         self._names["class_smc_matrix3"] = type("Matrix3", (Matrix,), {"__slots__": (), "size": matrix_size})
         for name, function in stubs.natives(access).items():
             self._names["function_" + name] = function
-        changed = instrument and compile(instrument(self.python), translated.filename, "exec")
-        exec(changed or translated.code, self._names)
+        for code in translated.code(instrument):
+            exec(code, self._names)
         self._list_routines()
 
     def _list_routines(self) -> None:

@@ -24,6 +24,8 @@ from tests.text.settings import Range, own_limits, together
 
 Comparison = Callable[[SerialPair, Sample], None]
 ROUNDING = 1e-11
+ANSWERED = 3
+"""The commands of a sample that have an answer, and are diagnosed."""
 BYTES = 32
 """The bytes of CONFIGDATA in the stand-in for the library."""
 
@@ -169,9 +171,14 @@ def assert_same_pose(pair: SerialPair, found: Answer, expected: Answer, command:
 
 
 def diagnose(pair: SerialPair, sample: Sample) -> None:
-    """Diagnose gives the reason of Python for every command of the sample."""
+    """Diagnose gives the reason of Python for every command of the sample that is refused, and no reason for the first
+    that is not: what it finds then is what `inverse` compares for all of them.
+    """
+    answered = 0
     for command, (status, _) in solved(pair.machine, sample):
-        compare_reason(pair, command, status)
+        answered += status == OK
+        if status != OK or answered <= ANSWERED:
+            compare_reason(pair, command, status)
 
 
 def orientation(pair: SerialPair, sample: Sample) -> None:

@@ -22,8 +22,8 @@ from derive.emit.st.shared import method_name
 from derive.ir.passes import needed_for
 from derive.ir.program import Let, Program
 from derive.ir.symbols import real
-from derive.kinematics.differential import Factor
 from derive.kinematics.kinematics import Kinematics, Margin
+from derive.kinematics.margins.candidates import Factor
 from derive.lowering.scheduling import structured
 from derive.report.branch_stretches import stretches_of
 from derive.report.derived import Derived, derived_of

@@ -84,12 +84,13 @@ class Sheet:
         chosen: list[Place] = []
         for k, label in enumerate(self._labels):
             chosen.append(self._best(label, fixed[k], list(zip(self._labels, chosen, strict=False))))
-        for _ in range(_ROUNDS):
-            before = list(chosen)
-            for k, label in enumerate(self._labels):
-                others = [pair for i, pair in enumerate(zip(self._labels, chosen, strict=True)) if i != k]
-                chosen[k] = self._best(label, fixed[k], others)
-            if all(a is b for a, b in zip(before, chosen, strict=True)):
+        kept = 0
+        for k, label in [*enumerate(self._labels)] * _ROUNDS:
+            others = [pair for i, pair in enumerate(zip(self._labels, chosen, strict=True)) if i != k]
+            best = self._best(label, fixed[k], others)
+            kept = kept + 1 if best is chosen[k] else 1
+            chosen[k] = best
+            if kept == len(chosen):  # each has its best place beside the others as they are
                 break
         lines = [mark for place in chosen for mark in place.marks]
         texts = [label.at(place) for label, place in zip(self._labels, chosen, strict=True)]

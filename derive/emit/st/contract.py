@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -130,7 +131,12 @@ def load(profile: str | None = None, file: Path = _FILE) -> Contract:
 
     Raises `ValueError` for a profile that the file does not have.
     """
-    data = tomllib.loads(file.read_text(encoding="utf-8"))
+    return _loaded(profile, file.read_text(encoding="utf-8"))
+
+
+@cache
+def _loaded(profile: str | None, text: str) -> Contract:
+    data = tomllib.loads(text)
     chosen = _chosen(profile or data["profile"], data["profiles"])
     interfaces = {key: _interface(key, table) for key, table in data.pop("interfaces").items()}
     newest = min(_version(one["library"]) for one in chosen)

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from derive.description.mechanism import (
     Branch,
-    DescriptionError,
     Mechanism,
     Role,
 )
@@ -45,6 +44,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
+from derive.ir.verify import BrokenProgram
 from derive.kinematics.branch_assignment import Assignment
 from derive.kinematics.differential import scaled_entries, solved_entries
 from derive.kinematics.forward import (
@@ -176,7 +176,7 @@ def _orientation(both: Scanned) -> int:
     values, _ = run(normalise("orientation_of_the_scan", statements, outputs), {**machine, **axes})
     signs = np.unique(np.sign(values["slope"] * slope))
     if len(signs) != 1:
-        raise DescriptionError("the slope of the residual is not det J over the determinants of the steps")
+        raise BrokenProgram("the slope of the residual is not det J over the determinants of the steps")
     return int(signs[0])
 
 

@@ -10,7 +10,8 @@ import pytest
 
 from derive.description.catalogue import load
 from derive.description.mechanism import DescriptionError, Mechanism
-from derive.pipeline import Failure, _attempt
+from derive.faults import Failure
+from derive.pipeline import WRITTEN, _attempt
 
 HEAD = """from sympy import cos, sin, pi, sqrt
 from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz, denavit_hartenberg
@@ -159,7 +160,7 @@ def test_the_fault_is_told(fault: str, tmp_path: Path) -> None:
     path.write_text(text)
     start = time.process_time()
     try:
-        answer = _attempt(None, (path, load(path)))
+        answer = _attempt(None, WRITTEN, (path, load(path)))
         told = answer.message if isinstance(answer, Failure) else ""
     except DescriptionError as problem:
         told = str(problem)

@@ -16,6 +16,7 @@ from derive.description.catalogue import MECHANISMS, load
 from derive.description.mechanism import DescriptionError, Mechanism, Task, X, Y
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
+from derive.faults import GenerationError
 from derive.frames import Rz, Tx
 from derive.ir.primitives import Atan2
 from derive.ir.program import Output
@@ -26,12 +27,10 @@ from derive.kinematics.differential import jacobian_entries
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.scan import derivations, margins
 from derive.live import _refuse_another_runtime
-from derive.pipeline import GenerationError
 from derive.report import self_test
 from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, invention
 
 SEARCHED = MECHANISMS / "kin_ac6_rzryryrxryrz_j6offset.py"
-MISTAKE = "this is a mistake of the compiler: report it with the description"
 
 
 def arm(**changes: object) -> Mechanism:
@@ -76,15 +75,15 @@ def test_margins_that_do_not_multiply(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_name_that_nothing_gives(kinematics: Kinematics) -> None:
     forward = kinematics.forward
     given = {s.name for s in forward.inputs} - {"link_2"}
-    said = refused(lambda: building._check_inputs(kinematics.mechanism, forward, given))
-    assert said == f"the forward program reads link_2, which nothing gives; {MISTAKE}"
+    said = refused(lambda: building._check_inputs(kinematics.mechanism, forward, given), BrokenProgram)
+    assert said == "the forward program reads link_2, which nothing gives"
 
 
 def test_a_turn_that_is_not_chosen(kinematics: Kinematics) -> None:
     outputs = (Output("axis_a1", Atan2(real("y"), real("x"))),)
     spoiled = replace(kinematics.branch, body=(), outputs=outputs)
     said = refused(lambda: building._check_outputs(spoiled), BrokenProgram)
-    assert f"nothing has chosen a turn of axis_a1; {MISTAKE}" in said
+    assert said.endswith("nothing has chosen a turn of axis_a1")
 
 
 def test_a_point_off_the_flange_that_needs_more(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -141,8 +140,8 @@ def test_a_slope_of_both_signs(searched: Mechanism, monkeypatch: pytest.MonkeyPa
         return found
 
     monkeypatch.setattr(margins, "_measured_slope", turned)
-    said = refused(lambda: margins._orientation(derivations.solve_both(searched)))
-    assert f"the slope of the residual is not det J over the determinants of the steps; {MISTAKE}" in said
+    said = refused(lambda: margins._orientation(derivations.solve_both(searched)), BrokenProgram)
+    assert said == "the slope of the residual is not det J over the determinants of the steps"
 
 
 def test_a_machine_without_a_regular_pose(kinematics: Kinematics, monkeypatch: pytest.MonkeyPatch) -> None:

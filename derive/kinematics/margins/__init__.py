@@ -1,0 +1,1 @@
+"""The singularity margins of a machine that is solved in closed form."""
