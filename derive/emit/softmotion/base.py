@@ -69,7 +69,10 @@ class Method:
 
 def inherited_texts(contract: Contract, templates: Environment) -> frozenset[str]:
     """The statements of the methods that a geometry need not override, by which the base block is right for it."""
-    plain = (_method(contract.overridable[name], name, contract, templates) for name in ("FindImage", "FindMargins"))
+    plain = (
+        _method(contract.overridable[name], name, contract, templates, is_guarded=False)
+        for name in ("FindImage", "FindMargins")
+    )
     signature = contract.overridable["FindProjection"]
     projections = (
         templates.get_template("methods/FindProjection.st.j2").render(contract.spelling, program=program)
@@ -145,11 +148,15 @@ def _template(signature: Signature, contract: Contract) -> str:
     return "Supplied" if signature.name in contract.supplied else signature.name
 
 
-def _method(signature: Signature, template: str, contract: Contract, templates: Environment) -> Method:
+def _method(
+    signature: Signature, template: str, contract: Contract, templates: Environment, *, is_guarded: bool = True
+) -> Method:
+    """A method of the base block. is_guarded: whether it answers nothing else before Initialize."""
     text = templates.get_template(f"base/{template}.st.j2").render(
         contract.spelling,
         method=signature.name,
         returns=signature.returns,
+        is_guarded=is_guarded,
         projection=about_z(signature, contract) if signature.name == "FindProjection" else None,
     )
     return Method(signature.head(), with_gathered(tidy(text)))
