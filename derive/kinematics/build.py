@@ -15,7 +15,7 @@ from derive.description.inner_names import with_inner_names
 from derive.description.mechanism import DescriptionError, Mechanism, Parameter, Turning
 from derive.equations.axes import finite
 from derive.equations.choices import with_choices
-from derive.equations.closure import flange_rotation, heading_of
+from derive.equations.closure import heading_of
 from derive.equations.conditions import with_conditions
 from derive.equations.limits import limits_program
 from derive.equations.pose_at_axes import Forward
@@ -46,7 +46,14 @@ from derive.kinematics.differential import (
     twist_program,
 )
 from derive.kinematics.forward import at_point, derivation_at_axes, forward_program, orientation_program, pose_at_axes
-from derive.kinematics.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
+from derive.kinematics.inverse import (
+    Inverse,
+    heading_lets,
+    inverse_program,
+    rotation_behind,
+    solve_offset,
+    solve_pose,
+)
 from derive.kinematics.kinematics import Freedom, Kinematics, Margin
 from derive.kinematics.margins.candidates import Factor, factor_of
 from derive.kinematics.margins.determinant import samples_anywhere, singularity_program
@@ -350,14 +357,17 @@ def _projection_program(mechanism: Mechanism) -> Program:
 
     Of a pitch it depends on the position, too: nothing is projected before that is known.
     """
-    if mechanism.task.turning is not Turning.ABOUT_Z:
-        own = [Output(r.name, r) for r in ROTATION_ENTRIES]
-        return normalise("projection", (), own)
+    if mechanism.task.turning is Turning.ABOUT_Z:
+        return projection_about_z(rotation_behind(mechanism))
+    return normalise("projection", (), [Output(r.name, r) for r in ROTATION_ENTRIES])
+
+
+def projection_about_z(behind: sp.Matrix) -> Program:
+    """The rotation nearest to the commanded one that is a turn about z, with the rotation of the flange behind it."""
     cos_heading, sin_heading = real("cos_heading"), real("sin_heading")
     turned = sp.Matrix([[cos_heading, -sin_heading, 0], [sin_heading, cos_heading, 0], [0, 0, 1]])
-    rotation = turned if mechanism.chain is None else turned * flange_rotation(mechanism.chain)
-    outputs = [Output(r.name, v) for r, v in zip(ROTATION_ENTRIES, rotation, strict=True)]
-    return normalise("projection", heading_lets(mechanism), outputs)
+    outputs = [Output(r.name, v) for r, v in zip(ROTATION_ENTRIES, turned * behind, strict=True)]
+    return normalise("projection", heading_lets(behind), outputs)
 
 
 def _needs_twist(mechanism: Mechanism) -> bool:

@@ -191,19 +191,26 @@ def _frozen_joints(mechanism: Mechanism) -> tuple[Joint, ...]:
     return (*held, *list(dict.fromkeys(order))[-excess:])
 
 
-def heading_parts(mechanism: Mechanism) -> tuple[sp.Expr, sp.Expr]:
-    """Cosine and sine of the nearest heading, up to a common factor: the tool direction comes first, then the twist."""
-    behind = flange_rotation(mechanism.chain) if mechanism.chain is not None else sp.eye(3)
+def rotation_behind(mechanism: Mechanism) -> sp.Matrix:
+    """The rotation of the flange behind the turn about z."""
+    return sp.eye(3) if mechanism.chain is None else flange_rotation(mechanism.chain)
+
+
+def heading_parts(behind: sp.Matrix) -> tuple[sp.Expr, sp.Expr]:
+    """Cosine and sine of the nearest heading, up to a common factor: the tool direction comes first, then the twist.
+
+    behind: the rotation of the flange behind the turn about z.
+    """
     relative = sp.Matrix(3, 3, ROTATION_ENTRIES) * behind.T
     return relative[0, 0] + relative[1, 1], relative[1, 0] - relative[0, 1]
 
 
-def heading_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
+def heading_lets(behind: sp.Matrix) -> tuple[Statement, ...]:
     """The heading of the commanded rotation; there is none where the tool points exactly the opposite way."""
     along, across = real("heading_along"), real("heading_across")
     length, divisor = real("heading_length"), real("heading_divisor")
     determined = sp.Or(sp.Gt(sp.Abs(along), FREE_ANGLE), sp.Gt(sp.Abs(across), FREE_ANGLE))
-    cos_value, sin_value = heading_parts(mechanism)
+    cos_value, sin_value = heading_parts(behind)
     return (
         Let(
             along,
@@ -220,7 +227,7 @@ def heading_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 
 def _heading(mechanism: Mechanism) -> tuple[Statement, ...]:
-    return heading_lets(mechanism) if mechanism.task.turning is Turning.ABOUT_Z else ()
+    return heading_lets(rotation_behind(mechanism)) if mechanism.task.turning is Turning.ABOUT_Z else ()
 
 
 def inverse_program(

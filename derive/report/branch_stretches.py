@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.ir.constants import DEGREE
+from derive.ir.primitives import ToReal
 from derive.ir.program import Let, Program, Require, told
 from derive.ir.symbols import names_in
 from derive.ir.tree import If, Item, bound_in, expressions_in, given_to, read_in
@@ -109,5 +110,5 @@ def _must_stay(item: Item) -> bool:
 
 
 def _computes(expression: sp.Basic) -> bool:
-    """Whether an expression takes operations, and is not merely a choice."""
-    return bool(expression.atoms(sp.Add, sp.Mul, sp.Pow, sp.Function))
+    """Whether an expression takes operations, and is not merely a choice, or a sign as a number."""
+    return bool(expression.atoms(sp.Add, sp.Mul, sp.Pow, sp.Function) - expression.atoms(ToReal))

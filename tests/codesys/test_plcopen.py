@@ -201,7 +201,6 @@ def test_what_the_standard_has_no_element_for() -> None:
         "FindJacobian",
         "FindMargins",
         "FindOrientation",
-        "FindImage",
         "FindOffsetBranches",
         "SolveOffsetBranch",
     ]

@@ -10,9 +10,9 @@ from .facts import Facts, Scope
 from .faults import StError
 
 WRITERS = ("Initialize", "AxisSettings")
-READER = "ReadInputs"
-"""What Initialize alone calls: see `test_contract`."""
 """The methods that may change an instance: all others are called by several tasks at once."""
+READERS = ("ReadInputs", "Check", "ReadLimits")
+"""What Initialize alone calls, and what that calls: see `test_contract`."""
 
 
 def root(node: ast.Expression, facts: Facts) -> types.Variable | None:
@@ -74,7 +74,7 @@ def _check_member(variable: types.Variable, node: ast.Expression, scope: Scope) 
         raise StError(node.at, f"a method writes the input {variable.name}")
     if scope.block is not None and runs_by_its_body(scope.block):
         return
-    if scope.is_method and scope.owner.lower() not in map(str.lower, (*WRITERS, READER)):
+    if scope.is_method and scope.owner.lower() not in map(str.lower, (*WRITERS, *READERS)):
         raise StError(node.at, f"only {' and '.join(WRITERS)} may write the instance variable {variable.name}")
     block = scope.block
     if not scope.is_method and block is not None and block.methods and block.declaration.kind != "PROGRAM":

@@ -91,7 +91,7 @@ def test_methods_are_those_of_the_contract(file: str) -> None:
 @pytest.mark.parametrize("file", UNITS)
 def test_every_block_supplies_what_the_base_calls(file: str) -> None:
     """A block overrides each protected method of the base that its interfaces need, with the identical header; what it
-    declares besides is public or private.
+    declares besides is public or private. A flange that keeps its orientation needs fewer.
     """
     block, base = blocks()[file], library().objects["Softkin_Kinematics"]
     assert block.extends == base.name
@@ -102,8 +102,10 @@ def test_every_block_supplies_what_the_base_calls(file: str) -> None:
     interfaces = CONTRACT.closure([name for name in names if name in CONTRACT.interfaces])
     public = {m for i in interfaces for m in i.methods}
     needed = {n for n in CONTRACT.supplied if n not in CONTRACT.supplied_for or CONTRACT.supplied_for[n] & public}
+    if "layout.eFreedom := Softkin_Names.FixedOrientation;" in FILES[file]:
+        needed -= CONTRACT.supplied_turning
     assert needed <= set(supplied) <= needed | set(CONTRACT.overridable)
-    assert set(offered) == set(CONTRACT.supplied) | set(CONTRACT.overridable)
+    assert set(offered) == set(CONTRACT.supplied) | set(CONTRACT.overridable) | set(CONTRACT.offered)
 
 
 def test_what_a_block_need_not_supply() -> None:
@@ -114,6 +116,15 @@ def test_what_a_block_need_not_supply() -> None:
         assert {name in {m.name for m in block.methods} for block in blocks().values()} == {True, False}
     with_more = [file for file, block in blocks().items() if "TestLimits" in {m.name for m in block.methods}]
     assert 3 <= len(with_more) <= 10 and "planar/Kin_PCC.st" in with_more
+
+
+@pytest.mark.parametrize("method", ["FindImage", "FindProjection"])
+def test_what_is_true_of_most_flanges_stands_in_the_base(method: str) -> None:
+    """A flange that may hang upside down is the only one whose block overrides how it stands at rest."""
+    assert method in CONTRACT.overridable
+    own = [file for file, block in blocks().items() if method in {m.name for m in block.methods}]
+    assert own == ["scara/Kin_Scara4_CCZC_ZCcoupled.st"]
+    assert "xFlangeDown" in FILES[own[0]]
 
 
 @pytest.mark.parametrize("file", UNITS)
@@ -205,7 +216,7 @@ def test_the_newest_interfaces_that_fit(file: str) -> None:
     assert ("ISMKinematicWithConfigurations4" in names) == has_configuration
     assert f"{block.name}_ReadConfig" in library().objects or not has_configuration
     is_orientation = file.startswith("orientation/")
-    is_position = "FindOrientation" in {m.name for m in block.methods}
+    is_position = "Position kinematics for a SoftMotion axis group." in block.comment
     offset = "ISMPositionKinematics_Offset2" if has_configuration else "ISMPositionKinematics_Offset"
     assert sum(name in ("ISMPositionKinematics2", offset) for name in names) == is_position
     assert sum(name in ORIENTATION for name in names) == (3 if is_orientation else 0)
@@ -280,18 +291,26 @@ def test_only_initialize_writes_the_instance(file: str) -> None:
             assert not written, f"{file}: {method.name}"
         else:
             assert not [a for a in _members_of_axes(method.body) if a.startswith(("drive", "lowest", "highest"))], file
-        assert "readinputs" not in {call.lower() for call in _called(method.body)}, file
+        called = {call.lower() for call in _called(method.body)}
+        assert "readinputs" not in called, file
+        assert method.name == "ReadInputs" or not called & {name.lower() for name in CONTRACT.offered}, file
 
 
 def test_the_base_alone_reads_inputs_and_writes_limits() -> None:
-    """Initialize alone calls ReadInputs; AxisSettings writes by Softkin_SetAxis, whose last statements write."""
+    """Initialize alone calls ReadInputs, and no other method what that calls; AxisSettings writes by Softkin_SetAxis,
+    whose last statements write.
+    """
     base, setter = library().objects["Softkin_Kinematics"], library().objects["Softkin_SetAxis"]
     members = {v.name.lower() for s in base.sections for v in s.variables}
     for method in base.methods:
         calls = set(_called(method.body))
         assert ("ReadInputs" in calls) == (method.name == "Initialize")
         assert ("Softkin_SetAxis" in calls) == (method.name in ("Initialize", "AxisSettings"))
-        assert not members & set(_written(method.body)) or method.name == "Initialize", method.name
+        assert not calls & set(CONTRACT.offered) or method.name in CONTRACT.offered, method.name
+        written = members & set(_written(method.body))
+        assert written <= {"Check": {"refusal"}, "ReadLimits": {"axes"}}.get(method.name, set()) or (
+            method.name == "Initialize"
+        ), method.name
     firsts = [at for at, statement in enumerate(setter.body) if "axis" in _written((statement,))]
     assert firsts and firsts == list(range(firsts[0], len(setter.body) - 1))
 

@@ -36,6 +36,7 @@ from tests.text.units import compiled, compiled_shared, file_of, shared_texts, t
 MACHINES = ("plain", "equal", "limited", "limited to a turn")
 OF_THE_BASE = ("Kin_Scara4_ZCcoupled_Type1", "Softkin_Pos_RRR")
 OF_A_DIRECTION = "Softkin_5Axes"
+WITHOUT_TURN = ("Kin_Crane", "Softkin_Gantry2")
 """The blocks whose calls, together, reach every statement of the base block."""
 FEW, A_FEW = 3, 25
 """The numbers of samples: a watched call takes its time."""
@@ -87,7 +88,8 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
         libraries += [compiled(mechanism), compiled(mechanism, matrix_size=36)]
         libraries.append(test_initialise.without_index_checks(mechanism))
     five_axes = next(m for m in MECHANISMS if m.block_name == OF_A_DIRECTION)
-    libraries += [test_blocks_alone.geared(scara), compiled(five_axes)]
+    straight = [next(m for m in MECHANISMS if m.block_name == name) for name in WITHOUT_TURN]
+    libraries += [test_blocks_alone.geared(scara), compiled(five_axes), *map(compiled, straight)]
     libraries.append(test_self_test.with_faults(scara))
     statements = Statements(shared_texts(), libraries)
     with statements.watched():
@@ -105,7 +107,8 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
                 for sample in (*few(one.regular, FEW), *few(one.grid, A_FEW)):
                     compare_all(one, sample)
         test_blocks_alone.test_a_gear_of_one_turn_changes_nothing()
-        compare_all(serial_pairs_of(five_axes)[0], serial_pairs_of(five_axes)[0].regular[0])
+        for mechanism in (five_axes, *straight):
+            compare_all(serial_pairs_of(mechanism)[0], serial_pairs_of(mechanism)[0].regular[0])
         test_self_test.every_statement_of_the_base(libraries[-1], scara)
         for size in range(1, 7):
             test_shared_functions.test_solve(size)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -10,6 +11,7 @@ from jinja2 import Environment
 from derive.emit.softmotion.layout import tidy
 from derive.emit.st.contract import Contract, Parameter, Signature
 from derive.emit.st.layout import with_gathered
+from derive.emit.st.projection import about_z, followed
 
 _OWN = ("InitializeReason", "Jacobian", "Margins", "AxisVelocities", "Diagnose")
 _OF_INTERFACES = (
@@ -34,6 +36,7 @@ _OF_INTERFACES = (
     "IsConfigSingular",
     "GetPeriods",
 )
+_COMMENTS = re.compile(r"^ *//.*\n", re.MULTILINE)
 INHERITED = frozenset((*_OWN, *_OF_INTERFACES))
 """The public methods that no geometry changes."""
 
@@ -64,6 +67,26 @@ class Method:
     text: str
 
 
+def inherited_texts(contract: Contract, templates: Environment) -> frozenset[str]:
+    """The statements of the methods that a geometry need not override, by which the base block is right for it."""
+    plain = (
+        _method(contract.overridable[name], name, contract, templates, is_guarded=False)
+        for name in ("FindImage", "FindMargins")
+    )
+    signature = contract.overridable["FindProjection"]
+    projections = (
+        templates.get_template("methods/FindProjection.st.j2").render(contract.spelling, program=program)
+        for program in (followed(signature, contract), about_z(signature, contract))
+    )
+    written = (*plain, *(Method(signature.head(), with_gathered(tidy(text))) for text in projections))
+    return frozenset(map(statements_of, written))
+
+
+def statements_of(method: Method) -> str:
+    """The method without the lines that are comments alone."""
+    return _COMMENTS.sub("", f"{method.head}\n{method.text}")
+
+
 def base_text(contract: Contract, templates: Environment) -> str:
     """The text of the base block. It lacks the methods of interfaces that the profile leaves out."""
     methods = [
@@ -81,6 +104,7 @@ def _signatures(contract: Contract) -> Iterator[Signature]:
         yield contract.own[name]
     yield _find_axes(contract)
     yield _configure(contract)
+    yield from contract.offered.values()
     yield from contract.overridable.values()
     yield from contract.supplied.values()
 
@@ -124,8 +148,15 @@ def _template(signature: Signature, contract: Contract) -> str:
     return "Supplied" if signature.name in contract.supplied else signature.name
 
 
-def _method(signature: Signature, template: str, contract: Contract, templates: Environment) -> Method:
+def _method(
+    signature: Signature, template: str, contract: Contract, templates: Environment, *, is_guarded: bool = True
+) -> Method:
+    """A method of the base block. is_guarded: whether it answers nothing else before Initialize."""
     text = templates.get_template(f"base/{template}.st.j2").render(
-        contract.spelling, method=signature.name, returns=signature.returns
+        contract.spelling,
+        method=signature.name,
+        returns=signature.returns,
+        is_guarded=is_guarded,
+        projection=about_z(signature, contract) if signature.name == "FindProjection" else None,
     )
     return Method(signature.head(), with_gathered(tidy(text)))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from derive.description.mechanism import Joint, Kind
 from derive.emit.softmotion.axis_limits import limit_reasons
-from derive.emit.softmotion.calls import Command, branch_of, command_of, offset_branch_of
+from derive.emit.softmotion.calls import Command, branch_of, command_of, keeps_orientation, offset_branch_of
 from derive.emit.softmotion.inputs import Input, inputs, parameter_input
 from derive.emit.st.contract import Contract
 from derive.emit.st.expression import literal
@@ -109,6 +109,8 @@ class Block:
     periods: tuple[PeriodByte, ...]
     configuration_size: int
     freedom: str
+    keeps_orientation: bool
+    """Whether its flange has one orientation, and the methods of the base block are enough for its offsets."""
     turning: str
     """The part of the commanded rotation that the flange follows: a value of `Turning`."""
     refuses_flanges: bool
@@ -171,6 +173,7 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         ),
         configuration_size=kinematics.configuration_size,
         freedom=spelling["freedom"][kinematics.freedom.value],
+        keeps_orientation=keeps_orientation(kinematics),
         turning=mechanism.task.turning.value,
         refuses_flanges=kinematics.compatible is not None and bool(kinematics.compatible.body),
         rows=kinematics.rows,
@@ -215,7 +218,7 @@ def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
     """The programs of all methods but Initialize."""
     found: Sequence[Program | None] = (
         kinematics.forward,
-        kinematics.orientation,
+        None if keeps_orientation(kinematics) else kinematics.orientation,
         branch_of(kinematics),
         kinematics.limits,
         kinematics.singularity,
@@ -223,7 +226,7 @@ def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
         kinematics.image,
         kinematics.projection,
         offset_branch_of(kinematics),
-        kinematics.offset_configuration,
+        None if keeps_orientation(kinematics) else kinematics.offset_configuration,
         kinematics.compatible,
         kinematics.end_point_shift,
         kinematics.total_image,

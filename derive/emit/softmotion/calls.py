@@ -15,7 +15,7 @@ from derive.ir.primitives import Select, ToReal
 from derive.ir.program import Let, Program, Require, Statement, rewritten
 from derive.ir.symbols import flag, real
 from derive.kept import kept_by_identity
-from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.kinematics import Freedom, Kinematics
 
 _POSITION = frozenset("xyz")
 _POINT = frozenset(f"point_{axis}" for axis in "xyz")
@@ -60,8 +60,18 @@ def branch_of(kinematics: Kinematics) -> Program:
 
 @kept_by_identity(10)
 def offset_branch_of(kinematics: Kinematics) -> Program | None:
-    """The same for a tool offset; None where the mechanism has no such program."""
-    return None if kinematics.offset_branch is None else _solving(kinematics.offset_branch, kinematics)
+    """The same for a tool offset; None where the mechanism has no such program, or needs none."""
+    offset = _offset_of(kinematics)
+    return None if offset is None else _solving(offset, kinematics)
+
+
+def keeps_orientation(kinematics: Kinematics) -> bool:
+    """Whether the flange has one orientation: it is where the point of a tool is, less its offset."""
+    return kinematics.freedom is Freedom.ZERO
+
+
+def _offset_of(kinematics: Kinematics) -> Program | None:
+    return None if keeps_orientation(kinematics) else kinematics.offset_branch
 
 
 def _solving(program: Program, kinematics: Kinematics) -> Program:
@@ -72,11 +82,11 @@ def _solving(program: Program, kinematics: Kinematics) -> Program:
 
 
 def without_axes(program: Program | None, kinematics: Kinematics) -> Program | None:
-    """A program of axis values, which the base block checks."""
+    """A program of axis values, and of the offset of a tool, which the base block checks."""
     if program is None:
         return None
     known = frozenset(joint.axis.name for joint in kinematics.mechanism.joints)
-    return _without(program, known)
+    return _without(program, known | _POINT)
 
 
 def _without(program: Program, known: frozenset[str]) -> Program:
@@ -95,7 +105,7 @@ def checks(program: Program) -> tuple[Require, ...]:
 
 def _checked_first(kinematics: Kinematics) -> frozenset[str]:
     """The inputs that every branch checks, and that the base block checks instead."""
-    branches = [p for p in (kinematics.branch, kinematics.offset_branch) if p is not None]
+    branches = [p for p in (kinematics.branch, _offset_of(kinematics)) if p is not None]
     known = frozenset.intersection(*(frozenset(_names(checks(p))) for p in branches))
     return known if known >= _POSITION else known - _POSITION
 

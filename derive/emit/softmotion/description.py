@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import astuple
 from textwrap import wrap
@@ -10,7 +11,8 @@ from jinja2 import Environment
 
 from derive.description.mechanism import Kind, Role
 from derive.emit.softmotion.block import Block
-from derive.emit.softmotion.inputs import Input, inputs
+from derive.emit.softmotion.directions import directions_at_zero
+from derive.emit.softmotion.inputs import inputs
 from derive.emit.st.layout import WIDTH
 from derive.emit.st.names import respelled
 from derive.ir.constants import (
@@ -26,6 +28,7 @@ from derive.report.cost import Bound, Cost, Costs, costs_of
 from derive.report.reasons import workspace
 
 _WIDTH = 100
+_NAMES_DIRECTION = re.compile(r"\b[XYZ]\b")
 _MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "turns, deg; declared linear"}
 _MOTION |= {Kind.GEARED: "geared, deg; declared linear", Kind.DRIVING: "turning motor, deg; declared linear"}
 _PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 open"
@@ -39,9 +42,9 @@ _READ = (
 _NOT_READ = "The commanded rotation is not read."
 _COST_HEAD = ("Method", "Additions", "Multiplications", "Divisions", "Square roots", "Sines")
 _OPEN_TURN = (
-    f"Without a commanded turn, an axis whose limits in the block are at most {ONE_TURN} degrees apart takes its one "
-    "value inside them, any other axis the value nearest to the reference. Limits refuse and never choose another "
-    "turn; Diagnose gives the number of one that is inside (iTurn)."
+    f"Without a commanded turn, an axis whose limits are at most {ONE_TURN} degrees apart takes its one value inside "
+    "them, any other axis the value nearest to the reference. Diagnose gives the number of a turn that is inside the "
+    "limits (iTurn)."
 )
 _BOUNDED = "Every method is bounded: no loop runs without an end, and none waits. "
 _REENTRANT = "others are re-entrant: several tasks may call them at once."
@@ -62,13 +65,10 @@ _WITHOUT_LENGTH = (
     "no earlier warning"
 )
 _AUTOMATIC = (
-    "Automatic bytes take the solution nearest to the reference. They are meant for point-to-point movements. "
-    "Limits refuse a solution and never choose another one."
+    "Automatic bytes, meant for point-to-point movements, take the solution nearest to the reference. Limits refuse "
+    "and never choose another solution or turn."
 )
-_DRIVES = (
-    " The limits that SoftMotion passes (AxisSettings) narrow those of the block, for the turn that is taken and for "
-    "the poses that are refused."
-)
+_DRIVES = " The limits that SoftMotion passes (AxisSettings) narrow those of the block."
 
 
 def description(kinematics: Kinematics, block: Block, picture: str, templates: Environment) -> str:
@@ -84,8 +84,7 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
         summary="\n".join(wrap(kinematics.mechanism.summary, _WIDTH)),
         rows=", ".join(kinematics.rows),
         axes=_table(("Axis", "Motion", "Meaning"), _axes(kinematics)),
-        parameters=_table(("Parameter", "Unit", "Range", "Meaning"), _parameters(block)),
-        refused=wrap(f"{_refused(kinematics)}The parameters are read by Initialize alone.", _WIDTH),
+        parameters=wrap(f"{_refused(kinematics)}The parameters are read by Initialize alone.", _WIDTH),
         configuration=list(_configuration(block)),
         singularities=list(_singularities(kinematics)),
         workspace=list(_workspace(kinematics)),
@@ -99,25 +98,10 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
 
 
 def _axes(kinematics: Kinematics) -> Iterator[Sequence[str]]:
+    directions = directions_at_zero(kinematics.mechanism)
     for joint in kinematics.mechanism.joints:
-        yield joint.name, _MOTION[joint.kind], joint.meaning
-
-
-def _parameters(block: Block) -> Iterator[Sequence[str]]:
-    """A row for every input, and one for both limits of an axis."""
-    inputs = list(block.inputs)
-    while inputs:
-        given = inputs.pop(0)
-        name, meaning = given.name, given.meaning
-        if inputs and _are_limits(given, inputs[0]):
-            name, meaning = f"{name}, {inputs.pop(0).name}", meaning.replace("lower limit", "limits")
-        yield name, given.unit or "-", given.range or given.type, meaning
-
-
-def _are_limits(lower: Input, upper: Input) -> bool:
-    """Whether two inputs are both limits of one axis, in one range."""
-    meaning = lower.meaning.replace("lower limit", "upper limit")
-    return meaning == upper.meaning != lower.meaning and (lower.range, lower.unit) == (upper.range, upper.unit)
+        about = "" if _NAMES_DIRECTION.search(joint.meaning) else directions.get(joint.name, "")
+        yield joint.name, _MOTION[joint.kind], joint.meaning + (f", {about} in the zero pose" if about else "")
 
 
 def _refused(kinematics: Kinematics) -> str:

@@ -9,6 +9,7 @@ from itertools import count
 from derive.description.mechanism import Parameter, Role
 from derive.emit.inputs import Inputs, Spelling, inputs_of, word_of
 from derive.emit.st.expression import literal
+from derive.emit.st.layout import sentence
 from derive.emit.st.names import capitalized, input_name, of_methods, stored_name
 from derive.emit.st.reserved import clash
 from derive.ir.constants import (
@@ -55,7 +56,7 @@ def parameter_input(parameter: Parameter, name: str) -> Input:
     kind, default = _value(parameter)
     unit = "" if parameter.unit in _DIMENSIONLESS else parameter.unit
     interval = "" if parameter.role is Role.FLAG else _range(parameter)
-    return Input(name, kind, default, parameter.meaning, interval, unit)
+    return Input(name, kind, default, sentence(parameter.meaning), interval, unit)
 
 
 def _value(parameter: Parameter) -> tuple[str, str]:

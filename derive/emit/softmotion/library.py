@@ -37,6 +37,7 @@ from derive.ir.constants import (
     FREE_ANGLE,
     HELD,
     LARGEST,
+    LEAST,
     PIVOT,
     SOLVABLE,
 )
@@ -170,6 +171,7 @@ def _templates() -> Environment:
         half_turn=literal(180.0 + float(EDGE)),
         per_turn=literal(1.0 / 360.0),
         largest=literal(float(LARGEST)),
+        least=literal(float(LEAST)),
         held=literal(float(HELD)),
         pivot=literal(float(PIVOT)),
         solvable=literal(float(SOLVABLE)),

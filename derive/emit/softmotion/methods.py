@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from jinja2 import Environment
 
-from derive.emit.softmotion.base import BASE_VARIABLES, INHERITED, PRIVATE, Method
+from derive.emit.softmotion.base import BASE_VARIABLES, INHERITED, PRIVATE, Method, inherited_texts, statements_of
 from derive.emit.softmotion.block import Block, constants, direct, setup_of, stored_as
 from derive.emit.softmotion.calls import branch_of, commanded, offset_branch_of, without_axes
 from derive.emit.softmotion.inputs import inputs
@@ -17,15 +17,21 @@ from derive.emit.st.contract import Contract, Parameter, Signature
 from derive.emit.st.layout import with_gathered
 from derive.emit.st.program import Printed, printed
 from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal, Tested
-from derive.emit.st.refused_inputs import OfInputs, chained, conditions_first
+from derive.emit.st.refused_inputs import (
+    OfInputs,
+    chained,
+    conditions_first,
+    pairs_of_limits,
+    with_limits_of_machine,
+    without_limits,
+)
 from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st.shared import method_name, own_names, signature_of
+from derive.equations.windows import windows
 from derive.ir.program import FindRoot, Program, shared
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import reasons_of, texts
-
-_BRANCHES = ("SolveBranch", "SolveOffsetBranch")
 
 _FIRST = (
     "Describe",
@@ -63,9 +69,11 @@ class _Source:
 
 def methods_of(kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> tuple[Method, ...]:
     """All methods in the order of the contract; a private method follows the method that calls it."""
-    return tuple(
+    known = inherited_texts(contract, templates)
+    written = (
         _method(source, kinematics, block, contract, templates) for source in _sources(kinematics, block, contract)
     )
+    return tuple(method for method in written if statements_of(method) not in known)
 
 
 @kept_by_identity(10)
@@ -147,10 +155,12 @@ def _names(block: Block, contract: Contract) -> list[str]:
     first.
     """
     public = [m for i in contract.closure(block.interfaces) for m in i.methods]
-    asked = contract.supplied_for
-    supplied = [n for n in contract.supplied if n not in asked or asked[n] & set(public)]
-    overridden = [] if block.limit_reasons or not block.axes else contract.overridable
-    names = [*public, *contract.own, *supplied, *overridden]
+    asked = {**contract.supplied_for, **contract.overridable_for}
+    needed = [n for n in (*contract.supplied, *contract.overridable) if n not in asked or asked[n] & set(public)]
+    unneeded = contract.supplied_turning if block.keeps_orientation else frozenset()
+    if block.limit_reasons or not block.axes:
+        unneeded |= {"TestLimits"}
+    names = [*public, *contract.own, *(n for n in needed if n not in unneeded)]
     names = [n for n in dict.fromkeys(names) if n not in INHERITED]
     return sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))
 
@@ -204,13 +214,15 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
     if signature.name == "ReadInputs":
         given = dict(inputs(kinematics).names)
         stored = {let: stored_as(kinematics, output) for let, output in direct(kinematics, program).items()}
-        refused = OfInputs(signature, errors, error, refused_texts(kinematics))
-        return chained(printed(conditions_first(program), given, stored, taken, refused))
+        limits = pairs_of_limits(program, windows(kinematics.mechanism))
+        refused = OfInputs(signature, errors, error, refused_texts(kinematics), limits)
+        text = chained(printed(conditions_first(without_limits(program, limits)), given, stored, taken, refused))
+        return with_limits_of_machine(text, limits, [axis.name for axis in block.axes], given)
     spelled = spelled_inputs(kinematics)
     if source.is_shared:
         own = own_names(program, spelled)
         return printed(program, spelled | own, {o.name: own[o.name] for o in program.outputs}, taken, refusal)
-    is_branch = signature.name in _BRANCHES
+    is_branch = signature.name == "SolveBranch"
     stored = _coordinates(program) if signature.name == "FindPose" else {}
     return printed(program, _positions(signature) | spelled, stored, taken, refusal, is_branch=is_branch)
 

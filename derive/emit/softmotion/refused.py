@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 
 from derive.description.mechanism import Parameter, Role
 from derive.emit.softmotion.inputs import inputs
@@ -34,8 +35,16 @@ def refused_texts(kinematics: Kinematics) -> dict[str, str]:
         names = _listed([spelled[p.name] for p in named])
         wrong = "is not allowed: " if len(named) == 1 else ": "
         text = f"{names} {wrong}{needed}".replace(" :", ":") if named else f"the parameters must give {needed}"
+        if len(named) > 1:
+            text = _spelled(text, named, spelled)
         found[sentence] = respelled(text, spelled)[:_LONGEST]
     return found
+
+
+def _spelled(text: str, named: Sequence[Parameter], spelled: Mapping[str, str]) -> str:
+    """The text with the inputs that it is about as they are spelled, a name of one word among them."""
+    names = {p.name: spelled[p.name] for p in named if "_" not in p.name}
+    return re.sub(r"\b[a-z]+\b", lambda found: names.get(found[0], found[0]), text)
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -85,8 +85,14 @@ class Contract:
     """The protected methods that every geometry supplies to the base block."""
     supplied_for: Mapping[str, frozenset[str]]
     """Those of them that only a block with one of certain public methods needs, each with these."""
+    supplied_turning: frozenset[str]
+    """Those of these that only a block needs whose flange turns."""
     overridable: Mapping[str, Signature]
-    """The protected methods of the base block that a geometry overrides where it has more to do."""
+    """The protected methods of the base block that a geometry overrides of which something else is true."""
+    overridable_for: Mapping[str, frozenset[str]]
+    """Those of them that only a block with one of certain public methods may override, each with these."""
+    offered: Mapping[str, Signature]
+    """The protected methods of the base block that those of a geometry call."""
     is_flat: bool
     """Whether every block has the variables and methods of the base block itself, and extends none."""
     omits: frozenset[str]
@@ -105,7 +111,7 @@ class Contract:
     @property
     def signatures(self) -> dict[str, Signature]:
         """Every method by name."""
-        found = {**self.own, **self.supplied, **self.overridable}
+        found = {**self.own, **self.supplied, **self.overridable, **self.offered}
         for interface in self.interfaces.values():
             found.update(interface.methods)
         return found
@@ -146,14 +152,17 @@ def _loaded(profile: str | None, text: str) -> Contract:
     listed = tables.pop("list")
     groups = {key: _constants(table) for key, table in tables.items()}
     data |= {key: {k: f"{listed}.{c.name}" for k, c in inside.items()} for key, inside in groups.items()}
-    supplied = data.pop("supplied")
+    supplied, overridable = data.pop("supplied"), data.pop("overridable")
     names = tuple(Group(tables[key]["title"], tuple(inside.values())) for key, inside in groups.items())
     return Contract(
         interfaces,
         _signatures(data.pop("own")),
         _signatures(supplied, "PROTECTED"),
-        {key: frozenset(table["of"]) for key, table in supplied.items() if "of" in table},
-        _signatures(data.pop("overridable"), "PROTECTED"),
+        _needing(supplied),
+        frozenset(key for key, table in supplied.items() if table.get("turning", False)),
+        _signatures(overridable, "PROTECTED"),
+        _needing(overridable),
+        _signatures(data.pop("offered"), "PROTECTED"),
         any(one.get("flat", False) for one in chosen),
         omits,
         names,
@@ -166,6 +175,10 @@ def _chosen(names: str, profiles: Mapping[str, Mapping[str, Any]]) -> tuple[Mapp
         if name not in profiles:
             raise ValueError(f"no profile is called {name!r}; there are {', '.join(profiles)}")
     return tuple(profiles[name] for name in names.split("+"))
+
+
+def _needing(methods: Mapping[str, Mapping[str, Any]]) -> dict[str, frozenset[str]]:
+    return {key: frozenset(table["of"]) for key, table in methods.items() if "of" in table}
 
 
 def _constants(table: Mapping[str, Any]) -> dict[str, Constant]:

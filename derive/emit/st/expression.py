@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import sympy as sp
@@ -82,6 +83,8 @@ class StructuredText(ExpressionPrinter):
         return super().print(expression)
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if isinstance(node, Root) and node.args[0].is_number:
+            return literal(math.sqrt(float(node.args[0]))), ATOM
         if isinstance(node, Root) and is_sum_of_squares(node.args[0]):
             return f"SQRT({self.print(node.args[0])})", ATOM
         if node.is_Mul and 1 / DEGREE in node.args:

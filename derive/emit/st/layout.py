@@ -74,8 +74,12 @@ def commented(lines: Sequence[str], comment: str, width: int = WIDTH - INSIDE) -
         return list(lines)
     if len(lines) == 1 and len(f"{lines[0]}  // {comment}") <= width:
         return [f"{lines[0]}  // {comment}"]
-    sentence = comment[0].upper() + comment[1:] if _PLAIN_WORD.match(comment) else comment
-    return [*wrap(sentence, width, initial_indent="// ", subsequent_indent="// "), *lines]
+    return [*wrap(sentence(comment), width, initial_indent="// ", subsequent_indent="// "), *lines]
+
+
+def sentence(comment: str) -> str:
+    """The comment with a capital letter where it begins with a word that is no name."""
+    return comment[0].upper() + comment[1:] if _PLAIN_WORD.match(comment) else comment
 
 
 def beside(declaration: str, comment: str) -> list[str]:

@@ -1,4 +1,8 @@
-"""The refusals of inputs: each is kept as a text, which names the input and its allowed range."""
+"""The refusals of inputs: each is kept as a text, which names the input and its allowed range.
+
+A range, and a pair of limits, is checked by a method of the base block, in one statement for an input; the first of
+these that refuses counts. Other conditions stand behind them, where every number is one of reasonable size.
+"""
 
 from __future__ import annotations
 
@@ -8,16 +12,22 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.emit.st.expression import StructuredText
-from derive.emit.st.layout import WIDTH, conjunction
+from derive.emit.st.expression import StructuredText, is_size_test, literal
+from derive.emit.st.layout import WIDTH, assigned, conjunction, indented
 from derive.emit.st.program import Printed
 from derive.emit.st.refusal import Refusal
-from derive.ir.program import Program, Require
+from derive.equations.windows import Window
+from derive.ir.constants import LARGEST, LEAST
+from derive.ir.program import Let, Program, Require
 
 REFUSAL = "refusal"
 """The instance variable that holds why Initialize refused."""
+_BEHIND = f"IF {REFUSAL} <> '' THEN\n  RETURN;\nEND_IF\n"
+_ABOVE = r"(?://[^\n]*\n)*"
 _REFUSING = re.compile(r"(IF NOT \([^;]*?\) THEN\n)(  refusal :=\s+'[^\n]*';\n)  RETURN;\nEND_IF\n")
-_CHAIN = re.compile(rf"(?:(?://[^\n]*\n)*{_REFUSING.pattern})+")
+_CHAIN = re.compile(rf"(?:{_ABOVE}{_REFUSING.pattern})+")
+_CALL = re.compile(rf"{_ABOVE}((?:Check\w*|ReadLimits)\([\s\S]*?'\);)(?:  //[^\n]*)?\n")
+_CALLS = re.compile(rf"(?:{_CALL.pattern})+")
 
 
 @dataclass(frozen=True)
@@ -26,32 +36,74 @@ class OfInputs(Refusal):
 
     texts: Mapping[str, str]
     """The text of every refusal, by the sentence of its condition."""
+    limits: Mapping[sp.Basic, tuple[Window, int]]
+    """The pairs of limits, by the conditions on them, and the axes whose limits they are."""
 
     def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
         """The lines that refuse, for each condition separately."""
-        lines: list[str] = []
-        for require in requires:
-            parts = [printer.print(part) for part in sp.ordered(sp.And.make_args(require.condition))]
-            assert require.reason is not None
-            text = self.texts[require.reason.subject.name].replace("$", "$$").replace("'", "$'")
-            lines += conjunction("IF NOT (", parts, ") THEN")
-            whole = f"  {REFUSAL} := '{text}';"
-            refused = [whole] if len(whole) <= WIDTH else [f"  {REFUSAL} :=", f"    '{text}';"]
-            lines += [*refused, "  RETURN;", "END_IF"]
-        return lines
+        return [line for require in requires for line in self._refusing(require, printer)]
+
+    def _refusing(self, require: Require, printer: StructuredText) -> list[str]:
+        assert require.reason is not None
+        text = self.texts[require.reason.subject.name].replace("$", "$$").replace("'", "$'")
+        if (called := self._called(require.condition, printer)) is not None:
+            method, given = called
+            head, tail = f"{method}({', '.join(given)},", f"'{text}');"
+            return [f"{head} {tail}"] if len(head) + len(tail) < WIDTH else [head, f"    {tail}"]
+        parts = [printer.print(part) for part in sp.ordered(sp.And.make_args(require.condition))]
+        whole = f"  {REFUSAL} := '{text}';"
+        refused = [whole] if len(whole) <= WIDTH else [f"  {REFUSAL} :=", f"    '{text}';"]
+        return [*conjunction("IF NOT (", parts, ") THEN"), *refused, "  RETURN;", "END_IF"]
+
+    def _called(self, condition: sp.Basic, printer: StructuredText) -> tuple[str, tuple[str, ...]] | None:
+        """The method that checks the condition, and what it is given; None where none does."""
+        if condition in self.limits:
+            window, axis = self.limits[condition]
+            given = tuple(printer.names[name] for name in window.given)
+            return ("ReadLimits", (str(axis), *given)) if window.is_axis else ("CheckPair", given)
+        if (found := _range_of(condition)) is not None:
+            symbol, low, high, is_open = found
+            value = printer.name(symbol)
+            if (low, high, is_open) == (-LARGEST, LARGEST, False):
+                return "CheckNumber", (value,)
+            if is_open:
+                return ("CheckLength", (value, literal(float(high)))) if low == LEAST else None
+            return "CheckSpan", (value, literal(float(low)), literal(float(high)))
+        is_plain = len(condition.free_symbols) == 1 and all(map(_is_plain, sp.Or.make_args(condition)))
+        return ("Check", (printer.print(condition),)) if is_plain else None
+
+
+def _range_of(condition: sp.Basic) -> tuple[sp.Symbol, sp.Expr, sp.Expr, bool] | None:
+    """The input of which a condition is the range, both ends, and whether the lower one is outside."""
+    if is_size_test(condition):
+        return condition.lhs.args[0], -LARGEST, LARGEST, False
+    parts = {type(part): part for part in sp.And.make_args(condition) if _is_plain(part)}
+    low = parts.get(sp.Ge, parts.get(sp.Gt))
+    if len(sp.And.make_args(condition)) != 2 or low is None or sp.Le not in parts or low.lhs != parts[sp.Le].lhs:
+        return None
+    return low.lhs, low.rhs, parts[sp.Le].rhs, isinstance(low, sp.Gt)
+
+
+def _is_plain(condition: sp.Basic) -> bool:
+    """Whether a condition compares an input with a number."""
+    return isinstance(condition, sp.Rel) and condition.lhs.is_Symbol and condition.rhs.is_number
 
 
 def chained(program: Printed) -> Printed:
-    """The program with conditions that follow each other in one chain of ELSIF, behind which it refuses. The texts say
-    what comments would.
+    """The program with conditions that follow each other in one chain of ELSIF, behind which it refuses, as it does
+    behind the calls that check. The texts say what comments would.
     """
 
     def chain(found: re.Match[str]) -> str:
         plain = re.sub(r"^//[^\n]*\n", "", found[0], flags=re.MULTILINE)
         lines = _REFUSING.sub(r"\1\2", plain).rstrip("\n").replace("\nIF NOT (", "\nELSIF NOT (")
-        return f"{lines}\nEND_IF\nIF {REFUSAL} <> '' THEN\n  RETURN;\nEND_IF\n"
+        return f"{lines}\nEND_IF\n{_BEHIND}"
 
-    return replace(program, body=_CHAIN.sub(chain, f"{program.body}\n").rstrip("\n"))
+    def calls(found: re.Match[str]) -> str:
+        return _CALL.sub(r"\1\n", found[0]) + _BEHIND
+
+    body = _CALLS.sub(calls, _CHAIN.sub(chain, f"{program.body}\n"))
+    return replace(program, body=body.rstrip("\n"))
 
 
 def conditions_first(program: Program) -> Program:
@@ -59,3 +111,53 @@ def conditions_first(program: Program) -> Program:
     inputs = set(program.inputs)
     first = [s for s in program.body if isinstance(s, Require) and s.condition.free_symbols <= inputs]
     return replace(program, body=(*first, *(s for s in program.body if s not in first)))
+
+
+def pairs_of_limits(program: Program, windows: Sequence[Window]) -> dict[sp.Basic, tuple[Window, int]]:
+    """The pairs of limits, by the conditions on them, and the axes whose limits they are."""
+    conditions = {str(s.condition): s.condition for s in program.requires()}
+    pairs = ((str(window.ordered.condition), window, place) for place, window in enumerate(windows))
+    return {conditions[text]: (window, place) for text, window, place in pairs if text in conditions}
+
+
+def without_limits(program: Program, limits: Mapping[sp.Basic, tuple[Window, int]]) -> Program:
+    """The program without the constants that the calls for pairs of limits write."""
+    read = [window for window, _ in limits.values() if window.is_axis]
+    names = {let.name.name for window in read for let in window.limits}
+    outputs = {output.name for window in read for output in window.limit_outputs}
+    return replace(
+        program,
+        body=tuple(s for s in program.body if not (isinstance(s, Let) and s.name.name in names)),
+        outputs=tuple(o for o in program.outputs if o.name not in outputs),
+    )
+
+
+def with_limits_of_machine(
+    program: Printed, limits: Mapping[sp.Basic, tuple[Window, int]], axes: Sequence[str], names: Mapping[str, str]
+) -> Printed:
+    """The program with statements, behind those that read limits, that set the limits of axes for which none are given
+    and the machine has some: the last rule counts. names: how inputs are spelled.
+    """
+    lines = _limits_of_machine(limits, axes, StructuredText(names))
+    if not lines:
+        return program
+    place = program.body.index(_BEHIND, program.body.rindex("ReadLimits(")) + len(_BEHIND)
+    return replace(program, body="\n".join([program.body[:place].rstrip("\n"), *lines, program.body[place:]]))
+
+
+def _limits_of_machine(
+    limits: Mapping[sp.Basic, tuple[Window, int]], axes: Sequence[str], printer: StructuredText
+) -> list[str]:
+    lines: list[str] = []
+    for window, place in limits.values():
+        axis = f"axes[{place}]"
+        for condition, low, high in window.fallback[-1:]:
+            needed = "" if condition == sp.true else f" AND ({printer.print(condition)})"
+            values = (assigned(f"{axis}.{end}", printer.print(v)) for end, v in (("lower", low), ("upper", high)))
+            lines += [
+                f"// Where none are given, {axes[place]} has limits of the machine",
+                f"IF {axis}.unlimited{needed} THEN",
+                *indented([*"\n".join(values).split("\n"), f"{axis}.unlimited := FALSE;"]),
+                "END_IF",
+            ]
+    return lines

@@ -45,7 +45,8 @@ def _shared(
 ) -> Iterator[str]:
     number, first = place
     known = f"{KNOWN}[{number}{f' + {SIDE}' if stretch.signs else ''}]"
-    further = f" + {len(stretch.kept)}*{SIDE}" if stretch.signs else ""
+    times = f"{len(stretch.kept)}*" if len(stretch.kept) > 1 else ""
+    further = f" + {times}{SIDE}" if stretch.signs else ""
     places = [(f"{KEPT}[{first + k}{further}]", printer.name(name)) for k, name in enumerate(stretch.kept)]
     words = " and ".join(sign.name.removeprefix("sigma_") for sign in stretch.signs)
     yield f"// The same in all branches{f' with this {words}' if words else ''}: computed once a call"
@@ -57,9 +58,12 @@ def _shared(
         yield f"IF {known} = {REFUSED} THEN"
         yield from indented(refusal.answering(refusal.errors[requires[0].otherwise.name]))
         yield "END_IF"
-    yield f"IF {known} = {SOLVED} THEN"
-    yield from indented([f"{name} := {kept};" for kept, name in places])
-    yield "ELSE"
+    if places:
+        yield f"IF {known} = {SOLVED} THEN"
+        yield from indented([f"{name} := {kept};" for kept, name in places])
+        yield "ELSE"
+    else:
+        yield f"IF {known} <> {SOLVED} THEN"
     for line in body(stretch.items, WIDTH - INSIDE):
         if line.strip() == "RETURN;":
             yield from indented([line.replace("RETURN;", f"{known} := {REFUSED};")])

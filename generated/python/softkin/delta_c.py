@@ -26,9 +26,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 60 additions, 75 multiplications, 1 divisions, 2 square roots, 8 sines
-    inverse: 86 additions, 77 multiplications, 16 divisions, 7 square roots, 4 sines
-    inverse, all 8 branches open: 256 additions, 214 multiplications, 28 divisions, 10 square roots, 7 sines
+    forward: 60 additions, 75 multiplications, 1 divisions, 1 square roots, 8 sines
+    inverse: 86 additions, 77 multiplications, 16 divisions, 6 square roots, 4 sines
+    inverse, all 8 branches open: 256 additions, 214 multiplications, 28 divisions, 9 square roots, 7 sines
     repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
 
 Arm 1 points to +X, arm 2 to 120 degrees from it, arm 3 to 240. The origin is the centre of the motor axes,

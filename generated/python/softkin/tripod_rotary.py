@@ -24,9 +24,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 60 additions, 73 multiplications, 1 divisions, 2 square roots, 6 sines
-    inverse: 84 additions, 75 multiplications, 18 divisions, 9 square roots, 5 sines
-    inverse, all 8 branches open: 279 additions, 232 multiplications, 51 divisions, 26 square roots, 22 sines
+    forward: 60 additions, 73 multiplications, 1 divisions, 1 square roots, 6 sines
+    inverse: 84 additions, 75 multiplications, 18 divisions, 8 square roots, 5 sines
+    inverse, all 8 branches open: 279 additions, 232 multiplications, 51 divisions, 25 square roots, 22 sines
 
 Verified at 120 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,

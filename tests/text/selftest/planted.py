@@ -34,7 +34,8 @@ def planted(mechanism: Mechanism) -> Planted:
         ("ReadInputs", r"^(checkLimits) := xCheckLimits;\n"),
         ("SolveBranch", r"^(SolveBranch) := Softkin_Names\.NoError;\n"),
     ):
-        if axes or method not in ("SolveBranch", "ReadInputs"):
+        is_own = method != "FindMargins" or f"METHOD PROTECTED {method} " in head  # else it is that of the base
+        if is_own and (axes or method not in ("SolveBranch", "ReadInputs")):
             head = _in_method(head, method, pattern, faults)
     declared = head.replace("\nVAR_INPUT\n", f"\nVAR_INPUT\n  {_SWITCH} : INT := 0;\n", 1)
     return Planted(f"{declared}END_FUNCTION_BLOCK{tail}", dict(enumerate(faults, start=1)))
