@@ -24,7 +24,7 @@ from derive.ir.symbols import COORDINATE_NAMES, real
 
 def positions(problem: Problem) -> tuple[Equation, ...]:
     """The coordinates of L^-1 p = M; none where no joint at the base is known."""
-    links, point, side, lets = _behind_known(problem, Side("from", "base"))
+    links, point, side, lets = behind_known(problem, Side("from", "base"))
     if not side.joints:
         return ()
     return _equations(problem, sp.Matrix(pose_of(Chain(tuple(links))).position), point, (side.suffix, lets))
@@ -34,7 +34,7 @@ def positions_and_distance(problem: Problem) -> tuple[Equation, ...]:
     """The coordinates of L^-1 p = M, and the square of their sum: the distance from a point on the first unknown axis,
     which is free of its angle.
     """
-    links, point, side, lets = _behind_known(problem, Side("from", "base"))
+    links, point, side, lets = behind_known(problem, Side("from", "base"))
     moving = [polynomial(v, problem.units, problem.signs) for v in pose_of(Chain(tuple(links))).position]
     square = reduce_units(sum(v**2 for v in moving), problem.units, problem.signs)
     reach = real(f"distance{side.suffix}")
@@ -55,13 +55,13 @@ def positions_from_flange(problem: Problem) -> tuple[Equation, ...]:
         return ()
     links, point, lets = problem.back
     seen = replace(problem, links=links, point=point, point_lets=lets)
-    rest, known, _, named = _behind_known(seen, Side("back", "flange"))
+    rest, known, _, named = behind_known(seen, Side("back", "flange"))
     unknowns = Unknowns(problem.angles, problem.lengths, problem.units, problem.signs)
     found = [e for view in views(rest, Target(tuple(known), tuple(named)), unknowns) for e in view]
     return tuple(replace(e, lets=needed(named, e.expression)) for e in found if problem.unknowns_of(e.expression))
 
 
-def _behind_known(problem: Problem, side: Side) -> tuple[list[Factor], sp.Matrix, Side, list[Let]]:
+def behind_known(problem: Problem, side: Side) -> tuple[list[Factor], sp.Matrix, Side, list[Let]]:
     """The links behind the known joints at the base, the point seen from there, the frame, and what binds names."""
     links = list(problem.links)
     point, lets = sp.Matrix(problem.point), list(problem.point_lets)

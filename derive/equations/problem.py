@@ -73,6 +73,28 @@ class Legs:
 
 
 @dataclass(frozen=True)
+class Swing:
+    """The angle s between the solution of a cos u + b sin u = e and the direction (along, across) of (a, b).
+
+    cos s = e / h with h² = a² + b², and the sine is sigma times a root.
+    """
+
+    cos: sp.Symbol
+    sin: sp.Symbol
+    """Their names; where b is zero those of u itself."""
+    along: sp.Expr
+    across: sp.Expr
+    is_coarse: bool = False
+    """Whether e is an entry of a rotation, whose other entries do not replace it near one: the root may round to zero
+    where they are not zero."""
+
+    def renamed(self, names: Mapping[sp.Symbol, sp.Expr]) -> Swing:
+        """The same with other names."""
+        cos_s, sin_s, along, across = (v.xreplace(names) for v in (self.cos, self.sin, self.along, self.across))
+        return replace(self, cos=cos_s, sin=sin_s, along=along, across=across)
+
+
+@dataclass(frozen=True)
 class StepDeterminant:
     """The determinant of the equations of a two-root step by its unknowns (of one equation: its derivative), with its
     scale. Its sign is the branch.
@@ -89,11 +111,34 @@ class StepDeterminant:
     """The triangle whose root, near zero, magnifies the rounding error of its radicand."""
     beside: tuple[sp.Expr, sp.Expr] | None = None
     """(H, d) where the step has solutions for |d| <= H, both as small as the leg that it turns: see `other_leg`."""
+    swing: Swing | None = None
+    """Of a step that gives a cosine alone, whose sine is the root."""
+    arm: tuple[sp.Expr, sp.Expr, sp.Expr] | None = None
+    """(a, b, e) where the step solves a cos u + b sin u = e: the arm (a, b) has to be as long as e."""
 
     @property
     def sigma(self) -> sp.Symbol:
         """The sign that chooses between the two roots: +1 or -1."""
         return sign_of(self.step)
+
+    def renamed(self, names: Mapping[sp.Symbol, sp.Expr]) -> StepDeterminant:
+        """The same with other names of what earlier steps bind."""
+        return replace(
+            self,
+            value=self.value.xreplace(names),
+            reach=None if self.reach is None else (self.reach[0].xreplace(names), self.reach[1].xreplace(names)),
+            legs=None if self.legs is None else self.legs.renamed(names),
+            swing=None if self.swing is None else self.swing.renamed(names),
+            arm=None if self.arm is None else _renamed_row(self.arm, names),
+            beside=None if self.beside is None else (self.beside[0].xreplace(names), self.beside[1].xreplace(names)),
+        )
+
+
+def _renamed_row(
+    row: tuple[sp.Expr, sp.Expr, sp.Expr], names: Mapping[sp.Symbol, sp.Expr]
+) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    a, b, e = (v.xreplace(names) for v in row)
+    return a, b, e
 
 
 def sign_of(step: sp.Symbol) -> sp.Symbol:

@@ -39,6 +39,11 @@ class Select(sp.Function):
             return first if condition == sp.true else second
         return first if first == second else None
 
+    def _eval_derivative(self, s: sp.Symbol) -> sp.Expr:
+        """The derivative of the side that is taken: the condition has none."""
+        condition, first, second = self.args
+        return Select(condition, first.diff(s), second.diff(s))
+
 
 class ToReal(sp.Function):
     """to_real(n): an integer as a real number, where it multiplies."""

@@ -187,6 +187,9 @@ class _Unrolling:
         """The refusal of every slot: the first condition that does not hold there."""
         refusal = _Refusal((), dict.fromkeys(self.slots, self.graph.leaf(_ZERO)), None)
         for status, group in groupby(effects, key=lambda e: _status(e[1])):
+            if status is Status.OK:  # no answer: then of no slot, whatever the others say
+                self.items += [e.changed(self.at[slot]) for _, e in group for slot in self._different(e)]
+                continue
             by_support: dict[tuple[int, ...], list[tuple[int, Effect]]] = {}
             for effect in group:
                 by_support.setdefault(self._support(effect[1].values), []).append(effect)
@@ -196,6 +199,10 @@ class _Unrolling:
                 else:
                     refusal = self._refused(refusal, support, by_support[support])
         return refusal
+
+    def _different(self, effect: Effect) -> list[Choice]:
+        """A slot for every choice of the signs that an effect reads."""
+        return [slot for _, slot, _ in self._slots_of(self._support(effect.values))]
 
     def _refused(self, before: _Refusal, support: tuple[int, ...], effects: Sequence[tuple[int, Effect]]) -> _Refusal:
         graph, status = self.graph, _status(effects[0][1])

@@ -61,7 +61,7 @@ class DerivationRecord:
         self.renamed = names
         binding = replace(
             binding,
-            determinant=None if binding.determinant is None else _renamed(binding.determinant, names),
+            determinant=None if binding.determinant is None else binding.determinant.renamed(names),
             conditioning=None
             if binding.conditioning is None
             else replace(binding.conditioning, value=binding.conditioning.value.xreplace(names)),
@@ -115,12 +115,3 @@ class DerivationRecord:
             name = f"{proposal.name}_{number}"
         self._names.add(name)
         return proposal if name == proposal.name else called(name, proposal)
-
-
-def _renamed(determinant: StepDeterminant, names: Mapping[sp.Symbol, sp.Expr]) -> StepDeterminant:
-    reach, beside = (
-        None if pair is None else (pair[0].xreplace(names), pair[1].xreplace(names))
-        for pair in (determinant.reach, determinant.beside)
-    )
-    legs = None if determinant.legs is None else determinant.legs.renamed(names)
-    return replace(determinant, value=determinant.value.xreplace(names), reach=reach, legs=legs, beside=beside)

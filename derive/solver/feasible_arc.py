@@ -88,11 +88,11 @@ def within_reach(
         for determinant in determinants:
             condition = _condition(found, conditioning, determinant)
             if condition is not None:
-                found = _in_order(_moved(found, conditioning, condition))
+                found = in_order(_moved(found, conditioning, condition))
     return tuple(found)
 
 
-def _in_order(statements: Sequence[Statement]) -> list[Statement]:
+def in_order(statements: Sequence[Statement]) -> list[Statement]:
     """Every statement behind those that it reads: a motion reads values bound behind the angle that do not depend on
     it.
     """

@@ -52,7 +52,7 @@ from derive.solver.sweeps import WAYS, Sweep, sweep_of, swept
 
 
 @dataclass(frozen=True)
-class _Later:
+class Later:
     """The condition of a later step on the angle of an earlier one: |value| <= size, and how the value follows from the
     angle.
     """
@@ -97,7 +97,8 @@ def beyond_folds(
         for step in determinants:
             later = _later(found, determinant, step, scale)
             if later is not None:
-                found = _moved(found, later, sweep_of(later.chain, later.value, later.angle, conditionings))
+                sweep = sweep_of(later.chain, later.value, later.angle, conditionings)
+                found = with_motion(found, later, _motion(later, sweep))
     return tuple(found)
 
 
@@ -119,7 +120,7 @@ def _through_legs(statement: Statement, angle: sp.Symbol, legs: Legs) -> Stateme
 
 def _later(
     statements: Sequence[Statement], determinant: StepDeterminant, step: StepDeterminant, scale: sp.Expr
-) -> _Later | None:
+) -> Later | None:
     """The condition of a later step on a two-root step; None where it does not depend on it."""
     if determinant.legs is None or step.reach is None or step is determinant:
         return None
@@ -140,12 +141,12 @@ def _later(
             chain.insert(0, let)
     if determinant.legs.beside == 0 and not any(let.value.free_symbols & {cosine(angle), sine(angle)} for let in chain):
         return None  # the distance ahead is the whole distance, whatever the angle
-    return _Later(
+    return Later(
         step.step, f"{angle.name}_for_{step.step.name}", angle, determinant.legs, size, value, tuple(chain), scale
     )
 
 
-def _moved(statements: Sequence[Statement], later: _Later, sweep: Sweep | None) -> list[Statement]:
+def with_motion(statements: Sequence[Statement], later: Later, motion: Sequence[Let]) -> list[Statement]:
     """The statements with the angle turned, behind where it was bound."""
     found: list[Statement] = []
     for s in statements:
@@ -156,13 +157,13 @@ def _moved(statements: Sequence[Statement], later: _Later, sweep: Sweep | None) 
             replace(s, name=later.before(s.name), value=s.value.xreplace({n: later.before(n) for n in later.bound}))
         )
         if s.name == sine(later.angle):  # the last of the three
-            found += _motion(later, sweep)
+            found += motion
     return found
 
 
-def _motion(later: _Later, sweep: Sweep | None) -> tuple[Let, ...]:
+def _motion(later: Later, sweep: Sweep | None) -> tuple[Let, ...]:
     """The angle behind the turn, computed from where it was."""
-    lets, names, rates = _rates(later)
+    lets, names, rates = rates_of(later)
     value, size, rate, excess, divisor, turn = map(later.name, ("value", "size", "rate", "excess", "divisor", "turn"))
     derivative = sp.Add(*[sp.diff(later.value, n) * r for n, r in rates.items() if n in later.value.free_symbols])
     is_steep = sp.Gt(sp.Abs(rate), ROUNDING * size)
@@ -176,13 +177,13 @@ def _motion(later: _Later, sweep: Sweep | None) -> tuple[Let, ...]:
         Let(excess, Select(sp.Gt(value, 0), value - size, value + size)),
         Let(divisor, Select(is_steep, rate, sp.Integer(1))),
         Let(turn, Select(is_steep, -excess / divisor, flat), f"turn of {later.angle.name} to first order"),
-        *_turned(later, turn),
+        *turned(later, turn),
         *follows,
-        *_taken(later, is_swept=sweep is not None),
+        *taken(later, is_swept=sweep is not None),
     )
 
 
-def _turned(later: _Later, turn: sp.Symbol) -> tuple[Let, ...]:
+def turned(later: Later, turn: sp.Symbol) -> tuple[Let, ...]:
     """The distance ahead, the cosine and the sine behind a turn, and the residual of the step's own equation."""
     root, cos_v, sin_v = (later.before(n) for n in later.bound)
     length = later.name("turned_length")
@@ -195,7 +196,7 @@ def _turned(later: _Later, turn: sp.Symbol) -> tuple[Let, ...]:
     )
 
 
-def _swept(later: _Later) -> tuple[Let, ...]:
+def _swept(later: Later) -> tuple[Let, ...]:
     """The same where the angle follows a later one, by the way with the smaller residual; a free
     angle has no residual.
     """
@@ -212,12 +213,12 @@ def _swept(later: _Later) -> tuple[Let, ...]:
     )
 
 
-def _residual(later: _Later, word: str) -> sp.Expr:
+def _residual(later: Later, word: str) -> sp.Expr:
     cos_v, sin_v = later.name(f"{word}_cos"), later.name(f"{word}_sin")
     return sp.Abs(later.legs.along * cos_v + later.legs.across * sin_v - later.legs.beside)
 
 
-def _taken(later: _Later, *, is_swept: bool) -> tuple[Let, ...]:
+def taken(later: Later, *, is_swept: bool) -> tuple[Let, ...]:
     """The angle as it was where it is far from the fold, or the later step has a solution; else
     turned within rounding.
     """
@@ -233,7 +234,7 @@ def _taken(later: _Later, *, is_swept: bool) -> tuple[Let, ...]:
     )
 
 
-def _where_turned(later: _Later, name: sp.Symbol, after: sp.Expr) -> sp.Expr:
+def _where_turned(later: Later, name: sp.Symbol, after: sp.Expr) -> sp.Expr:
     before, value, size = later.before(name), later.name("value"), later.name("size")
     is_dear = sp.Gt(later.name("best_cost"), ROUNDING * later.scale)
     near = Select(sp.Le(sp.Abs(value), size), before, Select(is_dear, before, after))
@@ -244,7 +245,7 @@ def _is_far(square: sp.Expr, scale: sp.Expr) -> sp.Basic:
     return sp.Gt(square, FOLD * scale**2)
 
 
-def _rates(later: _Later) -> tuple[list[Let], dict[sp.Symbol, sp.Expr], dict[sp.Symbol, sp.Expr]]:
+def rates_of(later: Later) -> tuple[list[Let], dict[sp.Symbol, sp.Expr], dict[sp.Symbol, sp.Expr]]:
     """The chain before the turn with its derivatives by the angle; the names of the values; the derivatives or their
     names.
     """
@@ -268,15 +269,16 @@ def _rate(let: Let, rates: Mapping[sp.Symbol, sp.Expr], own: sp.Symbol, word: st
     """The derivative of a value, given those of the values that it reads."""
     if isinstance(let.value, Select):
         condition, *sides = let.value.args
-        return [], Select(condition, *(_total(side, rates) for side in sides))
+        return [], Select(condition, *(rate_along(side, rates) for side in sides))
     if not isinstance(let.value, Root):
-        return [], _total(let.value, rates)
+        return [], rate_along(let.value, rates)
     is_long, divisor = sp.Gt(own, 0), real(f"{let.name.name}_divisor_{word}")
-    rate = Select(is_long, _total(let.value.args[0], rates) / (2 * divisor), sp.Integer(0))
+    rate = Select(is_long, rate_along(let.value.args[0], rates) / (2 * divisor), sp.Integer(0))
     return [Let(divisor, Select(is_long, own, sp.Integer(1)))], rate
 
 
-def _total(value: sp.Expr, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+def rate_along(value: sp.Expr, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """The derivative of a value, given those of the names in it."""
     return sp.Add(*[sp.diff(value, name) * rate for name, rate in rates.items() if name in value.free_symbols])
 
 

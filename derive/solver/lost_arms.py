@@ -2,8 +2,8 @@
 
 A step takes u as the angle from an arm (p, q) to a point (x, y), of one length but for rounding. Where the arm is known
 through one root it is as small as the point. Where it is a sum of several roots near their folds, each with half of its
-digits, the sum may be zero and the point not. Then nothing is left to divide by: u is free, as it is where the point
-is on the axis.
+digits, the sum may be zero and the point not; so may one root that is read off an entry of a rotation near one. Then
+nothing is left to divide by: u is free, as it is where the point is on the axis.
 """
 
 from __future__ import annotations
@@ -23,22 +23,32 @@ def with_lost_arms_free(
 ) -> tuple[Statement, ...]:
     """The statements, with every angle free also where an arm of several roots has rounded to nothing."""
     roots = {step.sigma for step in determinants if step.reach is not None}
+    coarse = {step.sigma for step in determinants if step.swing is not None and step.swing.is_coarse}
     read: dict[sp.Symbol, set[sp.Symbol]] = {s: {s} for s in roots}
     lengths: dict[sp.Symbol, tuple[sp.Basic, sp.Basic]] = {}
     found: list[Statement] = []
     for s in statements:
         if isinstance(s, Let):
             read[s.name] = set[sp.Symbol]().union(*(read.get(n, set()) for n in s.value.free_symbols))
-            lengths |= _length(s, read)
+            lengths |= _length(s, read, coarse)
             s = _free(s, lengths)
         found.append(s)
     return tuple(found)
 
 
-def _length(let: Let, read: dict[sp.Symbol, set[sp.Symbol]]) -> dict[sp.Symbol, tuple[sp.Basic, sp.Basic]]:
-    """The length of an arm of several roots by its name: where its angle is determined, and where it also divides."""
+def _length(
+    let: Let, read: dict[sp.Symbol, set[sp.Symbol]], coarse: set[sp.Symbol]
+) -> dict[sp.Symbol, tuple[sp.Basic, sp.Basic]]:
+    """The length of an arm of several roots, or of a coarse one, by its name: where its angle is determined, and where
+    it also divides.
+    """
     value = let.value
-    if not isinstance(value, Select) or not isinstance(value.args[0], sp.And) or len(read[let.name]) < 2:
+    if (
+        not isinstance(value, Select)
+        or not isinstance(value.args[0], sp.And)
+        or len(read[let.name]) < 2
+        and not read[let.name] & coarse
+    ):
         return {}
     long = [c for c in value.args[0].args if isinstance(c, sp.StrictGreaterThan) and c.rhs == 0]
     rest = [c for c in value.args[0].args if c not in long]

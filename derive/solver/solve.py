@@ -27,8 +27,10 @@ from derive.solver.eliminations import (
 from derive.solver.feasible_arc import within_reach
 from derive.solver.folds import beyond_folds
 from derive.solver.lost_arms import with_lost_arms_free
+from derive.solver.meeting_axes import circles_and_spheres
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from derive.solver.positive_steps import known_signs, where_roots_meet, with_known_signs
+from derive.solver.short_arms import with_arms_long_enough
 from derive.solver.subproblems.affine import affine
 from derive.solver.subproblems.affine_system import (
     affine_across,
@@ -165,7 +167,8 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     if not problem.is_overdetermined:
         held = within_legs(statements, record.determinants)
         unfolded = beyond_folds(held, record.determinants, record.conditionings, problem.scale)
-        moved = within_reach(unfolded, record.determinants, record.conditionings)
+        reaching = with_arms_long_enough(unfolded, record.determinants, problem.scale)
+        moved = within_reach(reaching, record.determinants, record.conditionings)
         statements = with_lost_arms_free(moved, record.determinants)
     signs = known_signs(problem, record.determinants)
     return Derivation(
@@ -280,7 +283,11 @@ def _three_squares(problem: Problem) -> list[Binding]:
     return _candidates(problem, squares_of_three(problem))
 
 
-_LAST = (_along_a_direction, _three_lengths, _by_condition, _three_squares, _along_or_free, _across)
+def _meeting_axes(problem: Problem) -> list[Binding]:
+    return _candidates(problem, circles_and_spheres(problem))
+
+
+_LAST = (_along_a_direction, _three_lengths, _by_condition, _three_squares, _along_or_free, _across, _meeting_axes)
 
 
 def _candidates(problem: Problem, equations: tuple[Equation, ...], wanted: sp.Symbol | None = None) -> list[Binding]:

@@ -3,8 +3,10 @@
 import softkin
 
 robot = softkin.Scara4ZCcoupledType1(
-    link_length_1=325.0, link_length_2=225.0,
-    limits={"A1": (-130.0, 130.0), "A2": (-145.0, 145.0), "A3": (-200.0, 0.0), "A4": (-360.0, 360.0)})
+    link_length_1=325.0,
+    link_length_2=225.0,
+    limits={"A1": (-130.0, 130.0), "A2": (-145.0, 145.0), "A3": (-200.0, 0.0), "A4": (-360.0, 360.0)},
+)
 frame, configuration = robot.forward((120.0, 60.0, -50.0, 340.0))
 present = (-100.0, -20.0, -50.0, 0.0)
 

@@ -9,8 +9,11 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import softkin  # noqa: E402
 
-alike = {f"{name}_{leg}": value for leg in (1, 2, 3) for name, value in (
-    ("base_radius", 200.0), ("inner_arm", 235.0), ("outer_arm", 800.0), ("tcp_radius", 45.0))}
+alike = {
+    f"{name}_{leg}": value
+    for leg in (1, 2, 3)
+    for name, value in (("base_radius", 200.0), ("inner_arm", 235.0), ("outer_arm", 800.0), ("tcp_radius", 45.0))
+}
 limits = dict.fromkeys(("A1", "A2", "A3"), (-40.0, 80.0))
 delta = softkin.DeltaP3CType3(azimuth_1=0.0, azimuth_2=120.0, azimuth_3=240.0, **alike, limits=limits)
 

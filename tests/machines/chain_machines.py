@@ -162,6 +162,46 @@ OF_DEGREE_FOUR = {
 }
 """With one joint known a pair gives the next; the residual is a quartic of the tangent of its half angle."""
 
+MEETING_AXES = {
+    "arm that rolls and bends where its shoulder is": _chain(
+        "Rolling", (A1, A2, A3), Rz(A1) * Tx(L1) * Ry(A2) * Rz(A3) * Tx(L4) * Tz(L3), (L1, L3, L4), Task("xyz")
+    ),
+    "arm that rolls beside its elbow about an axis that leans": _chain(
+        "LeaningRoll",
+        (A1, A2, A3),
+        Rz(A1) * Tx(L1) * Ry(pi / 5) * Rx(A2) * Tx(L2) * Ry(A3) * Tx(L3),
+        (L1, L2, L3),
+        Task("xyz"),
+    ),
+    "arm with an elbow that is held, whose shoulder is beside its base": _chain(
+        "HeldElbow",
+        (A1, A2, A3, A4, A5, A6, A7),
+        Rz(A1) * Tx(L1) * Rx(A2) * Ry(A3) * Tx(L5) * Tz(L2) * Rx(A4) * Tz(L3) * Rz(A5) * Rx(A6) * Rz(A7) * Tz(L4),
+        (L1, L2, L3, L4, L5),
+        Task("xyz", Turning.FULL),
+        held=(A4,),
+    ),
+    "arm with an elbow that is held, whose flange is beside its wrist": _chain(
+        "HeldBefore",
+        (A1, A2, A3, A4, A5, A6, A7),
+        Rz(A1) * Rx(A2) * Rz(A3) * Tz(L2) * Tx(L5) * Rx(A4) * Tz(L3) * Rz(A5) * Rx(A6) * Tx(L1) * Rz(A7) * Tz(L4),
+        (L1, L2, L3, L4, L5),
+        Task("xyz", Turning.FULL),
+        held=(A4,),
+    ),
+}
+"""Behind the first unknown joint two axes meet: where they meet is as far from the wrist as links and elbow say."""
+
+SHORT_ARMS = {
+    "arm that rolls before its elbow": _chain(
+        "RollElbow", (A1, A2, A3), Ry(A1) * Rx(A2) * Tx(L2) * Ry(A3) * Tx(L3), (L2, L3), Task("xyz")
+    ),
+    "arm that rolls before its elbow, beside its base": _chain(
+        "RollBeside", (A1, A2, A3), Rz(A1) * Tx(L1) * Rx(A2) * Tx(L2) * Ry(A3) * Tx(L3), (L1, L2, L3), Task("xyz")
+    ),
+}
+"""The elbow, nearly straight, folds the arm that the roll turns: its length is the root of the law of cosines."""
+
 _ELBOW = 1.3849179
 ANGLES_AS_NUMBERS = _chain(
     "AnglesByTable",
@@ -182,8 +222,23 @@ joints and by angles of its own, which count in degrees."""
 
 BY_TABLE = {"six axes by a table with angles as numbers": ANGLES_AS_NUMBERS}
 
-CHAINS = {**WITHOUT_ARM, **FROM_FLANGE, **OF_DEGREE_FOUR, **BY_TABLE, **BENT_WRISTS, **LONG_LINKS}
+CHAINS = {
+    **WITHOUT_ARM,
+    **FROM_FLANGE,
+    **OF_DEGREE_FOUR,
+    **BY_TABLE,
+    **BENT_WRISTS,
+    **LONG_LINKS,
+    **MEETING_AXES,
+    **SHORT_ARMS,
+}
 CHAIN_SOLUTIONS = {
+    "arm that rolls and bends where its shoulder is": 4,
+    "arm that rolls beside its elbow about an axis that leans": 4,
+    "arm with an elbow that is held, whose shoulder is beside its base": 8,
+    "arm with an elbow that is held, whose flange is beside its wrist": 8,
+    "arm that rolls before its elbow": 4,
+    "arm that rolls before its elbow, beside its base": 4,
     "finger on a rocker on a slide": 4,
     "arm whose wrist may lie on its second axis": 8,
     "finger beside a rocker on a slide": 4,

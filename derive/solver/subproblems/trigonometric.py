@@ -21,7 +21,7 @@ from functools import cache
 import sympy as sp
 
 from derive.algebra.normal_form import cancelled, factored, linear_coefficients, reduce_units
-from derive.equations.problem import Binding, Equation, Problem, StepDeterminant, sign_of
+from derive.equations.problem import Binding, Equation, Problem, StepDeterminant, Swing, sign_of
 from derive.ir.constants import (
     BOUNDARY,
     DEGREE,
@@ -60,16 +60,23 @@ def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator
     """Every angle that one equation determines up to a sign."""
     for equation, angle, (a, b, e), is_aimed in _rows(problem, equations):
         if is_aimed:
-            yield aimed_at_point(problem, equation, angle, (a, b, e))
+            yield _with_arm(aimed_at_point(problem, equation, angle, (a, b, e)), (a, b, e))
         else:
-            yield _solve(problem, equation, angle, _amplitude(problem, equation, angle, a, b, e))
+            yield _with_arm(_solve(problem, equation, angle, _amplitude(problem, equation, angle, a, b, e)), (a, b, e))
 
 
 def lateral(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
     """Those of these angles that aim an arm at a commanded point; the others give a cosine alone."""
     for equation, angle, row, is_aimed in _rows(problem, equations):
         if is_aimed:
-            yield aimed_at_point(problem, equation, angle, row)
+            yield _with_arm(aimed_at_point(problem, equation, angle, row), row)
+
+
+def _with_arm(binding: Binding, row: Row) -> Binding:
+    """The step with its equation, for steps before it that may have to turn its arm."""
+    if binding.determinant is None:
+        return binding
+    return replace(binding, determinant=replace(binding.determinant, arm=row))
 
 
 def _rows(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[tuple[Equation, sp.Symbol, Row, bool]]:
@@ -302,6 +309,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     size = sp.Abs if amplitude.is_signed else sp.Add
     less, more = amplitude.factors or (_product(length - right), _product(length + right))
     (less, more), column = with_small_entries(problem, equation, (less, more))
+    is_fine = sp.Mul(less, more).has(Select)
     told, larger, leg = (less, more), tuple[Let, ...](), None
     if amplitude.aimable is not None:  # joints change the arm, which may be stretched along the coordinate
         leg = other_leg(problem, equation, angle, amplitude.determinant, amplitude.naming.lets)
@@ -327,9 +335,15 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
         Let(sin_name, 2 * sigma * Root(square) / size(below)),
         *(_turned(problem, equation, angle, amplitude, (cos_name, sin_name)) if turned else ()),
     ]
-    beside = None if leg is None else leg[:2]
     determinant = StepDeterminant(
-        angle, amplitude.determinant, amplitude.determinant_scale, (length, right), beside=beside
+        angle,
+        amplitude.determinant,
+        amplitude.determinant_scale,
+        (length, right),
+        beside=None if leg is None else leg[:2],
+        swing=Swing(
+            cos_name, sin_name, amplitude.cos_unit, amplitude.sin_unit, equation.column is not None and not is_fine
+        ),
     )
     return Binding("trigonometric", (angle,), tuple(statements), determinant, cosine_alone=True, yields_to_a_sum=True)
 

@@ -21,8 +21,9 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 26 additions, 37 multiplications, 1 divisions, 2 square roots, 4 sines
-    inverse: 51 additions, 44 multiplications, 10 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 164 additions, 121 multiplications, 27 divisions, 9 square roots, 6 sines
+    inverse: 51 additions, 51 multiplications, 8 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 164 additions, 130 multiplications, 22 divisions, 8 square roots, 6 sines
+    a branch at a singular pose, more: 21 additions, 39 multiplications, 3 divisions, 3 square roots, 0 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -103,6 +104,8 @@ class Constants:
         product_in_foot_fraction = link_length_2_minus_radius_2 * link_length_2_plus_radius_2
         machine_scale_times_plane = 1e-6 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
+        machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
+        machine_scale_times_rounding = 1e-12 * machine_scale
         link_length_5_times_shortest_link = 1e-9 * link_length_5
         link_length_3_by_link_length_2 = link_length_3 / link_length_2
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
@@ -116,9 +119,27 @@ class Constants:
         quotient_in_scaled_pivot_rear_y_2 = link_length_2 * link_length_5 / link_length_3
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+        machine_scale_squared_times_4 = 4.0 * machine_scale * machine_scale
+        link_length_2_squared = link_length_2 * link_length_2
+        sum_in_value_a1_for_a2 = (
+            link_length_1 * link_length_1 * link_length_2 * link_length_2
+            + 2.0 * link_length_1 * link_length_1 * link_length_2 * link_length_3
+            + link_length_1 * link_length_1 * link_length_3 * link_length_3
+            + link_length_2 * link_length_2 * link_length_5 * link_length_5
+            - link_length_2 * link_length_2 * link_length_4 * link_length_4
+        )
+        quotient_in_arm_x_rate_a1_for_a2 = (
+            2.0 * link_length_1 * link_length_2 * link_length_5 + 2.0 * link_length_1 * link_length_3 * link_length_5
+        ) / link_length_2
         link_length_5_minus_link_length_4 = link_length_5 - link_length_4
         link_length_4_plus_link_length_5 = link_length_4 + link_length_5
         quotient_in_type2_arms_aligned = assembly_sign * link_length_3 / (link_length_4 * link_length_2 * link_length_2)
+        product_in_value_a1_for_a2 = 2.0 * link_length_1 * link_length_2 * link_length_2_plus_link_length_3
+        one_by_link_length_2_squared = 1.0 / link_length_2_squared
+        quotient_in_arm_x_a1_for_a2 = (
+            2.0 * link_length_1 * link_length_2_plus_link_length_3 * link_length_5 / link_length_2
+        )
+        twice_link_length_5 = 2.0 * link_length_5
         quotient_in_along_a2 = link_length_1 * link_length_2_plus_link_length_3 / link_length_2
         quotient_in_margin_arms_aligned = link_length_3 / (link_length_4 * link_length_2 * link_length_2)
         twice_link_length_1 = 2.0 * link_length_1
@@ -126,10 +147,9 @@ class Constants:
         product_in_slope_2_by_x = link_length_1 * link_length_3_by_link_length_2_plus_one
         link_length_3_times_2_by_link_length_2 = 2.0 * link_length_3 / link_length_2
         product_in_slope_2_by_a1 = 2.0 * link_length_1 * link_length_3_by_link_length_2_plus_one
-        twice_link_length_5 = 2.0 * link_length_5
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
         self.link_length_5, self.swap_xy, self.offset_a1, self.offset_a2 = link_length_5, swap_xy, offset_a1, offset_a2
-        self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
+        self.min_type2_margin, self.machine_scale, self.assembly_sign = min_type2_margin, machine_scale, assembly_sign
         self.product_in_normal_divisor = product_in_normal_divisor
         self.link_length_2_squared_times_rounding = link_length_2_squared_times_rounding
         self.link_length_2_plus_radius_2 = link_length_2_plus_radius_2
@@ -137,6 +157,8 @@ class Constants:
         self.product_in_foot_fraction = product_in_foot_fraction
         self.machine_scale_times_plane = machine_scale_times_plane
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
+        self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
+        self.machine_scale_times_rounding = machine_scale_times_rounding
         self.link_length_5_times_shortest_link = link_length_5_times_shortest_link
         self.link_length_3_by_link_length_2 = link_length_3_by_link_length_2
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
@@ -147,14 +169,20 @@ class Constants:
         self.quotient_in_scaled_pivot_rear_y_2 = quotient_in_scaled_pivot_rear_y_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
+        self.machine_scale_squared_times_4 = machine_scale_squared_times_4
+        self.link_length_2_squared, self.sum_in_value_a1_for_a2 = link_length_2_squared, sum_in_value_a1_for_a2
+        self.quotient_in_arm_x_rate_a1_for_a2 = quotient_in_arm_x_rate_a1_for_a2
         self.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4
         self.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5
         self.quotient_in_type2_arms_aligned = quotient_in_type2_arms_aligned
+        self.product_in_value_a1_for_a2 = product_in_value_a1_for_a2
+        self.one_by_link_length_2_squared = one_by_link_length_2_squared
+        self.quotient_in_arm_x_a1_for_a2, self.twice_link_length_5 = quotient_in_arm_x_a1_for_a2, twice_link_length_5
         self.quotient_in_along_a2 = quotient_in_along_a2
         self.quotient_in_margin_arms_aligned = quotient_in_margin_arms_aligned
         self.twice_link_length_1, self.product_in_slope_2_by_x = twice_link_length_1, product_in_slope_2_by_x
         self.link_length_3_times_2_by_link_length_2 = link_length_3_times_2_by_link_length_2
-        self.product_in_slope_2_by_a1, self.twice_link_length_5 = product_in_slope_2_by_a1, twice_link_length_5
+        self.product_in_slope_2_by_a1 = product_in_slope_2_by_a1
 
 
 class KinType12XY(OffsetKinematics):
@@ -385,17 +413,25 @@ class KinType12XY(OffsetKinematics):
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
+        link_length_2_squared = k.link_length_2_squared
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
-        link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
-        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        link_length_5_times_shortest_link, machine_scale = k.link_length_5_times_shortest_link, k.machine_scale
+        machine_scale_squared_times_4 = k.machine_scale_squared_times_4
+        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        machine_scale_times_plane = k.machine_scale_times_plane
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        quotient_in_along_a2 = k.quotient_in_along_a2
+        one_by_link_length_2_squared = k.one_by_link_length_2_squared
+        product_in_value_a1_for_a2, quotient_in_along_a2 = k.product_in_value_a1_for_a2, k.quotient_in_along_a2
+        quotient_in_arm_x_a1_for_a2 = k.quotient_in_arm_x_a1_for_a2
+        quotient_in_arm_x_rate_a1_for_a2 = k.quotient_in_arm_x_rate_a1_for_a2
         quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
         quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
         quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
-        single_a2, swap_xy = k.single_a2, k.swap_xy
+        single_a2, sum_in_value_a1_for_a2, swap_xy = k.single_a2, k.sum_in_value_a1_for_a2, k.swap_xy
+        twice_link_length_5 = k.twice_link_length_5
         if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -423,17 +459,100 @@ class KinType12XY(OffsetKinematics):
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
+        one_by_sum_a1 = 1.0 / divisor_of_cos_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) * one_by_sum_a1
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
-        sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
+        root_of_sine_square_a1 = sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0
+        product_in_ahead_squared_a1 = one_by_sum_a1 * root_of_sine_square_a1
+        # the triangle of the swing, as long as the machine
+        ahead_squared_a1 = (
+            machine_scale_squared_times_4 * one_by_sum_a1 * product_in_ahead_squared_a1 * root_of_sine_square_a1
+        )
+        sin_swing_a1 = -2.0 * sigma_t * product_in_ahead_squared_a1
+        one_by_effective_a1 = 1.0 / divisor_a1
+        sin_a1_before_a1_for_a2 = one_by_effective_a1 * (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1)
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
+        cos_a1_before_a1_for_a2 = one_by_effective_a1 * (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1)
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
+        # turned so that a2 has a solution
+        if ahead_squared_a1 > machine_scale_squared_times_plane:
+            sin_a1 = sin_a1_before_a1_for_a2
+            cos_a1 = cos_a1_before_a1_for_a2
+        else:
+            value_a1_for_a2 = -one_by_link_length_2_squared * (
+                sum_in_value_a1_for_a2
+                + (link_length_2_squared * span_rear_x - product_in_value_a1_for_a2 * sin_a1_before_a1_for_a2)
+                * span_rear_x
+                + (link_length_2_squared * span_rear_y - product_in_value_a1_for_a2 * cos_a1_before_a1_for_a2)
+                * span_rear_y
+            )
+            arm_x_a1_for_a2 = span_rear_x * twice_link_length_5 - quotient_in_arm_x_a1_for_a2 * sin_a1_before_a1_for_a2
+            arm_y_a1_for_a2 = quotient_in_arm_x_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y * twice_link_length_5
+            # a2 has solutions where this is within its bound
+            size_a1_for_a2 = sqrt(arm_x_a1_for_a2 * arm_x_a1_for_a2 + arm_y_a1_for_a2 * arm_y_a1_for_a2)
+            # turned so that a2 has a solution
+            if abs(value_a1_for_a2) <= size_a1_for_a2:
+                sin_a1 = sin_a1_before_a1_for_a2
+                cos_a1 = cos_a1_before_a1_for_a2
+            else:
+                missing_a1_for_a2 = (abs(value_a1_for_a2) - size_a1_for_a2) * (size_a1_for_a2 + abs(value_a1_for_a2))
+                arm_x_rate_a1_for_a2 = -quotient_in_arm_x_rate_a1_for_a2 * cos_a1_before_a1_for_a2
+                arm_y_rate_a1_for_a2 = -quotient_in_arm_x_rate_a1_for_a2 * sin_a1_before_a1_for_a2
+                value_rate_a1_for_a2 = one_by_link_length_2_squared * (
+                    product_in_value_a1_for_a2 * span_rear_x * cos_a1_before_a1_for_a2
+                    - product_in_value_a1_for_a2 * span_rear_y * sin_a1_before_a1_for_a2
+                )
+                linear_a1_for_a2 = (
+                    arm_x_a1_for_a2 * arm_x_rate_a1_for_a2
+                    + arm_y_a1_for_a2 * arm_y_rate_a1_for_a2
+                    - value_a1_for_a2 * value_rate_a1_for_a2
+                )
+                square_a1_for_a2 = (
+                    arm_x_rate_a1_for_a2 * arm_x_rate_a1_for_a2
+                    + arm_y_rate_a1_for_a2 * arm_y_rate_a1_for_a2
+                    - value_rate_a1_for_a2 * value_rate_a1_for_a2
+                )
+                beside_a1 = machine_scale * cos_swing_a1
+                way_a1_for_a2 = (
+                    (1.0 if linear_a1_for_a2 > 0.0 else -1.0)
+                    if abs(linear_a1_for_a2) > 0.0
+                    else (1.0 if -sigma_t * beside_a1 >= 0.0 else -1.0)
+                )
+                divisor_a1_for_a2 = (
+                    linear_a1_for_a2
+                    + root(linear_a1_for_a2 * linear_a1_for_a2 + missing_a1_for_a2 * square_a1_for_a2) * way_a1_for_a2
+                )
+                # turn of a1 that makes the arm of a2 long enough
+                turn_a1_for_a2 = (
+                    missing_a1_for_a2 / (divisor_a1_for_a2 if abs(divisor_a1_for_a2) > 0.0 else 1.0)
+                    if abs(divisor_a1_for_a2) > 0.0
+                    else 0.0
+                )
+                turned_length_a1_for_a2 = root(1.0 + turn_a1_for_a2 * turn_a1_for_a2)
+                turned_sin_a1_for_a2 = (
+                    sin_a1_before_a1_for_a2 + turn_a1_for_a2 * cos_a1_before_a1_for_a2
+                ) / turned_length_a1_for_a2
+                turned_cos_a1_for_a2 = (
+                    cos_a1_before_a1_for_a2 - turn_a1_for_a2 * sin_a1_before_a1_for_a2
+                ) / turned_length_a1_for_a2
+                # residual of the equation of a1
+                turned_cost_a1_for_a2 = abs(
+                    beside_a1
+                    - machine_scale
+                    * one_by_effective_a1
+                    * (span_upper_x * turned_sin_a1_for_a2 + span_upper_y * turned_cos_a1_for_a2)
+                )
+                # turned so that a2 has a solution
+                if turned_cost_a1_for_a2 > machine_scale_times_rounding:
+                    sin_a1 = sin_a1_before_a1_for_a2
+                    cos_a1 = cos_a1_before_a1_for_a2
+                else:
+                    sin_a1 = turned_sin_a1_for_a2
+                    cos_a1 = turned_cos_a1_for_a2
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         pivot_upper_y = -link_length_1 * cos_a1
-        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         along_a2 = span_rear_x - quotient_in_along_a2 * sin_a1
-        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
         across_a2 = quotient_in_along_a2 * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
@@ -758,17 +877,25 @@ class KinType12XY(OffsetKinematics):
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
+        link_length_2_squared = k.link_length_2_squared
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
-        link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
-        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        link_length_5_times_shortest_link, machine_scale = k.link_length_5_times_shortest_link, k.machine_scale
+        machine_scale_squared_times_4 = k.machine_scale_squared_times_4
+        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        machine_scale_times_plane = k.machine_scale_times_plane
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        quotient_in_along_a2 = k.quotient_in_along_a2
+        one_by_link_length_2_squared = k.one_by_link_length_2_squared
+        product_in_value_a1_for_a2, quotient_in_along_a2 = k.product_in_value_a1_for_a2, k.quotient_in_along_a2
+        quotient_in_arm_x_a1_for_a2 = k.quotient_in_arm_x_a1_for_a2
+        quotient_in_arm_x_rate_a1_for_a2 = k.quotient_in_arm_x_rate_a1_for_a2
         quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
         quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
         quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
-        single_a2, swap_xy = k.single_a2, k.swap_xy
+        single_a2, sum_in_value_a1_for_a2, swap_xy = k.single_a2, k.sum_in_value_a1_for_a2, k.swap_xy
+        twice_link_length_5 = k.twice_link_length_5
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -798,17 +925,100 @@ class KinType12XY(OffsetKinematics):
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
+        one_by_sum_a1 = 1.0 / divisor_of_cos_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) * one_by_sum_a1
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
-        sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
+        root_of_sine_square_a1 = sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0
+        product_in_ahead_squared_a1 = one_by_sum_a1 * root_of_sine_square_a1
+        # the triangle of the swing, as long as the machine
+        ahead_squared_a1 = (
+            machine_scale_squared_times_4 * one_by_sum_a1 * product_in_ahead_squared_a1 * root_of_sine_square_a1
+        )
+        sin_swing_a1 = -2.0 * sigma_t * product_in_ahead_squared_a1
+        one_by_effective_a1 = 1.0 / divisor_a1
+        sin_a1_before_a1_for_a2 = one_by_effective_a1 * (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1)
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
+        cos_a1_before_a1_for_a2 = one_by_effective_a1 * (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1)
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
+        # turned so that a2 has a solution
+        if ahead_squared_a1 > machine_scale_squared_times_plane:
+            sin_a1 = sin_a1_before_a1_for_a2
+            cos_a1 = cos_a1_before_a1_for_a2
+        else:
+            value_a1_for_a2 = -one_by_link_length_2_squared * (
+                sum_in_value_a1_for_a2
+                + (link_length_2_squared * span_rear_x - product_in_value_a1_for_a2 * sin_a1_before_a1_for_a2)
+                * span_rear_x
+                + (link_length_2_squared * span_rear_y - product_in_value_a1_for_a2 * cos_a1_before_a1_for_a2)
+                * span_rear_y
+            )
+            arm_x_a1_for_a2 = span_rear_x * twice_link_length_5 - quotient_in_arm_x_a1_for_a2 * sin_a1_before_a1_for_a2
+            arm_y_a1_for_a2 = quotient_in_arm_x_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y * twice_link_length_5
+            # a2 has solutions where this is within its bound
+            size_a1_for_a2 = sqrt(arm_x_a1_for_a2 * arm_x_a1_for_a2 + arm_y_a1_for_a2 * arm_y_a1_for_a2)
+            # turned so that a2 has a solution
+            if abs(value_a1_for_a2) <= size_a1_for_a2:
+                sin_a1 = sin_a1_before_a1_for_a2
+                cos_a1 = cos_a1_before_a1_for_a2
+            else:
+                missing_a1_for_a2 = (abs(value_a1_for_a2) - size_a1_for_a2) * (size_a1_for_a2 + abs(value_a1_for_a2))
+                arm_x_rate_a1_for_a2 = -quotient_in_arm_x_rate_a1_for_a2 * cos_a1_before_a1_for_a2
+                arm_y_rate_a1_for_a2 = -quotient_in_arm_x_rate_a1_for_a2 * sin_a1_before_a1_for_a2
+                value_rate_a1_for_a2 = one_by_link_length_2_squared * (
+                    product_in_value_a1_for_a2 * span_rear_x * cos_a1_before_a1_for_a2
+                    - product_in_value_a1_for_a2 * span_rear_y * sin_a1_before_a1_for_a2
+                )
+                linear_a1_for_a2 = (
+                    arm_x_a1_for_a2 * arm_x_rate_a1_for_a2
+                    + arm_y_a1_for_a2 * arm_y_rate_a1_for_a2
+                    - value_a1_for_a2 * value_rate_a1_for_a2
+                )
+                square_a1_for_a2 = (
+                    arm_x_rate_a1_for_a2 * arm_x_rate_a1_for_a2
+                    + arm_y_rate_a1_for_a2 * arm_y_rate_a1_for_a2
+                    - value_rate_a1_for_a2 * value_rate_a1_for_a2
+                )
+                beside_a1 = machine_scale * cos_swing_a1
+                way_a1_for_a2 = (
+                    (1.0 if linear_a1_for_a2 > 0.0 else -1.0)
+                    if abs(linear_a1_for_a2) > 0.0
+                    else (1.0 if -sigma_t * beside_a1 >= 0.0 else -1.0)
+                )
+                divisor_a1_for_a2 = (
+                    linear_a1_for_a2
+                    + root(linear_a1_for_a2 * linear_a1_for_a2 + missing_a1_for_a2 * square_a1_for_a2) * way_a1_for_a2
+                )
+                # turn of a1 that makes the arm of a2 long enough
+                turn_a1_for_a2 = (
+                    missing_a1_for_a2 / (divisor_a1_for_a2 if abs(divisor_a1_for_a2) > 0.0 else 1.0)
+                    if abs(divisor_a1_for_a2) > 0.0
+                    else 0.0
+                )
+                turned_length_a1_for_a2 = root(1.0 + turn_a1_for_a2 * turn_a1_for_a2)
+                turned_sin_a1_for_a2 = (
+                    sin_a1_before_a1_for_a2 + turn_a1_for_a2 * cos_a1_before_a1_for_a2
+                ) / turned_length_a1_for_a2
+                turned_cos_a1_for_a2 = (
+                    cos_a1_before_a1_for_a2 - turn_a1_for_a2 * sin_a1_before_a1_for_a2
+                ) / turned_length_a1_for_a2
+                # residual of the equation of a1
+                turned_cost_a1_for_a2 = abs(
+                    beside_a1
+                    - machine_scale
+                    * one_by_effective_a1
+                    * (span_upper_x * turned_sin_a1_for_a2 + span_upper_y * turned_cos_a1_for_a2)
+                )
+                # turned so that a2 has a solution
+                if turned_cost_a1_for_a2 > machine_scale_times_rounding:
+                    sin_a1 = sin_a1_before_a1_for_a2
+                    cos_a1 = cos_a1_before_a1_for_a2
+                else:
+                    sin_a1 = turned_sin_a1_for_a2
+                    cos_a1 = turned_cos_a1_for_a2
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         pivot_upper_y = -link_length_1 * cos_a1
-        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         along_a2 = span_rear_x - quotient_in_along_a2 * sin_a1
-        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
         across_a2 = quotient_in_along_a2 * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
@@ -984,12 +1194,13 @@ class KinType12XY(OffsetKinematics):
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
         solve = self._all_trusted  # a separate statement is faster
-        return solve(frame, reference)
+        return solve(frame, reference) or super().branches(frame, reference)  # near a fold, one branch after the other
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
-        return solve(frame, signs, reference)
+        found = solve(frame, signs, reference)
+        return super().branch(frame, signs, reference) if found == () else found  # near a fold, by the complete program
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         return self._finished(self._all_trusted, self._finish, position, rotation, reference)
