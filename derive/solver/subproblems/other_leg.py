@@ -3,7 +3,8 @@
 A step that solves a cos u + b sin u = e for u takes the other leg, a sin u - b cos u, from h^2 - e^2, where h is the
 length of (a, b). Where a chain is nearly stretched along the coordinate of this equation, both are as long as the
 chain, and their difference has lost the digits of the leg. The squares of the other two coordinates add up to
-H^2 = leg^2 + d^2, in which H is commanded and d known: so leg^2 = (H - d)(H + d), with all digits of H.
+H^2 = leg^2 + d^2, in which H is commanded and d known: so leg^2 = (H - d)(H + d), with all digits of H. Where H is the
+longer one of H and h it is the other way round, and leg^2 = (h - e)(h + e).
 """
 
 from __future__ import annotations
@@ -37,13 +38,14 @@ def other_leg(
 def with_leg(
     angle: sp.Symbol, legs: tuple[sp.Expr, sp.Expr], leg: Leg
 ) -> tuple[tuple[sp.Expr, sp.Expr], tuple[Let, ...], tuple[Let, ...]]:
-    """The factors h - e and h + e, the smaller one as the square of the other leg over the larger one; the statement
-    that binds the larger one; the statements that the leg reads. legs: h and e.
+    """The factors h - e and h + e, the smaller one as the square of the other leg over the larger one where H is
+    shorter than h; the statement that binds the larger one; the statements that the leg reads. legs: h and e.
     """
     (length, right), (distance, beside, lets) = legs, leg
     is_ahead = sp.Gt(right, 0)
     larger = Let(real(f"larger_factor_{angle.name}"), length + Select(is_ahead, right, -right))
-    smaller = (distance - beside) * (distance + beside) / larger.name
+    by_leg = (distance - beside) * (distance + beside) / larger.name
+    smaller = Select(sp.Lt(distance, length), by_leg, length - Select(is_ahead, right, -right))
     return (Select(is_ahead, smaller, larger.name), Select(is_ahead, larger.name, smaller)), (larger,), lets
 
 
