@@ -35,7 +35,9 @@ view: $(READY)
 check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)
 
+# The core in C is built into build/native and asked first; where there is no compiler, a line says so.
 test: $(READY)
+	$(RUN) -m tests.native
 	$(RUN) -m pytest -n 2 --dist loadgroup
 
 quick: $(READY)
