@@ -14,7 +14,9 @@ from pathlib import Path
 from setuptools import Extension, setup
 
 FOLDER = Path(__file__).parent
-OPTIONS = [] if sys.platform == "win32" else ["-O2", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden"]
+OPTIONS = (
+    [] if sys.platform == "win32" else ["-O2", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden"]
+)
 
 
 def can_be_built() -> bool:
