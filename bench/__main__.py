@@ -11,10 +11,9 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-import softkin
 
 from bench.chain import KR6_R900, UR5, Array, Table, errors
-from bench.contenders import ALL, BATCH, ONE, Contender, contenders
+from bench.contenders import ALL, BATCH, FORWARD, ONE, Contender, contenders
 
 ROUNDS, BATCH_ROUNDS = 60, 8
 SCALAR, ROWS = 200, 100_000
@@ -62,11 +61,15 @@ def report(table: Table) -> None:
     print(f"{'':52}{'':17}{'random poses':>28}{'90-degree grid':>28}")
     columns = f"{'worst':>9}{'answers':>8}{'lost':>5}{'wrong':>6}"
     print(f"{'':52}{'µs a pose':>10}{'ratio':>7}{columns}{columns}")
-    for task in (ALL, ONE, BATCH):
-        peers = [times[c.name] for c in found if c.is_peer and c.task == (ALL if task == ONE else task)]
-        print(f"{task}; ratio to the fastest peer" + (" with all solutions" if task == ONE else ""))
+    for task in (ALL, ONE, FORWARD, BATCH):
+        of_all = task in (ONE, FORWARD)
+        peers = [times[c.name] for c in found if c.is_peer and c.task == (ALL if of_all else task)]
+        print(f"{task}; ratio to the fastest peer" + (" with all solutions" if of_all else ""))
         for contender in (c for c in found if c.task == task):
             took = times[contender.name]
+            if task == FORWARD:
+                print(f"  {contender.name:50}{took:10.2f}{took / min(peers):7.2f}")
+                continue
             good, gridded = (quality(table, contender, poses) for poses in (few, grid))
             print(
                 f"  {contender.name:50}{took:10.2f}{took / min(peers):7.2f}"
@@ -113,7 +116,7 @@ def _answer(contender: Contender, one: Any) -> Any:
     """What a call answers; None where it refuses."""
     try:
         return contender.call(*one) if contender.task == ONE else contender.call(one)
-    except (softkin.KinematicsError, ZeroDivisionError):
+    except (ValueError, ZeroDivisionError):
         return None
 
 

@@ -13,16 +13,17 @@ from typing import Any
 
 import numpy as np
 import py_opw_kinematics as opw
-import softkin
 from eaik.IK_DH import DhRobot
 from scipy.spatial.transform import RigidTransform
 
 from bench.by_hand import Arm, all_solutions, batch, one_solution
 from bench.chain import KR6_R900, UR5, Array, Table
+from bench.cores import CORES
 
 Answers = tuple[Array, Array]
 """Axes (M, 6), and the pose (M,) that each row is for."""
 ALL, ONE, BATCH = "all solutions, one call", "one solution, one call", "a batch"
+FORWARD = "a frame, or a Jacobian, one call"
 
 
 @dataclass(frozen=True)
@@ -42,20 +43,22 @@ class Contender:
 
 def contenders(table: Table) -> list[Contender]:
     """All of a robot."""
-    found = [*_ours(table), *_eaik(table)]
+    found = [*(c for core in CORES for c in _ours(table, core)), *_eaik(table)]
     return [*found, *_opw(table)] if table is KR6_R900 else found
 
 
-def robot_of(table: Table) -> softkin.Mechanism:
-    """Our machine, in millimetres."""
+def robot_of(table: Table, core: str) -> Any:
+    """Our machine, in millimetres, on a core."""
+    softkin = CORES[core]
     a, d = ([1000.0 * v for v in values] for values in (table.a, table.d))
     if table is UR5:
         return softkin.Ac6ThreeParallel(d1=d[0], a2=a[1], a3=a[2], d4=d[3], d5=d[4], d6=d[5])
     return softkin.ArticulatedRobot6DOF(d1=d[0], a1=a[0], a2=a[1], a3=a[2], d4=d[3], d6=d[5])
 
 
-def _ours(table: Table) -> list[Contender]:
-    robot = robot_of(table)
+def _ours(table: Table, core: str) -> list[Contender]:
+    robot, softkin = robot_of(table, core), CORES[core]
+    near = f"softkin, {core}:"
 
     def frames(poses: Array) -> list[Any]:
         return [
@@ -94,16 +97,21 @@ def _ours(table: Table) -> list[Contender]:
     def looked_at(solutions: Sequence[Any]) -> Answers:
         return _rows([[s.axes for s in slots if s.axes is not None] for slots in solutions])
 
+    def joints(poses: Array) -> list[Any]:
+        """Axis values that reach the frames: those of the first branch."""
+        found = (next((a for a in robot.branches(f) if a is not None), (0.0,) * 6) for f in frames(poses))
+        return [tuple(map(float, axes)) for axes in found]
+
     return [
-        Contender("softkin branches(frame)", ALL, plain, robot.branches, _slots),
-        Contender("softkin inverse_all(frame), checked", ALL, frames, robot.inverse_all, looked_at),
-        Contender("softkin tuple(inverse_all(frame))", ALL, frames, lambda f: tuple(robot.inverse_all(f)), looked_at),
-        Contender("softkin branch(frame, signs)", ONE, chosen, robot.branch, _single),
-        Contender("softkin inverse(frame, configuration), checked", ONE, named, robot.inverse, _single),
-        Contender("softkin inverse_batch, one solution", BATCH, configured, lambda p: robot.inverse_batch(*p), _batch),
-        Contender(
-            "softkin inverse_all_batch, all solutions", BATCH, arrays, lambda p: robot.inverse_all_batch(*p), every
-        ),
+        Contender(f"{near} branches(frame)", ALL, plain, robot.branches, _slots),
+        Contender(f"{near} inverse_all(frame), checked", ALL, frames, robot.inverse_all, looked_at),
+        Contender(f"{near} tuple(inverse_all(frame))", ALL, frames, lambda f: tuple(robot.inverse_all(f)), looked_at),
+        Contender(f"{near} branch(frame, signs)", ONE, chosen, robot.branch, _single),
+        Contender(f"{near} inverse(frame, configuration)", ONE, named, robot.inverse, _single),
+        Contender(f"{near} inverse_batch, one solution", BATCH, configured, lambda p: robot.inverse_batch(*p), _batch),
+        Contender(f"{near} inverse_all_batch", BATCH, arrays, lambda p: robot.inverse_all_batch(*p), every),
+        Contender(f"{near} forward(axes)", FORWARD, joints, robot.forward, _nothing),
+        Contender(f"{near} jacobian(axes)", FORWARD, joints, robot.jacobian, _nothing),
     ]
 
 
@@ -220,6 +228,11 @@ def _rows(found: Sequence[Sequence[Any]]) -> Answers:
     return np.array(rows, dtype=float).reshape(-1, 6), np.repeat(np.arange(len(found)), [len(rows) for rows in found])
 
 
+def _nothing(_: Any) -> Answers:
+    """What is no answer to a pose."""
+    return np.empty((0, 6)), np.empty(0, int)
+
+
 def _slots(solutions: Sequence[Any]) -> Answers:
     return _rows([[axes for axes in slots if axes is not None] for slots in solutions])
 
@@ -230,5 +243,5 @@ def _single(solutions: Sequence[Any]) -> Answers:
 
 def _batch(result: Any) -> Answers:
     axes, statuses = result
-    solved = np.flatnonzero(statuses == softkin.Status.OK)
+    solved = np.flatnonzero(statuses == 0)
     return axes[solved], solved

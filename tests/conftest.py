@@ -8,6 +8,7 @@ one mechanism for each path through the compiler.
 from __future__ import annotations
 
 import gc
+import os
 import re
 from functools import cache
 from pathlib import Path
@@ -24,6 +25,8 @@ settings.load_profile("softkin")
 # What is derived and compiled for a mechanism lives as long as its process: looking for garbage among it after every
 # 700 new objects took a fifth of the time.
 gc.set_threshold(50_000, 20, 100)
+# The core that is asked is Python's, unless `python -m tests.native` has built the other one and asks for it.
+collect_ignore = [] if os.environ.setdefault("SOFTKIN_CORE", "python") == "native" else ["native"]
 
 ROOT = Path(__file__).parent
 ALL_OF_THEM_QUICK = (("unit",), ("harness",))

@@ -33,10 +33,13 @@ def broken(line: str, width: int) -> Iterator[str]:
 
 
 def _place(text: str, width: int) -> int | None:
-    """The best place to break within a width: the least nested one, among equals the last."""
+    """The best place to break within a width: the least nested, among equals the last; else behind what is bound."""
     places = [(depth, -at) for at, depth in _places(text)]
     fitting = [place for place in places if -place[1] <= width]
     far = [place for place in fitting if -place[1] > width // 4]
+    bound = text.find(" = ")
+    if not fitting and bound > 0:
+        return bound + 3
     return -min(far or fitting or places)[1] if places else None
 
 

@@ -129,6 +129,8 @@ def _reals(one: Robot, place: str, old: Any, new: Any, margin: float = 1.0, shar
     elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
         size = one.reach if place.endswith(("position", "jacobian")) else 1.0
         size = max((size, *(abs(x) for x in old if isinstance(x, float) and isfinite(x))))
+        if place.endswith("jacobian"):  # an entry may be a sign of the machine, which Python has as a whole number
+            old, new = ([float(x) if type(x) is int else x for x in row] for row in (old, new))
         for a, b in zip(old, new, strict=True):
             if not (_are_reals(a, b) and abs(a - b) <= FRAME * size / margin):
                 yield from _reals(one, place, a, b, margin, share)

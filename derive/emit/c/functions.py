@@ -13,7 +13,7 @@ from derive.ir.symbols import COORDINATE_NAMES, PLACE, symbols_of
 from derive.kinematics.kinematics import Kinematics
 
 _ROTATION = tuple((f"r{i + 1}{j + 1}", f"rotation[{i}][{j}]") for i in range(3) for j in range(3))
-_FRAME = (*((name, f"position[{i}]") for i, name in enumerate(COORDINATE_NAMES)), *_ROTATION)
+FRAME = (*((name, f"position[{i}]") for i, name in enumerate(COORDINATE_NAMES)), *_ROTATION)
 _GIVEN_FRAME = "const softkin_frame *frame"
 _CHOICE = "const int8_t *signs, const int8_t *turns, const double *reference"
 
@@ -65,8 +65,8 @@ def functions(kin: Kinematics) -> list[Function]:
     """The functions of a source, each before its callers."""
     joints = kin.mechanism.joints
     axes = _places("axes", [j.axis.name for j in joints])
-    frame = {name: f"frame->{place}" for name, place in _FRAME}
-    start = {f"start_{name}": f"start->{place}" for name, place in _FRAME}
+    frame = {name: f"frame->{place}" for name, place in FRAME}
+    start = {f"start_{name}": f"start->{place}" for name, place in FRAME}
     turns = _places("turns", [j.turn.name for j in kin.period_joints])
     reference = _places("reference", [j.reference.name for j in joints])
     choice = _places("signs", [f"sigma_{b.name}" for b in kin.branches]) | turns | reference

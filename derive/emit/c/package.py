@@ -10,6 +10,8 @@ from typing import Any
 from jinja2 import Environment
 
 from derive.emit.c.description import counts, in_words, inputs, tables
+from derive.emit.c.every_branch import MOST_SLOTS, constants_of_branches, every_branch_lines
+from derive.emit.c.every_branch import NAME as EVERY_BRANCH
 from derive.emit.c.functions import Function, arguments_of, functions, read_by, rotation_function
 from derive.emit.c.layout import comment, harmless, laid_out, page
 from derive.emit.c.printer import C, list_of, member, number, text, type_of
@@ -80,14 +82,14 @@ def part(kinematics: Kinematics) -> Part | None:
 
 def files(parts: Sequence[Part]) -> dict[str, str]:
     """All files: path → text."""
-    found = dict(_shared())
+    found = dict(shared())
     for one in parts:
         found |= one["files"]
     return found
 
 
 @cache
-def _shared() -> Mapping[str, str]:
+def shared() -> Mapping[str, str]:
     """The files that no mechanism changes."""
     return {path: page(_templates().get_template(f"{path}.j2").render()) for path in _SHARED}
 
@@ -131,6 +133,7 @@ def _templates() -> Environment:
         "most_branches": MOST_BRANCHES,
         "most_directions": MOST_DIRECTIONS,
         "most_solutions": _SOLUTIONS,
+        "most_together": MOST_SLOTS,
         "most_cells": _CELLS,
         "most_places": _PLACES,
         "stack": _STACK,
@@ -142,6 +145,7 @@ def _known(kin: Kinematics, module: str) -> dict[str, Any]:
     """What the templates of header and source arrange."""
     found = functions(kin)
     read = {name for f in found for name in read_by(f.program) - f.given.keys()} | constants_read(kin)
+    read |= constants_of_branches(kin)
     made = setup(kin, module, read, inputs(kin))
     stored = {name: f"k->{member(name)}" for name in made.constants}
     of_programs = [lines for f in found for lines in _function(kin, f, f"{module}_machine", stored)]
@@ -220,6 +224,8 @@ def _needed(kin: Kinematics) -> str:
 def _further(kin: Kinematics, module: str, stored: dict[str, str]) -> dict[str, tuple[str, list[str]]]:
     """Further functions of machines that have them, by their keys: name and lines."""
     found = {}
+    if lines := every_branch_lines(kin, f"{module}_machine", stored, reasons_of(kin)):
+        found["every_branch"] = (EVERY_BRANCH, lines)
     if kin.search_given is not None:
         found["every_root"] = ("find_every_root", _every_root(kin, module, stored))
     if any(joint.is_geared for joint in kin.period_joints):

@@ -21,7 +21,7 @@ from derive.ir.symbols import is_condition, is_count
 
 _FUNCTIONS = {
     "sin": "sin", "cos": "cos", "abs": "fabs", "root": "softkin_root", "atan2": "softkin_angle_of",
-    "nearest_period": "softkin_nearest_period", "nearest_on_arc": "softkin_nearest_on_arc",
+    "nearest_period": "softkin_on_turn", "nearest_on_arc": "softkin_nearest_on_arc",
 }  # fmt: skip
 WORDS = frozenset(
     "auto break case char const continue default do double else enum extern float for goto if inline int long "

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from derive.emit import native
+from derive.emit.every_branch import can_be_unrolled, has_folds, is_unrolled
 from derive.emit.python import entries, setup
 from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in, values_of_a_row
 from derive.emit.python.calls import every_root
@@ -26,10 +28,7 @@ from derive.emit.python.runtime import templates
 from derive.emit.python.straight_line.finish import Function
 from derive.emit.python.straight_line.unrolled import (
     Unrolled,
-    can_be_unrolled,
-    has_folds,
     is_trusted,
-    is_unrolled,
     trusted_branch,
     unrolled,
 )
@@ -52,6 +51,7 @@ def index(kin: Kinematics) -> dict[str, Any]:
         "module": entries.module_name(mechanism.name),
         "summary": mechanism.summary,
         "example": entries.example(kin),
+        "key": native.key(kin),
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from derive.emit import native
 from derive.emit.language import Part
 from derive.emit.python.entries import inputs
 from derive.emit.python.layout import formatted
@@ -16,7 +17,9 @@ PACKAGE = "softkin"
 """The package of the catalogue."""
 _FIXED = (
     "LICENSE",
+    "MANIFEST.in",
     "pyproject.toml",
+    "setup.py",
     "softkin/_array.py",
     "softkin/_array_coupled.py",
     "softkin/_array_mounted.py",
@@ -35,6 +38,8 @@ _FIXED = (
     "softkin/_limits.py",
     "softkin/_mounted.py",
     "softkin/_names.py",
+    "softkin/_native.py",
+    "softkin/_native_batch.py",
     "softkin/_nearest.py",
     "softkin/_nearest_batch.py",
     "softkin/_offset.py",
@@ -66,13 +71,13 @@ _INDEXED = ("README.md", "softkin/__init__.py")
 _EXPORTS = (
     "Axis", "Configuration", "ConfigurationByte", "Coupled", "Diagnosis", "Frame", "FrameLike", "KinematicsError",
     "Mechanism", "Mounted", "OrientationImage", "Parameter", "Rotation", "Singularity", "Solution", "Status",
-    "__version__", "catalogue", "orthonormalize",
+    "__version__", "catalogue", "core", "orthonormalize",
 )  # fmt: skip
 
 
 def part(kinematics: Kinematics) -> Part:
     """The files of one mechanism, and its entries in the lists."""
-    found = {"index": index(kinematics), "files": modules(kinematics)}
+    found = {"index": index(kinematics), "files": modules(kinematics) | native.sources(kinematics)}
     given = inputs(kinematics)
     return {**found, "notes": list(given.notes), "inputs": dict(given.names)}
 
@@ -87,8 +92,14 @@ def texts(parts: Sequence[Part], package: str) -> dict[str, str]:
     listed = [part["index"] for part in parts]
     listed.sort(key=lambda entry: entry["module"])
     exports = in_order({*_EXPORTS, *(entry["class_name"] for entry in listed)})
-    known = {"package": package, "index": listed, "exports": exports}
+    known = {
+        "package": package,
+        "index": listed,
+        "exports": exports,
+        "extension": native.extension(package),
+        "sources": native.digest_of_shared(),
+    }
     files = {path: templates().get_template(f"{path}.j2").render(known) for path in (*_FIXED, *_INDEXED)}
     for part in parts:
         files |= part["files"]
-    return files
+    return files | native.shared(listed, package)

@@ -13,6 +13,7 @@ from softkin._core import Mechanism
 from softkin._coupled import Coupled
 from softkin._frame import Frame, orthonormalize
 from softkin._mounted import Mounted
+from softkin._native import CORE as core
 from softkin._types import (
     Axis,
     Configuration,
@@ -153,6 +154,7 @@ __all__ = [
     "Wrist3",
     "__version__",
     "catalogue",
+    "core",
     "orthonormalize",
 ]
 

@@ -54,26 +54,26 @@ class Table:
         """Raises BAD_INPUT for input that does not have the form of a batch."""
         width = len(robot.AXES)
         positions, rotations = poses(positions, rotations)
-        self._positions = numbers(positions, None, (3,), "positions")
-        self.count = len(self._positions)
+        self.positions = numbers(positions, None, (3,), "positions")
+        self.count = len(self.positions)
         near = np.array(robot._without_reference()) if references is None else references
-        self._references = numbers(near, self.count, (width,), "references")
-        self._rotations = None
+        self.references = numbers(near, self.count, (width,), "references")
+        self.rotations = None
         if robot.READS_ROTATION:
             if rotations is None:
                 raise KinematicsError(
                     Status.BAD_INPUT, f"{robot.NAME}: rotations are needed: this mechanism reads them"
                 )
-            self._rotations = numbers(rotations, self.count, (3, 3), "rotations").reshape(self.count, 9)
+            self.rotations = numbers(rotations, self.count, (3, 3), "rotations").reshape(self.count, 9)
 
     def at(self, rows: slice) -> Poses:
         """The poses of some rows, with repaired rotations."""
-        x, y, z = columns(self._positions[rows])
+        x, y, z = columns(self.positions[rows])
         rotation, refused = _IDENTITY, np.zeros((), np.uint8)
-        if self._rotations is not None:
-            a, b, c, d, e, f, g, h, i = columns(self._rotations[rows])
+        if self.rotations is not None:
+            a, b, c, d, e, f, g, h, i = columns(self.rotations[rows])
             rotation, refused = made_rotations(((a, b, c), (d, e, f), (g, h, i)))
-        near = self._references
+        near = self.references
         reference = tuple(near[0]) if _is_one_row(near) else columns(near[rows])
         return Poses(len(x), (x, y, z), rotation, reference, refused)
 

@@ -9,6 +9,7 @@ from math import inf, isfinite, nan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, Protocol, Self, TypeAlias, cast
 
+from softkin import _native
 from softkin._configuration import (
     AUTOMATIC,
     FIRST_TURN,
@@ -132,10 +133,12 @@ class Mechanism(Value, ABC):
     equal where class and parameters are, and every parameter is an attribute.
     """
 
-    __slots__ = ("checks_limits", "parameters")
+    __slots__ = ("_machine", "checks_limits", "parameters")
 
     NAME: str
     """The name of the function block and of the entry in `catalogue()`."""
+    KEY = ""
+    """What the class and its C have in common: empty where there is none."""
     AXES: tuple[Axis, ...]
     PARAMETERS: tuple[Parameter, ...]
     CONFIGURATION: tuple[ConfigurationByte, ...]
@@ -165,6 +168,23 @@ class Mechanism(Value, ABC):
     """The parameters as given: flags are bool, directions int; the end of a one-sided limit is infinite."""
     checks_limits: bool
     """Whether the inverse tests the limits."""
+
+    _is_native = False
+    """Whether the native core answers the calls of the class."""
+    _machine: Any
+    """The machine in C, where it does."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Where the native core has the machine of a class, it answers its calls."""
+        super().__init_subclass__(**options)
+        if "KEY" in vars(cls):
+            cls._is_native = _native.take_over(cls)
+
+    def _seal(self) -> None:
+        """Complete the machine: no attribute may be set from now on."""
+        if self._is_native:
+            self._machine = _native.machine_of(self)
+        super()._seal()
 
     if TYPE_CHECKING:  # each class names its own parameters
 

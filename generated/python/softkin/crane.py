@@ -72,6 +72,7 @@ class Crane(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Crane"
+    KEY = "crane 61942987bc3af810"
     AXES = (
         Axis(name="R", kind="linear", unit="u", meaning="Length of the boom", multi_turn=False),
         Axis(name="Theta", kind="rotary", unit="deg", meaning="Azimuth, from X", multi_turn=True),

@@ -129,6 +129,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Delta_C"
+    KEY = "delta_c 86e7d36baa2c7a5b"
     AXES = (
         Axis(
             name="A1",

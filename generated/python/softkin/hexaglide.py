@@ -490,6 +490,7 @@ class Hexaglide(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Hexaglide"
+    KEY = "hexaglide dd16133af821fb6b"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="X of carriage 1", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="X of carriage 2", multi_turn=False),

@@ -358,6 +358,7 @@ class Hexapod(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Hexapod"
+    KEY = "hexapod 5a267ad7b3c2cc1e"
     AXES = (
         Axis(name="L1", kind="linear", unit="u", meaning="Length of leg 1, between its joints", multi_turn=False),
         Axis(name="L2", kind="linear", unit="u", meaning="Length of leg 2, between its joints", multi_turn=False),

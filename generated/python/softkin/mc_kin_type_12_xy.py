@@ -194,6 +194,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
+    KEY = "mc_kin_type_12_xy dafe11dae54df873"
     AXES = (
         Axis(
             name="A1",

@@ -104,6 +104,7 @@ class P2CType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type1"
+    KEY = "p2c_type1 e90aa482585d386b"
     AXES = (
         Axis(
             name="A1",

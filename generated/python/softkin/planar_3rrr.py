@@ -324,6 +324,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Planar_3RRR"
+    KEY = "planar_3rrr fd991b4feec229d7"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z, from +X", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z, from +X", multi_turn=True),

@@ -72,6 +72,7 @@ class PolarZ(Mechanism):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Polar_Z"
+    KEY = "polar_z 3a0597e90b1641c5"
     AXES = (
         Axis(name="C", kind="rotary", unit="deg", meaning="Arm about Z", multi_turn=True),
         Axis(name="R", kind="linear", unit="u", meaning="Radius, never negative", multi_turn=False),

@@ -110,6 +110,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_SCCC"
+    KEY = "sccc cf6e1132c3566a32"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Link 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Link 2 about Z", multi_turn=True),

@@ -58,6 +58,7 @@ class Tool(OrientationKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Tool"
+    KEY = "tool 487bf993b464fc8a"
     AXES = ()
     PARAMETERS = (
         Parameter.of("distance", "tool_x", "Flange to the tool, along X"),

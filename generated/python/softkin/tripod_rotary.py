@@ -142,6 +142,7 @@ class TripodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
+    KEY = "tripod_rotary 5c7553491eee0406"
     AXES = (
         Axis(
             name="A1",

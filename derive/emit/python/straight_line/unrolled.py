@@ -7,6 +7,15 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from derive.emit.every_branch import (
+    away_from_folds,
+    can_be_unrolled,
+    constants,
+    has_folds,
+    known_constants,
+    signs,
+    trusted,
+)
 from derive.emit.python.layout import assigned, repeated, tuple_of
 from derive.emit.python.methods import POSITION, ROTATION, branch
 from derive.emit.python.printer import ScalarPrinter, primitives_in, spelled
@@ -30,8 +39,6 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     REFUSAL,
-    Sign,
-    branch_sign,
     choices,
     suffixed,
     symbols_of,
@@ -40,14 +47,10 @@ from derive.ir.tree import Item
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.lower import lowered
 from derive.lowering.scheduling import scheduled, without_unused
-from derive.lowering.unrolling import is_straight
-from derive.optimize.angle_addition import with_added_angles
 from derive.optimize.coalesce import coalesced
 from derive.optimize.guards import guarded
 from derive.optimize.inline import inlined, squares_where_read
-from derive.optimize.rotation_identities import with_rotation_identities
-from derive.optimize.without_periods import specialised, without_chosen_turns
-from derive.solver.folds import far_from_folds
+from derive.optimize.without_periods import without_chosen_turns
 
 NO_OFFSETS = "no_offsets"
 """Whether all axes have their zero where the joints have it: then nothing is added to them."""
@@ -87,47 +90,17 @@ class Unrolled:
         return any("Status." in line for function in self.functions for line in function.body)
 
 
-def can_be_unrolled(kin: Kinematics) -> bool:
-    """Whether the inverse is a straight line for every branch."""
-    return is_straight(kin.branch) and is_straight(kin.limits)
-
-
 def is_trusted(kin: Kinematics) -> bool:
     """Whether its one branch has a function for trusted input that always answers."""
     return can_be_unrolled(kin) and not kin.branches and not has_folds(kin)
-
-
-def is_unrolled(kin: Kinematics) -> bool:
-    """Whether all its branches stand in one straight line. A machine that has none keeps its one trusted function."""
-    return bool(kin.branches) and can_be_unrolled(kin)
-
-
-def signs(kin: Kinematics) -> tuple[Sign, ...]:
-    """The branch signs, with the names of the two branches."""
-    return tuple(Sign(branch_sign(b.name), b.names) for b in kin.branches)
-
-
-def _nearest(kin: Kinematics, program: Program) -> Program:
-    """No turn is commanded; on plain numbers a sine costs little."""
-    given = specialised(program, {j.turn: sp.Integer(0) for j in kin.period_joints})
-    return with_added_angles(given, _constants(kin))
-
-
-def _trusted(kin: Kinematics) -> Program:
-    """One branch for input that is trusted, before its turns are let go."""
-    return with_rotation_identities(_nearest(kin, kin.branch))
-
-
-def _constants(kin: Kinematics) -> frozenset[str]:
-    return frozenset(o.name for o in kin.setup.outputs)
 
 
 def unrolled(kin: Kinematics) -> Unrolled:
     """The functions on plain numbers. Near a fold they have no answer, an empty tuple: one branch
     after the other has.
     """
-    kin = replace(kin, branch=untold(far_from_folds(kin.derived_branch)))
-    one = _trusted(kin)
+    kin = away_from_folds(kin)
+    one = trusted(kin)
     methods, parts = _shorter(kin, _methods(kin, one))
     known = (*kin.setup.lets(), *parts)
     last = finish(kin, one)
@@ -137,21 +110,19 @@ def unrolled(kin: Kinematics) -> Unrolled:
         *((last,) if last else ()),
     )
     read = {c for f in functions for c in f.constants} | {s.name for p in parts for s in symbols_of(p.value)}
-    constants = sorted(read - {p.name.name for p in parts})
+    taken = sorted(read - {p.name.name for p in parts})
     lines = [line for part in parts for line in let_lines(part, _SCALAR)]
     if any(NO_OFFSETS in line for line in functions[1].body):
-        offsets = [c for c in constants if c in {j.offset.name for j in kin.mechanism.joints}]
+        offsets = [c for c in taken if c in {j.offset.name for j in kin.mechanism.joints}]
         lines.append(f"{NO_OFFSETS} = not any({tuple_of(offsets)})")
     primitives = primitives_in([*lines, *(line for f in functions for line in f.body)])
-    return Unrolled(
-        functions, assigned({spelled(c): f"k.{spelled(c)}" for c in constants}), constants, lines, primitives
-    )
+    return Unrolled(functions, assigned({spelled(c): f"k.{spelled(c)}" for c in taken}), taken, lines, primitives)
 
 
 def trusted_branch(kin: Kinematics) -> Function:
     """The one branch of a machine without branches and folds, for input that is trusted: a method."""
     kin = replace(kin, branch=untold(kin.branch))
-    method = _single(kin, _trusted(kin))
+    method = _single(kin, trusted(kin))
     written = _Written.of(method, kin.setup.lets())
     values = list(written.values.values())
     lines = [*constant_lines(written.method), *item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)]
@@ -161,14 +132,13 @@ def trusted_branch(kin: Kinematics) -> Function:
 def _shorter(kin: Kinematics, methods: Sequence[Method]) -> tuple[list[Method], tuple[Let, ...]]:
     """The methods with fewer operations, and what they read that is computed from constants."""
     named = [replace(m.program, name=m.name) for m in methods]
-    constants = _constants(kin)
     programs, parts = lowered(
         named,
-        constants,
+        constants(kin),
         modulo_turns=True,
         inverts=False,
         branches={"branches": signs(kin)},
-        known=[let for let in kin.setup.lets() if let.name.name in constants],
+        known=known_constants(kin),
     )
     return [replace(m, program=squares_where_read(p)) for m, p in zip(methods, programs, strict=True)], parts
 
@@ -201,11 +171,6 @@ def _optional(kin: Kinematics) -> Argument:
     reference, held = branch(kin).arguments[-1], kin.mechanism.held_joints
     values = ['float("nan")' if joint in held else "0.0" for joint in kin.mechanism.joints]
     return replace(reference, default=f"({', '.join(values)},)" if held else repeated("0.0", len(values)))
-
-
-def has_folds(kin: Kinematics) -> bool:
-    """Whether the functions on plain numbers have no answer near a fold."""
-    return can_be_unrolled(kin) and far_from_folds(kin.derived_branch) is not kin.derived_branch
 
 
 def _refusals(answer: Callable[[Status], str]) -> Refusals:

@@ -1,0 +1,130 @@
+"""All branches as one C function: each statement once for the branches that share it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from derive.description.mechanism import Joint
+from derive.emit.braces import block
+from derive.emit.c.functions import FRAME, read_by
+from derive.emit.c.printer import C, status, type_of
+from derive.emit.c.program import Body, function_of, taken
+from derive.emit.c.refusal import Refusals
+from derive.emit.every_branch import EveryBranch, away_from_folds, every_branch, is_unrolled, signs
+from derive.ir.program import Require, Status
+from derive.ir.symbols import REFUSAL, choices, suffixed, symbols_of
+from derive.kept import kept_by_identity
+from derive.kinematics.kinematics import Kinematics
+from derive.lowering.scheduling import structured
+from derive.report.reasons import Reasons
+
+NAME = "find_every_branch"
+MOST_SLOTS = 16
+"""With more branches a straight line is long, and is no longer what is fast."""
+_SUMMARY = (
+    "Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an answer."
+)
+_HEAD = (
+    "const void *machine, const softkin_frame *frame, const double *reference, softkin_status *statuses, double *axes"
+)
+
+
+@kept_by_identity(10)
+def straight_line(kin: Kinematics) -> EveryBranch | None:
+    """The program; None where there is none, and where a turn moves several axes: each branch is solved by itself."""
+    if not is_unrolled(kin) or 2 ** len(kin.branches) > MOST_SLOTS:
+        return None
+    if any(joint.coupling != 0 or joint.is_geared for joint in kin.period_joints):
+        return None
+    return every_branch(kin, NAME)
+
+
+def open_joints(kin: Kinematics, found: EveryBranch) -> list[Joint]:
+    """The joints whose axes are still to be put on their turns."""
+    return [j for j in kin.mechanism.joints if j.multi_turn and j.axis not in found.counted]
+
+
+def constants_of_branches(kin: Kinematics) -> set[str]:
+    """The constants of the machine that the function reads."""
+    found = straight_line(kin)
+    if found is None:
+        return set()
+    own = read_by(found.program) | {s.name for part in found.parts for s in symbols_of(part.value)}
+    turns = {f"{word}_{joint.key}" for joint in open_joints(kin, found) for word in ("single", "mid")}
+    return (own | turns) - {part.name.name for part in found.parts} - _given(kin).keys()
+
+
+def every_branch_lines(kin: Kinematics, machine: str, stored: Mapping[str, str], reasons: Reasons) -> list[str]:
+    """The function; nothing where there is no straight line."""
+    found = straight_line(kin)
+    if found is None:
+        return []
+    places, opened = _given(kin), open_joints(kin, found)
+    members = {name: text for name, text in stored.items() if name not in places}
+    body = _Body(C(members), reasons, slots=2 ** len(kin.branches))
+    types = {s.name: type_of(s) for s in found.program.inputs}
+    turned = {joint.reference.name: "double" for joint in opened}
+    read = read_by(found.program) | turned.keys()
+    inner = [
+        f"const {machine} *k = machine;",
+        *taken([(n, place) for n, place in places.items() if n in read], turned | types),
+        *(line for part in found.parts for line in body.let(part)),
+        *body.lines(structured(found.program)),
+        *(_near(joint, body.printer) for joint in opened),
+        *_slots(kin, found, opened, body.printer),
+        "return true;",
+    ]
+    if not any("k->" in line for line in inner):
+        inner = inner[1:]
+    return function_of(_SUMMARY, f"static bool {NAME}({_HEAD})", inner)
+
+
+@dataclass
+class _Body(Body):
+    """Statements of which a refusal is one of all slots."""
+
+    slots: int = 1
+
+    @property
+    def refusals(self) -> Refusals:
+        return _OfAll(self.reasons, self.printer, self.slots)
+
+
+@dataclass(frozen=True)
+class _OfAll(Refusals):
+    slots: int
+
+    def lines(self, requires: Sequence[Require]) -> list[str]:
+        return [line for require in requires for line in self._all(require)]
+
+    def _all(self, require: Require) -> list[str]:
+        answer = f"return softkin_refuse_all({status(require.otherwise)}, statuses, {self.slots});"
+        if require.otherwise is Status.OK:
+            answer = "return false;"
+        return block(f"if (!({self.condition([require.condition])}))", [answer])
+
+
+def _given(kin: Kinematics) -> dict[str, str]:
+    reference = {joint.reference.name: f"reference[{i}]" for i, joint in enumerate(kin.mechanism.joints)}
+    return {name: f"frame->{place}" for name, place in FRAME} | reference
+
+
+def _near(joint: Joint, printer: C) -> str:
+    """What the turn of an axis is nearest to: where one value is inside the limits, the middle of these."""
+    single, middle = (printer.members[f"{word}_{joint.key}"] for word in ("single", "mid"))
+    return f"const double near_{joint.key} = {single} ? {middle} : {joint.reference.name};"
+
+
+def _slots(kin: Kinematics, found: EveryBranch, opened: Sequence[Joint], printer: C) -> Iterator[str]:
+    """The status and the axes of every slot."""
+    values = {o.name: o.value for o in found.program.outputs}
+    own = signs(away_from_folds(kin))
+    for slot, choice in enumerate(choices(len(own))):
+        refusal = values[suffixed(REFUSAL, own, choice)]
+        text = status(Status.OK) if refusal == 0 else f"(softkin_status)({printer.whole(refusal)})"
+        yield f"statuses[{slot}] = {text};"
+        for place, joint in enumerate(kin.mechanism.joints):
+            axis = printer.print(values[suffixed(joint.axis.name, own, choice)])
+            axis = f"softkin_on_turn({axis}, near_{joint.key})" if joint in opened else axis
+            yield f"axes[{slot * len(kin.mechanism.joints) + place}] = {axis};"

@@ -1,0 +1,86 @@
+"""All branches of the inverse in one straight line, for input that is trusted: what a language prints of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.ir.passes import untold
+from derive.ir.program import Let, Program
+from derive.ir.symbols import Sign, branch_sign
+from derive.kinematics.kinematics import Kinematics
+from derive.lowering.lower import lowered
+from derive.lowering.unrolling import is_straight
+from derive.optimize.angle_addition import with_added_angles
+from derive.optimize.rotation_identities import with_rotation_identities
+from derive.optimize.without_periods import specialised, turns_that_count, without_chosen_turns
+from derive.solver.folds import far_from_folds
+
+
+@dataclass(frozen=True)
+class EveryBranch:
+    """The program of all branches, and what it reads of constants alone."""
+
+    program: Program
+    """Its outputs are the axes of every slot in some turn, and what refuses it; near a fold it has no answer."""
+    parts: tuple[Let, ...]
+    counted: frozenset[sp.Symbol]
+    """The axes that are on their turn already, because another one moves with it."""
+
+
+def can_be_unrolled(kin: Kinematics) -> bool:
+    """Whether the inverse is a straight line for every branch."""
+    return is_straight(kin.branch) and is_straight(kin.limits)
+
+
+def is_unrolled(kin: Kinematics) -> bool:
+    """Whether all its branches stand in one straight line: a machine without branches has one by itself."""
+    return bool(kin.branches) and can_be_unrolled(kin)
+
+
+def has_folds(kin: Kinematics) -> bool:
+    """Whether the straight line has no answer near a fold."""
+    return can_be_unrolled(kin) and far_from_folds(kin.derived_branch) is not kin.derived_branch
+
+
+def away_from_folds(kin: Kinematics) -> Kinematics:
+    """The kinematics whose branch has no answer near a fold, and refuses without a reason."""
+    return replace(kin, branch=untold(far_from_folds(kin.derived_branch)))
+
+
+def signs(kin: Kinematics) -> tuple[Sign, ...]:
+    """The branch signs, with the names of the two branches."""
+    return tuple(Sign(branch_sign(b.name), b.names) for b in kin.branches)
+
+
+def trusted(kin: Kinematics) -> Program:
+    """One branch for input that is trusted, before its turns are let go. No turn is commanded."""
+    given = specialised(kin.branch, {j.turn: sp.Integer(0) for j in kin.period_joints})
+    return with_rotation_identities(with_added_angles(given, constants(kin)))
+
+
+def constants(kin: Kinematics) -> frozenset[str]:
+    """The names of what is computed once."""
+    return frozenset(o.name for o in kin.setup.outputs)
+
+
+def known_constants(kin: Kinematics) -> Sequence[Let]:
+    """Those that are computed from others."""
+    return [let for let in kin.setup.lets() if let.name.name in constants(kin)]
+
+
+def every_branch(kin: Kinematics, name: str) -> EveryBranch:
+    """All branches of a machine that is unrolled, as one program of this name."""
+    one = trusted(away_from_folds(kin))
+    program = replace(without_chosen_turns(one), name=name)
+    (done,), parts = lowered(
+        [program],
+        constants(kin),
+        modulo_turns=True,
+        inverts=False,
+        branches={name: signs(kin)},
+        known=known_constants(kin),
+    )
+    return EveryBranch(done, parts, turns_that_count(one))
