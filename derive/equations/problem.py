@@ -115,6 +115,8 @@ class StepDeterminant:
     """Of a step that gives a cosine alone, whose sine is the root."""
     arm: tuple[sp.Expr, sp.Expr, sp.Expr] | None = None
     """(a, b, e) where the step solves a cos u + b sin u = e: the arm (a, b) has to be as long as e."""
+    factors: tuple[sp.Expr, sp.Expr] | None = None
+    """h - e and h + e with all their digits, where h is the length of the arm: neither may be negative."""
 
     @property
     def sigma(self) -> sp.Symbol:
@@ -130,6 +132,9 @@ class StepDeterminant:
             legs=None if self.legs is None else self.legs.renamed(names),
             swing=None if self.swing is None else self.swing.renamed(names),
             arm=None if self.arm is None else _renamed_row(self.arm, names),
+            factors=None
+            if self.factors is None
+            else (self.factors[0].xreplace(names), self.factors[1].xreplace(names)),
             beside=None if self.beside is None else (self.beside[0].xreplace(names), self.beside[1].xreplace(names)),
         )
 

@@ -19,6 +19,7 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.equations.problem import Legs, StepDeterminant, Swing
+from derive.ir.constants import BOUNDARY
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let, Statement, rewritten
 from derive.ir.symbols import cosine, real, sine
@@ -36,9 +37,9 @@ def with_arms_long_enough(
     for step in determinants:
         legs: Legs | None = None
         for later in determinants:
-            if later.arm is None or later is step or step.swing is None:
+            if later.arm is None or later.factors is None or later is step or step.swing is None:
                 continue
-            chain = _chain(found, step.step, later.arm)
+            chain = _chain(found, step.step, (*later.arm, *later.factors))
             if chain is None:
                 continue
             if legs is None:
@@ -46,11 +47,11 @@ def with_arms_long_enough(
             a, b, e = later.arm
             word = f"{step.step.name}_for_{later.step.name}"
             turning = Later(later.step, word, step.step, legs, Root(a**2 + b**2), e, chain, scale)
-            found = in_order(with_motion(found, turning, _motion(turning, later.arm, step.sigma)))
+            found = in_order(with_motion(found, turning, _motion(turning, later.arm, later.factors, step.sigma)))
     return tuple(found)
 
 
-def _chain(statements: Sequence[Statement], angle: sp.Symbol, arm: Row) -> tuple[Let, ...] | None:
+def _chain(statements: Sequence[Statement], angle: sp.Symbol, values: Sequence[sp.Expr]) -> tuple[Let, ...] | None:
     """The statements by which a later arm, and what it has to reach, follow from an angle; None where the angle does
     not turn the arm.
     """
@@ -59,7 +60,7 @@ def _chain(statements: Sequence[Statement], angle: sp.Symbol, arm: Row) -> tuple
     for s in statements:
         if isinstance(s, Let) and s.name not in own and s.value.free_symbols & (dependent.keys() | own):
             dependent[s.name] = s
-    wanted, chain = {s for value in arm for s in value.free_symbols}, list[Let]()
+    wanted, chain = {s for value in values for s in value.free_symbols}, list[Let]()
     if not wanted & (dependent.keys() | own):
         return None
     for let in reversed(dependent.values()):
@@ -106,23 +107,26 @@ def _with_legs(
     return found, Legs(ahead, square, beside, scale, along, across)
 
 
-def _motion(later: Later, arm: Row, sigma: sp.Symbol) -> tuple[Let, ...]:
+def _motion(later: Later, arm: Row, factors: tuple[sp.Expr, sp.Expr], sigma: sp.Symbol) -> tuple[Let, ...]:
     """The angle behind the turn, computed from where it was."""
     lets, names, rates = rates_of(later)
-    words = ("arm_x", "arm_y", "value", "arm_x_rate", "arm_y_rate", "value_rate")
-    x, y, value, x_rate, y_rate, value_rate = (later.name(word) for word in words)
-    size, missing, linear, square, way, divisor, turn = (
-        later.name(word) for word in ("size", "missing", "linear", "square", "way", "divisor", "turn")
+    words = ("arm_x", "arm_y", "end", "arm_x_rate", "arm_y_rate", "end_rate", "less", "more")
+    x, y, end, x_rate, y_rate, end_rate, less, more = (later.name(word) for word in words)
+    length, value, size, missing, linear, square, way, divisor, turn = (
+        later.name(word) for word in ("arm", "value", "size", "missing", "linear", "square", "way", "divisor", "turn")
     )
+    is_gone = sp.Gt(more + less, 4 * length)  # the later step divides by one where its arm has vanished
     keeps = sp.Ge(sigma * later.legs.beside, 0)  # an arm that has vanished: the turn to the side of its branch
     return (
         *lets,
-        *(Let(n, v.xreplace(names)) for n, v in zip((x, y, value), arm, strict=True)),
-        *(Let(n, rate_along(v, rates).xreplace(names)) for n, v in zip((x_rate, y_rate, value_rate), arm, strict=True)),
-        Let(size, Root(x**2 + y**2), WITHIN_ITS_BOUND.format(later.step)),
-        Let(missing, (sp.Abs(value) - size) * (sp.Abs(value) + size)),
-        Let(linear, x * x_rate + y * y_rate - value * value_rate),
-        Let(square, x_rate**2 + y_rate**2 - value_rate**2),
+        *(Let(n, v.xreplace(names)) for n, v in zip((x, y, end, less, more), (*arm, *factors), strict=True)),
+        *(Let(n, rate_along(v, rates).xreplace(names)) for n, v in zip((x_rate, y_rate, end_rate), arm, strict=True)),
+        Let(length, Root(x**2 + y**2)),
+        Let(value, Select(is_gone, 2 * end, more - less), WITHIN_ITS_BOUND.format(later.step)),
+        Let(size, Select(is_gone, 2 * length, (1 + BOUNDARY / 4) * (more + less))),
+        Let(missing, Select(is_gone, (sp.Abs(end) - length) * (sp.Abs(end) + length), -less * more)),
+        Let(linear, x * x_rate + y * y_rate - end * end_rate),
+        Let(square, x_rate**2 + y_rate**2 - end_rate**2),
         Let(way, Select(sp.Gt(sp.Abs(linear), 0), Select(sp.Gt(linear, 0), 1, -1), Select(keeps, 1, -1))),
         Let(divisor, linear + way * Root(linear**2 + square * missing)),
         Let(

@@ -106,4 +106,5 @@ def _beside(
         Let(sine(angle), Select(determined, sin_value, sin_free)),
     )
     legs = Legs(ahead, square, beside, distance, along, across)
-    return Binding("lateral", (angle,), statements, replace(determinant, legs=legs), cosine_alone=True)
+    factors = (distance - beside, distance + beside)
+    return Binding("lateral", (angle,), statements, replace(determinant, legs=legs, factors=factors), cosine_alone=True)

@@ -341,6 +341,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
         amplitude.determinant_scale,
         (length, right),
         beside=None if leg is None else leg[:2],
+        factors=(less_cos, plus_cos),
         swing=Swing(
             cos_name, sin_name, amplitude.cos_unit, amplitude.sin_unit, equation.column is not None and not is_fine
         ),

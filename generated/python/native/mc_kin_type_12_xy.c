@@ -242,32 +242,55 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     sin_a1 = sin_a1_before_a1_for_a2; /* turned so that a2 has a solution */
     cos_a1 = cos_a1_before_a1_for_a2; /* turned so that a2 has a solution */
   } else {
-    const double value_a1_for_a2 = -k->one_by_link_length_2_squared
-        *(k->sum_in_value_a1_for_a2
-        + (k->link_length_2_squared*span_rear_x - k->product_in_value_a1_for_a2*sin_a1_before_a1_for_a2)
+    const double along_a2_before_a1_for_a2 = span_rear_x
+        - k->quotient_in_along_a2_before_a1_for_a2*sin_a1_before_a1_for_a2;
+    const double across_a2_before_a1_for_a2 = k->quotient_in_along_a2_before_a1_for_a2
+        *cos_a1_before_a1_for_a2 - span_rear_y;
+    const double effective_a2_before_a1_for_a2 = sqrt(across_a2_before_a1_for_a2*across_a2_before_a1_for_a2
+        + along_a2_before_a1_for_a2*along_a2_before_a1_for_a2);
+    const double divisor_a2_before_a1_for_a2 =
+        effective_a2_before_a1_for_a2 > k->link_length_5_times_shortest_link ? effective_a2_before_a1_for_a2
+        : 1.0;
+    const double one_less_cos_a2_before_a1_for_a2 = (divisor_a2_before_a1_for_a2
+        + k->link_length_4_plus_link_length_5)
+        *(divisor_a2_before_a1_for_a2 + k->link_length_5_minus_link_length_4);
+    const double one_plus_cos_a2_before_a1_for_a2 = (k->link_length_4_plus_link_length_5
+        - divisor_a2_before_a1_for_a2)*(divisor_a2_before_a1_for_a2 - k->link_length_5_minus_link_length_4);
+    const double end_a1_for_a2 = -k->one_by_link_length_2_squared
+        *(k->sum_in_end_a1_for_a2
+        + (k->link_length_2_squared*span_rear_x - k->product_in_end_a1_for_a2*sin_a1_before_a1_for_a2)
         *span_rear_x + (k->link_length_2_squared*span_rear_y
-        - k->product_in_value_a1_for_a2*cos_a1_before_a1_for_a2)*span_rear_y);
+        - k->product_in_end_a1_for_a2*cos_a1_before_a1_for_a2)*span_rear_y);
     const double arm_x_a1_for_a2 = span_rear_x*k->twice_link_length_5
         - k->quotient_in_arm_x_a1_for_a2*sin_a1_before_a1_for_a2;
     const double arm_y_a1_for_a2 = k->quotient_in_arm_x_a1_for_a2*cos_a1_before_a1_for_a2
         - span_rear_y*k->twice_link_length_5;
-    /* a2 has solutions where this is within its bound */
-    const double size_a1_for_a2 = sqrt(arm_x_a1_for_a2*arm_x_a1_for_a2 + arm_y_a1_for_a2*arm_y_a1_for_a2);
+    const double arm_a1_for_a2 = sqrt(arm_x_a1_for_a2*arm_x_a1_for_a2 + arm_y_a1_for_a2*arm_y_a1_for_a2);
+    const double sum_in_value_a1_for_a2 = one_less_cos_a2_before_a1_for_a2 + one_plus_cos_a2_before_a1_for_a2;
+    double value_a1_for_a2, size_a1_for_a2, missing_a1_for_a2;
+    if (sum_in_value_a1_for_a2 > 4.0*arm_a1_for_a2) {
+      value_a1_for_a2 = 2.0*end_a1_for_a2; /* a2 has solutions where this is within its bound */
+      size_a1_for_a2 = 2.0*arm_a1_for_a2;
+      missing_a1_for_a2 = (fabs(end_a1_for_a2) - arm_a1_for_a2)*(arm_a1_for_a2 + fabs(end_a1_for_a2));
+    } else {
+      /* a2 has solutions where this is within its bound */
+      value_a1_for_a2 = one_plus_cos_a2_before_a1_for_a2 - one_less_cos_a2_before_a1_for_a2;
+      size_a1_for_a2 = 1.00000000000025*sum_in_value_a1_for_a2;
+      missing_a1_for_a2 = -one_less_cos_a2_before_a1_for_a2*one_plus_cos_a2_before_a1_for_a2;
+    }
     if (fabs(value_a1_for_a2) <= size_a1_for_a2) {
       sin_a1 = sin_a1_before_a1_for_a2; /* turned so that a2 has a solution */
       cos_a1 = cos_a1_before_a1_for_a2; /* turned so that a2 has a solution */
     } else {
-      const double missing_a1_for_a2 = (fabs(value_a1_for_a2) - size_a1_for_a2)
-          *(size_a1_for_a2 + fabs(value_a1_for_a2));
       const double arm_x_rate_a1_for_a2 = -k->quotient_in_arm_x_rate_a1_for_a2*cos_a1_before_a1_for_a2;
       const double arm_y_rate_a1_for_a2 = -k->quotient_in_arm_x_rate_a1_for_a2*sin_a1_before_a1_for_a2;
-      const double value_rate_a1_for_a2 = k->one_by_link_length_2_squared
-          *(k->product_in_value_a1_for_a2*span_rear_x*cos_a1_before_a1_for_a2
-          - k->product_in_value_a1_for_a2*span_rear_y*sin_a1_before_a1_for_a2);
+      const double end_rate_a1_for_a2 = k->one_by_link_length_2_squared
+          *(k->product_in_end_a1_for_a2*span_rear_x*cos_a1_before_a1_for_a2
+          - k->product_in_end_a1_for_a2*span_rear_y*sin_a1_before_a1_for_a2);
       const double linear_a1_for_a2 = arm_x_a1_for_a2*arm_x_rate_a1_for_a2
-          + arm_y_a1_for_a2*arm_y_rate_a1_for_a2 - value_a1_for_a2*value_rate_a1_for_a2;
+          + arm_y_a1_for_a2*arm_y_rate_a1_for_a2 - end_a1_for_a2*end_rate_a1_for_a2;
       const double square_a1_for_a2 = arm_x_rate_a1_for_a2*arm_x_rate_a1_for_a2
-          + arm_y_rate_a1_for_a2*arm_y_rate_a1_for_a2 - value_rate_a1_for_a2*value_rate_a1_for_a2;
+          + arm_y_rate_a1_for_a2*arm_y_rate_a1_for_a2 - end_rate_a1_for_a2*end_rate_a1_for_a2;
       const double beside_a1 = k->machine_scale*cos_swing_a1;
       const double way_a1_for_a2 = fabs(linear_a1_for_a2) > 0.0 ? (linear_a1_for_a2 > 0.0 ? 1.0 : -1.0)
           : (-beside_a1*sign_t >= 0.0 ? 1.0 : -1.0);
@@ -297,8 +320,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   }
   const double pivot_upper_x = -k->link_length_1*sin_a1; /* rod upper: centre about which it swings */
   const double pivot_upper_y = -k->link_length_1*cos_a1;
-  const double along_a2 = span_rear_x - k->quotient_in_along_a2*sin_a1;
-  const double across_a2 = k->quotient_in_along_a2*cos_a1 - span_rear_y;
+  const double along_a2 = span_rear_x - k->quotient_in_along_a2_before_a1_for_a2*sin_a1;
+  const double across_a2 = k->quotient_in_along_a2_before_a1_for_a2*cos_a1 - span_rear_y;
   /* effective length of the arm that a2 turns */
   const double effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2);
   const double divisor_a2 = effective_a2 > k->link_length_5_times_shortest_link ? effective_a2 : 1.0;
@@ -950,9 +973,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double product_in_foot_fraction = link_length_2_minus_radius_2*link_length_2_plus_radius_2;
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double link_length_1_times_shortest_link = 1e-9*p->link_length_1;
+  const double link_length_5_times_shortest_link = 1e-9*p->link_length_5;
   const double machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale;
   const double machine_scale_times_rounding = 1e-12*machine_scale;
-  const double link_length_5_times_shortest_link = 1e-9*p->link_length_5;
   const double link_length_3_by_link_length_2 = p->link_length_3/p->link_length_2;
   const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
   const double link_length_2_by_link_length_3 = p->link_length_2/p->link_length_3;
@@ -966,25 +989,26 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
   const double machine_scale_squared_times_4 = 4.0*machine_scale*machine_scale;
+  const double link_length_5_minus_link_length_4 = p->link_length_5 - p->link_length_4;
+  const double link_length_4_plus_link_length_5 = p->link_length_4 + p->link_length_5;
   const double link_length_2_squared = p->link_length_2*p->link_length_2;
-  const double sum_in_value_a1_for_a2 = p->link_length_1*p->link_length_1*p->link_length_2*p->link_length_2
+  const double sum_in_end_a1_for_a2 = p->link_length_1*p->link_length_1*p->link_length_2*p->link_length_2
       + 2.0*p->link_length_1*p->link_length_1*p->link_length_2*p->link_length_3
       + p->link_length_1*p->link_length_1*p->link_length_3*p->link_length_3
       + p->link_length_2*p->link_length_2*p->link_length_5*p->link_length_5
       - p->link_length_2*p->link_length_2*p->link_length_4*p->link_length_4;
   const double quotient_in_arm_x_rate_a1_for_a2 = (2.0*p->link_length_1*p->link_length_2*p->link_length_5
       + 2.0*p->link_length_1*p->link_length_3*p->link_length_5)/p->link_length_2;
-  const double link_length_5_minus_link_length_4 = p->link_length_5 - p->link_length_4;
-  const double link_length_4_plus_link_length_5 = p->link_length_4 + p->link_length_5;
   const double quotient_in_type2_arms_aligned = assembly_sign*p->link_length_3
       /(p->link_length_4*p->link_length_2*p->link_length_2);
-  const double product_in_value_a1_for_a2 = 2.0*p->link_length_1*p->link_length_2
+  const double product_in_end_a1_for_a2 = 2.0*p->link_length_1*p->link_length_2
       *link_length_2_plus_link_length_3;
   const double one_by_link_length_2_squared = 1.0/link_length_2_squared;
+  const double quotient_in_along_a2_before_a1_for_a2 = p->link_length_1*link_length_2_plus_link_length_3
+      /p->link_length_2;
   const double quotient_in_arm_x_a1_for_a2 = 2.0*p->link_length_1*link_length_2_plus_link_length_3
       *p->link_length_5/p->link_length_2;
   const double twice_link_length_5 = 2.0*p->link_length_5;
-  const double quotient_in_along_a2 = p->link_length_1*link_length_2_plus_link_length_3/p->link_length_2;
   const double quotient_in_margin_arms_aligned = p->link_length_3
       /(p->link_length_4*p->link_length_2*p->link_length_2);
   const double twice_link_length_1 = 2.0*p->link_length_1;
@@ -1017,9 +1041,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.product_in_foot_fraction = product_in_foot_fraction;
   made.machine_scale_times_plane = machine_scale_times_plane;
   made.link_length_1_times_shortest_link = link_length_1_times_shortest_link;
+  made.link_length_5_times_shortest_link = link_length_5_times_shortest_link;
   made.machine_scale_squared_times_plane = machine_scale_squared_times_plane;
   made.machine_scale_times_rounding = machine_scale_times_rounding;
-  made.link_length_5_times_shortest_link = link_length_5_times_shortest_link;
   made.link_length_3_by_link_length_2 = link_length_3_by_link_length_2;
   made.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle;
   made.link_length_2_by_link_length_3 = link_length_2_by_link_length_3;
@@ -1032,17 +1056,17 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
   made.machine_scale_squared_times_4 = machine_scale_squared_times_4;
-  made.link_length_2_squared = link_length_2_squared;
-  made.sum_in_value_a1_for_a2 = sum_in_value_a1_for_a2;
-  made.quotient_in_arm_x_rate_a1_for_a2 = quotient_in_arm_x_rate_a1_for_a2;
   made.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4;
   made.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5;
+  made.link_length_2_squared = link_length_2_squared;
+  made.sum_in_end_a1_for_a2 = sum_in_end_a1_for_a2;
+  made.quotient_in_arm_x_rate_a1_for_a2 = quotient_in_arm_x_rate_a1_for_a2;
   made.quotient_in_type2_arms_aligned = quotient_in_type2_arms_aligned;
-  made.product_in_value_a1_for_a2 = product_in_value_a1_for_a2;
+  made.product_in_end_a1_for_a2 = product_in_end_a1_for_a2;
   made.one_by_link_length_2_squared = one_by_link_length_2_squared;
+  made.quotient_in_along_a2_before_a1_for_a2 = quotient_in_along_a2_before_a1_for_a2;
   made.quotient_in_arm_x_a1_for_a2 = quotient_in_arm_x_a1_for_a2;
   made.twice_link_length_5 = twice_link_length_5;
-  made.quotient_in_along_a2 = quotient_in_along_a2;
   made.quotient_in_margin_arms_aligned = quotient_in_margin_arms_aligned;
   made.twice_link_length_1 = twice_link_length_1;
   made.product_in_slope_2_by_x = product_in_slope_2_by_x;

@@ -23,7 +23,7 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     forward: 26 additions, 37 multiplications, 1 divisions, 2 square roots, 4 sines
     inverse: 51 additions, 51 multiplications, 8 divisions, 4 square roots, 2 sines
     inverse, all 4 branches open: 164 additions, 130 multiplications, 22 divisions, 8 square roots, 6 sines
-    a branch at a singular pose, more: 21 additions, 39 multiplications, 3 divisions, 3 square roots, 0 sines
+    a branch at a singular pose, more: 29 additions, 48 multiplications, 3 divisions, 4 square roots, 0 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -104,9 +104,9 @@ class Constants:
         product_in_foot_fraction = link_length_2_minus_radius_2 * link_length_2_plus_radius_2
         machine_scale_times_plane = 1e-6 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
+        link_length_5_times_shortest_link = 1e-9 * link_length_5
         machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
         machine_scale_times_rounding = 1e-12 * machine_scale
-        link_length_5_times_shortest_link = 1e-9 * link_length_5
         link_length_3_by_link_length_2 = link_length_3 / link_length_2
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         link_length_2_by_link_length_3 = link_length_2 / link_length_3
@@ -120,8 +120,10 @@ class Constants:
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         machine_scale_squared_times_4 = 4.0 * machine_scale * machine_scale
+        link_length_5_minus_link_length_4 = link_length_5 - link_length_4
+        link_length_4_plus_link_length_5 = link_length_4 + link_length_5
         link_length_2_squared = link_length_2 * link_length_2
-        sum_in_value_a1_for_a2 = (
+        sum_in_end_a1_for_a2 = (
             link_length_1 * link_length_1 * link_length_2 * link_length_2
             + 2.0 * link_length_1 * link_length_1 * link_length_2 * link_length_3
             + link_length_1 * link_length_1 * link_length_3 * link_length_3
@@ -131,16 +133,14 @@ class Constants:
         quotient_in_arm_x_rate_a1_for_a2 = (
             2.0 * link_length_1 * link_length_2 * link_length_5 + 2.0 * link_length_1 * link_length_3 * link_length_5
         ) / link_length_2
-        link_length_5_minus_link_length_4 = link_length_5 - link_length_4
-        link_length_4_plus_link_length_5 = link_length_4 + link_length_5
         quotient_in_type2_arms_aligned = assembly_sign * link_length_3 / (link_length_4 * link_length_2 * link_length_2)
-        product_in_value_a1_for_a2 = 2.0 * link_length_1 * link_length_2 * link_length_2_plus_link_length_3
+        product_in_end_a1_for_a2 = 2.0 * link_length_1 * link_length_2 * link_length_2_plus_link_length_3
         one_by_link_length_2_squared = 1.0 / link_length_2_squared
+        quotient_in_along_a2_before_a1_for_a2 = link_length_1 * link_length_2_plus_link_length_3 / link_length_2
         quotient_in_arm_x_a1_for_a2 = (
             2.0 * link_length_1 * link_length_2_plus_link_length_3 * link_length_5 / link_length_2
         )
         twice_link_length_5 = 2.0 * link_length_5
-        quotient_in_along_a2 = link_length_1 * link_length_2_plus_link_length_3 / link_length_2
         quotient_in_margin_arms_aligned = link_length_3 / (link_length_4 * link_length_2 * link_length_2)
         twice_link_length_1 = 2.0 * link_length_1
         link_length_3_by_link_length_2_plus_one = 1.0 + link_length_3_by_link_length_2
@@ -157,9 +157,9 @@ class Constants:
         self.product_in_foot_fraction = product_in_foot_fraction
         self.machine_scale_times_plane = machine_scale_times_plane
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
+        self.link_length_5_times_shortest_link = link_length_5_times_shortest_link
         self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
         self.machine_scale_times_rounding = machine_scale_times_rounding
-        self.link_length_5_times_shortest_link = link_length_5_times_shortest_link
         self.link_length_3_by_link_length_2 = link_length_3_by_link_length_2
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
         self.link_length_2_by_link_length_3 = link_length_2_by_link_length_3
@@ -170,15 +170,15 @@ class Constants:
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.machine_scale_squared_times_4 = machine_scale_squared_times_4
-        self.link_length_2_squared, self.sum_in_value_a1_for_a2 = link_length_2_squared, sum_in_value_a1_for_a2
-        self.quotient_in_arm_x_rate_a1_for_a2 = quotient_in_arm_x_rate_a1_for_a2
         self.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4
         self.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5
+        self.link_length_2_squared, self.sum_in_end_a1_for_a2 = link_length_2_squared, sum_in_end_a1_for_a2
+        self.quotient_in_arm_x_rate_a1_for_a2 = quotient_in_arm_x_rate_a1_for_a2
         self.quotient_in_type2_arms_aligned = quotient_in_type2_arms_aligned
-        self.product_in_value_a1_for_a2 = product_in_value_a1_for_a2
+        self.product_in_end_a1_for_a2 = product_in_end_a1_for_a2
         self.one_by_link_length_2_squared = one_by_link_length_2_squared
+        self.quotient_in_along_a2_before_a1_for_a2 = quotient_in_along_a2_before_a1_for_a2
         self.quotient_in_arm_x_a1_for_a2, self.twice_link_length_5 = quotient_in_arm_x_a1_for_a2, twice_link_length_5
-        self.quotient_in_along_a2 = quotient_in_along_a2
         self.quotient_in_margin_arms_aligned = quotient_in_margin_arms_aligned
         self.twice_link_length_1, self.product_in_slope_2_by_x = twice_link_length_1, product_in_slope_2_by_x
         self.link_length_3_times_2_by_link_length_2 = link_length_3_times_2_by_link_length_2
@@ -194,7 +194,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
-    KEY = "mc_kin_type_12_xy dafe11dae54df873"
+    KEY = "mc_kin_type_12_xy ffe709bdb34eee60"
     AXES = (
         Axis(
             name="A1",
@@ -425,13 +425,14 @@ class KinType12XY(OffsetKinematics):
         machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
         one_by_link_length_2_squared = k.one_by_link_length_2_squared
-        product_in_value_a1_for_a2, quotient_in_along_a2 = k.product_in_value_a1_for_a2, k.quotient_in_along_a2
+        product_in_end_a1_for_a2 = k.product_in_end_a1_for_a2
+        quotient_in_along_a2_before_a1_for_a2 = k.quotient_in_along_a2_before_a1_for_a2
         quotient_in_arm_x_a1_for_a2 = k.quotient_in_arm_x_a1_for_a2
         quotient_in_arm_x_rate_a1_for_a2 = k.quotient_in_arm_x_rate_a1_for_a2
         quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
         quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
         quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
-        single_a2, sum_in_value_a1_for_a2, swap_xy = k.single_a2, k.sum_in_value_a1_for_a2, k.swap_xy
+        single_a2, sum_in_end_a1_for_a2, swap_xy = k.single_a2, k.sum_in_end_a1_for_a2, k.swap_xy
         twice_link_length_5 = k.twice_link_length_5
         if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
@@ -481,38 +482,63 @@ class KinType12XY(OffsetKinematics):
             sin_a1 = sin_a1_before_a1_for_a2
             cos_a1 = cos_a1_before_a1_for_a2
         else:
-            value_a1_for_a2 = -one_by_link_length_2_squared * (
-                sum_in_value_a1_for_a2
-                + (link_length_2_squared * span_rear_x - product_in_value_a1_for_a2 * sin_a1_before_a1_for_a2)
+            along_a2_before_a1_for_a2 = span_rear_x - quotient_in_along_a2_before_a1_for_a2 * sin_a1_before_a1_for_a2
+            across_a2_before_a1_for_a2 = quotient_in_along_a2_before_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y
+            effective_a2_before_a1_for_a2 = sqrt(
+                across_a2_before_a1_for_a2 * across_a2_before_a1_for_a2
+                + along_a2_before_a1_for_a2 * along_a2_before_a1_for_a2
+            )
+            divisor_a2_before_a1_for_a2 = (
+                effective_a2_before_a1_for_a2
+                if effective_a2_before_a1_for_a2 > link_length_5_times_shortest_link
+                else 1.0
+            )
+            one_less_cos_a2_before_a1_for_a2 = (divisor_a2_before_a1_for_a2 + link_length_4_plus_link_length_5) * (
+                divisor_a2_before_a1_for_a2 + link_length_5_minus_link_length_4
+            )
+            one_plus_cos_a2_before_a1_for_a2 = (link_length_4_plus_link_length_5 - divisor_a2_before_a1_for_a2) * (
+                divisor_a2_before_a1_for_a2 - link_length_5_minus_link_length_4
+            )
+            end_a1_for_a2 = -one_by_link_length_2_squared * (
+                sum_in_end_a1_for_a2
+                + (link_length_2_squared * span_rear_x - product_in_end_a1_for_a2 * sin_a1_before_a1_for_a2)
                 * span_rear_x
-                + (link_length_2_squared * span_rear_y - product_in_value_a1_for_a2 * cos_a1_before_a1_for_a2)
+                + (link_length_2_squared * span_rear_y - product_in_end_a1_for_a2 * cos_a1_before_a1_for_a2)
                 * span_rear_y
             )
             arm_x_a1_for_a2 = span_rear_x * twice_link_length_5 - quotient_in_arm_x_a1_for_a2 * sin_a1_before_a1_for_a2
             arm_y_a1_for_a2 = quotient_in_arm_x_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y * twice_link_length_5
+            arm_a1_for_a2 = sqrt(arm_x_a1_for_a2 * arm_x_a1_for_a2 + arm_y_a1_for_a2 * arm_y_a1_for_a2)
+            sum_in_value_a1_for_a2 = one_less_cos_a2_before_a1_for_a2 + one_plus_cos_a2_before_a1_for_a2
             # a2 has solutions where this is within its bound
-            size_a1_for_a2 = sqrt(arm_x_a1_for_a2 * arm_x_a1_for_a2 + arm_y_a1_for_a2 * arm_y_a1_for_a2)
+            if sum_in_value_a1_for_a2 > 4.0 * arm_a1_for_a2:
+                value_a1_for_a2 = 2.0 * end_a1_for_a2
+                size_a1_for_a2 = 2.0 * arm_a1_for_a2
+                missing_a1_for_a2 = (abs(end_a1_for_a2) - arm_a1_for_a2) * (arm_a1_for_a2 + abs(end_a1_for_a2))
+            else:
+                value_a1_for_a2 = one_plus_cos_a2_before_a1_for_a2 - one_less_cos_a2_before_a1_for_a2
+                size_a1_for_a2 = 1.00000000000025 * sum_in_value_a1_for_a2
+                missing_a1_for_a2 = -one_less_cos_a2_before_a1_for_a2 * one_plus_cos_a2_before_a1_for_a2
             # turned so that a2 has a solution
             if abs(value_a1_for_a2) <= size_a1_for_a2:
                 sin_a1 = sin_a1_before_a1_for_a2
                 cos_a1 = cos_a1_before_a1_for_a2
             else:
-                missing_a1_for_a2 = (abs(value_a1_for_a2) - size_a1_for_a2) * (size_a1_for_a2 + abs(value_a1_for_a2))
                 arm_x_rate_a1_for_a2 = -quotient_in_arm_x_rate_a1_for_a2 * cos_a1_before_a1_for_a2
                 arm_y_rate_a1_for_a2 = -quotient_in_arm_x_rate_a1_for_a2 * sin_a1_before_a1_for_a2
-                value_rate_a1_for_a2 = one_by_link_length_2_squared * (
-                    product_in_value_a1_for_a2 * span_rear_x * cos_a1_before_a1_for_a2
-                    - product_in_value_a1_for_a2 * span_rear_y * sin_a1_before_a1_for_a2
+                end_rate_a1_for_a2 = one_by_link_length_2_squared * (
+                    product_in_end_a1_for_a2 * span_rear_x * cos_a1_before_a1_for_a2
+                    - product_in_end_a1_for_a2 * span_rear_y * sin_a1_before_a1_for_a2
                 )
                 linear_a1_for_a2 = (
                     arm_x_a1_for_a2 * arm_x_rate_a1_for_a2
                     + arm_y_a1_for_a2 * arm_y_rate_a1_for_a2
-                    - value_a1_for_a2 * value_rate_a1_for_a2
+                    - end_a1_for_a2 * end_rate_a1_for_a2
                 )
                 square_a1_for_a2 = (
                     arm_x_rate_a1_for_a2 * arm_x_rate_a1_for_a2
                     + arm_y_rate_a1_for_a2 * arm_y_rate_a1_for_a2
-                    - value_rate_a1_for_a2 * value_rate_a1_for_a2
+                    - end_rate_a1_for_a2 * end_rate_a1_for_a2
                 )
                 beside_a1 = machine_scale * cos_swing_a1
                 way_a1_for_a2 = (
@@ -553,8 +579,8 @@ class KinType12XY(OffsetKinematics):
                     cos_a1 = turned_cos_a1_for_a2
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         pivot_upper_y = -link_length_1 * cos_a1
-        along_a2 = span_rear_x - quotient_in_along_a2 * sin_a1
-        across_a2 = quotient_in_along_a2 * cos_a1 - span_rear_y
+        along_a2 = span_rear_x - quotient_in_along_a2_before_a1_for_a2 * sin_a1
+        across_a2 = quotient_in_along_a2_before_a1_for_a2 * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -889,13 +915,14 @@ class KinType12XY(OffsetKinematics):
         machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
         one_by_link_length_2_squared = k.one_by_link_length_2_squared
-        product_in_value_a1_for_a2, quotient_in_along_a2 = k.product_in_value_a1_for_a2, k.quotient_in_along_a2
+        product_in_end_a1_for_a2 = k.product_in_end_a1_for_a2
+        quotient_in_along_a2_before_a1_for_a2 = k.quotient_in_along_a2_before_a1_for_a2
         quotient_in_arm_x_a1_for_a2 = k.quotient_in_arm_x_a1_for_a2
         quotient_in_arm_x_rate_a1_for_a2 = k.quotient_in_arm_x_rate_a1_for_a2
         quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
         quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
         quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
-        single_a2, sum_in_value_a1_for_a2, swap_xy = k.single_a2, k.sum_in_value_a1_for_a2, k.swap_xy
+        single_a2, sum_in_end_a1_for_a2, swap_xy = k.single_a2, k.sum_in_end_a1_for_a2, k.swap_xy
         twice_link_length_5 = k.twice_link_length_5
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
@@ -947,38 +974,63 @@ class KinType12XY(OffsetKinematics):
             sin_a1 = sin_a1_before_a1_for_a2
             cos_a1 = cos_a1_before_a1_for_a2
         else:
-            value_a1_for_a2 = -one_by_link_length_2_squared * (
-                sum_in_value_a1_for_a2
-                + (link_length_2_squared * span_rear_x - product_in_value_a1_for_a2 * sin_a1_before_a1_for_a2)
+            along_a2_before_a1_for_a2 = span_rear_x - quotient_in_along_a2_before_a1_for_a2 * sin_a1_before_a1_for_a2
+            across_a2_before_a1_for_a2 = quotient_in_along_a2_before_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y
+            effective_a2_before_a1_for_a2 = sqrt(
+                across_a2_before_a1_for_a2 * across_a2_before_a1_for_a2
+                + along_a2_before_a1_for_a2 * along_a2_before_a1_for_a2
+            )
+            divisor_a2_before_a1_for_a2 = (
+                effective_a2_before_a1_for_a2
+                if effective_a2_before_a1_for_a2 > link_length_5_times_shortest_link
+                else 1.0
+            )
+            one_less_cos_a2_before_a1_for_a2 = (divisor_a2_before_a1_for_a2 + link_length_4_plus_link_length_5) * (
+                divisor_a2_before_a1_for_a2 + link_length_5_minus_link_length_4
+            )
+            one_plus_cos_a2_before_a1_for_a2 = (link_length_4_plus_link_length_5 - divisor_a2_before_a1_for_a2) * (
+                divisor_a2_before_a1_for_a2 - link_length_5_minus_link_length_4
+            )
+            end_a1_for_a2 = -one_by_link_length_2_squared * (
+                sum_in_end_a1_for_a2
+                + (link_length_2_squared * span_rear_x - product_in_end_a1_for_a2 * sin_a1_before_a1_for_a2)
                 * span_rear_x
-                + (link_length_2_squared * span_rear_y - product_in_value_a1_for_a2 * cos_a1_before_a1_for_a2)
+                + (link_length_2_squared * span_rear_y - product_in_end_a1_for_a2 * cos_a1_before_a1_for_a2)
                 * span_rear_y
             )
             arm_x_a1_for_a2 = span_rear_x * twice_link_length_5 - quotient_in_arm_x_a1_for_a2 * sin_a1_before_a1_for_a2
             arm_y_a1_for_a2 = quotient_in_arm_x_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y * twice_link_length_5
+            arm_a1_for_a2 = sqrt(arm_x_a1_for_a2 * arm_x_a1_for_a2 + arm_y_a1_for_a2 * arm_y_a1_for_a2)
+            sum_in_value_a1_for_a2 = one_less_cos_a2_before_a1_for_a2 + one_plus_cos_a2_before_a1_for_a2
             # a2 has solutions where this is within its bound
-            size_a1_for_a2 = sqrt(arm_x_a1_for_a2 * arm_x_a1_for_a2 + arm_y_a1_for_a2 * arm_y_a1_for_a2)
+            if sum_in_value_a1_for_a2 > 4.0 * arm_a1_for_a2:
+                value_a1_for_a2 = 2.0 * end_a1_for_a2
+                size_a1_for_a2 = 2.0 * arm_a1_for_a2
+                missing_a1_for_a2 = (abs(end_a1_for_a2) - arm_a1_for_a2) * (arm_a1_for_a2 + abs(end_a1_for_a2))
+            else:
+                value_a1_for_a2 = one_plus_cos_a2_before_a1_for_a2 - one_less_cos_a2_before_a1_for_a2
+                size_a1_for_a2 = 1.00000000000025 * sum_in_value_a1_for_a2
+                missing_a1_for_a2 = -one_less_cos_a2_before_a1_for_a2 * one_plus_cos_a2_before_a1_for_a2
             # turned so that a2 has a solution
             if abs(value_a1_for_a2) <= size_a1_for_a2:
                 sin_a1 = sin_a1_before_a1_for_a2
                 cos_a1 = cos_a1_before_a1_for_a2
             else:
-                missing_a1_for_a2 = (abs(value_a1_for_a2) - size_a1_for_a2) * (size_a1_for_a2 + abs(value_a1_for_a2))
                 arm_x_rate_a1_for_a2 = -quotient_in_arm_x_rate_a1_for_a2 * cos_a1_before_a1_for_a2
                 arm_y_rate_a1_for_a2 = -quotient_in_arm_x_rate_a1_for_a2 * sin_a1_before_a1_for_a2
-                value_rate_a1_for_a2 = one_by_link_length_2_squared * (
-                    product_in_value_a1_for_a2 * span_rear_x * cos_a1_before_a1_for_a2
-                    - product_in_value_a1_for_a2 * span_rear_y * sin_a1_before_a1_for_a2
+                end_rate_a1_for_a2 = one_by_link_length_2_squared * (
+                    product_in_end_a1_for_a2 * span_rear_x * cos_a1_before_a1_for_a2
+                    - product_in_end_a1_for_a2 * span_rear_y * sin_a1_before_a1_for_a2
                 )
                 linear_a1_for_a2 = (
                     arm_x_a1_for_a2 * arm_x_rate_a1_for_a2
                     + arm_y_a1_for_a2 * arm_y_rate_a1_for_a2
-                    - value_a1_for_a2 * value_rate_a1_for_a2
+                    - end_a1_for_a2 * end_rate_a1_for_a2
                 )
                 square_a1_for_a2 = (
                     arm_x_rate_a1_for_a2 * arm_x_rate_a1_for_a2
                     + arm_y_rate_a1_for_a2 * arm_y_rate_a1_for_a2
-                    - value_rate_a1_for_a2 * value_rate_a1_for_a2
+                    - end_rate_a1_for_a2 * end_rate_a1_for_a2
                 )
                 beside_a1 = machine_scale * cos_swing_a1
                 way_a1_for_a2 = (
@@ -1019,8 +1071,8 @@ class KinType12XY(OffsetKinematics):
                     cos_a1 = turned_cos_a1_for_a2
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         pivot_upper_y = -link_length_1 * cos_a1
-        along_a2 = span_rear_x - quotient_in_along_a2 * sin_a1
-        across_a2 = quotient_in_along_a2 * cos_a1 - span_rear_y
+        along_a2 = span_rear_x - quotient_in_along_a2_before_a1_for_a2 * sin_a1
+        across_a2 = quotient_in_along_a2_before_a1_for_a2 * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0

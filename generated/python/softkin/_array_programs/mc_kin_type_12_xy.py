@@ -32,7 +32,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 115
+    VALUES = 124
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -178,11 +178,26 @@ class ArrayPrograms(Programs):
             span_upper_x: Real,
             span_upper_y: Real,
         ) -> Reals:
-            value_a1_for_a2 = -k.one_by_link_length_2_squared * (
-                k.sum_in_value_a1_for_a2
-                + (k.link_length_2_squared * span_rear_x - k.product_in_value_a1_for_a2 * sin_a1_before_a1_for_a2)
+            along_a2_before_a1_for_a2 = span_rear_x - k.quotient_in_along_a2_before_a1_for_a2 * sin_a1_before_a1_for_a2
+            across_a2_before_a1_for_a2 = k.quotient_in_along_a2_before_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y
+            effective_a2_before_a1_for_a2 = sqrt(
+                across_a2_before_a1_for_a2 * across_a2_before_a1_for_a2
+                + along_a2_before_a1_for_a2 * along_a2_before_a1_for_a2
+            )
+            divisor_a2_before_a1_for_a2 = select(
+                effective_a2_before_a1_for_a2 > k.link_length_5_times_shortest_link, effective_a2_before_a1_for_a2, 1.0
+            )
+            one_less_cos_a2_before_a1_for_a2 = (divisor_a2_before_a1_for_a2 + k.link_length_4_plus_link_length_5) * (
+                divisor_a2_before_a1_for_a2 + k.link_length_5_minus_link_length_4
+            )
+            one_plus_cos_a2_before_a1_for_a2 = (k.link_length_4_plus_link_length_5 - divisor_a2_before_a1_for_a2) * (
+                divisor_a2_before_a1_for_a2 - k.link_length_5_minus_link_length_4
+            )
+            end_a1_for_a2 = -k.one_by_link_length_2_squared * (
+                k.sum_in_end_a1_for_a2
+                + (k.link_length_2_squared * span_rear_x - k.product_in_end_a1_for_a2 * sin_a1_before_a1_for_a2)
                 * span_rear_x
-                + (k.link_length_2_squared * span_rear_y - k.product_in_value_a1_for_a2 * cos_a1_before_a1_for_a2)
+                + (k.link_length_2_squared * span_rear_y - k.product_in_end_a1_for_a2 * cos_a1_before_a1_for_a2)
                 * span_rear_y
             )
             arm_x_a1_for_a2 = (
@@ -191,42 +206,60 @@ class ArrayPrograms(Programs):
             arm_y_a1_for_a2 = (
                 k.quotient_in_arm_x_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y * k.twice_link_length_5
             )
+            arm_a1_for_a2 = sqrt(arm_x_a1_for_a2 * arm_x_a1_for_a2 + arm_y_a1_for_a2 * arm_y_a1_for_a2)
+            sum_in_value_a1_for_a2 = one_less_cos_a2_before_a1_for_a2 + one_plus_cos_a2_before_a1_for_a2
+
+            def elsewhere_value_a1_for_a2(
+                one_less_cos_a2_before_a1_for_a2: Real,
+                one_plus_cos_a2_before_a1_for_a2: Real,
+                sum_in_value_a1_for_a2: Real,
+            ) -> Reals:
+                value_a1_for_a2 = one_plus_cos_a2_before_a1_for_a2 - one_less_cos_a2_before_a1_for_a2
+                size_a1_for_a2 = 1.00000000000025 * sum_in_value_a1_for_a2
+                missing_a1_for_a2 = -one_less_cos_a2_before_a1_for_a2 * one_plus_cos_a2_before_a1_for_a2
+                return (value_a1_for_a2, size_a1_for_a2, missing_a1_for_a2)
+
+            value_a1_for_a2 = 2.0 * end_a1_for_a2
+            size_a1_for_a2 = 2.0 * arm_a1_for_a2
+            missing_a1_for_a2 = (absolute(end_a1_for_a2) - arm_a1_for_a2) * (arm_a1_for_a2 + absolute(end_a1_for_a2))
             # a2 has solutions where this is within its bound
-            size_a1_for_a2 = sqrt(arm_x_a1_for_a2 * arm_x_a1_for_a2 + arm_y_a1_for_a2 * arm_y_a1_for_a2)
+            value_a1_for_a2, size_a1_for_a2, missing_a1_for_a2 = elsewhere(
+                sum_in_value_a1_for_a2 > 4.0 * arm_a1_for_a2,
+                (value_a1_for_a2, size_a1_for_a2, missing_a1_for_a2),
+                elsewhere_value_a1_for_a2,
+                (one_less_cos_a2_before_a1_for_a2, one_plus_cos_a2_before_a1_for_a2, sum_in_value_a1_for_a2),
+            )
 
             def elsewhere_sin_a1(
                 arm_x_a1_for_a2: Real,
                 arm_y_a1_for_a2: Real,
                 cos_a1_before_a1_for_a2: Real,
                 cos_swing_a1: Real,
+                end_a1_for_a2: Real,
+                missing_a1_for_a2: Real,
                 one_by_effective_a1: Real,
                 sigma_t: Whole,
                 sin_a1_before_a1_for_a2: Real,
-                size_a1_for_a2: Real,
                 span_rear_x: Real,
                 span_rear_y: Real,
                 span_upper_x: Real,
                 span_upper_y: Real,
-                value_a1_for_a2: Real,
             ) -> Reals:
-                missing_a1_for_a2 = (absolute(value_a1_for_a2) - size_a1_for_a2) * (
-                    size_a1_for_a2 + absolute(value_a1_for_a2)
-                )
                 arm_x_rate_a1_for_a2 = -k.quotient_in_arm_x_rate_a1_for_a2 * cos_a1_before_a1_for_a2
                 arm_y_rate_a1_for_a2 = -k.quotient_in_arm_x_rate_a1_for_a2 * sin_a1_before_a1_for_a2
-                value_rate_a1_for_a2 = k.one_by_link_length_2_squared * (
-                    k.product_in_value_a1_for_a2 * span_rear_x * cos_a1_before_a1_for_a2
-                    - k.product_in_value_a1_for_a2 * span_rear_y * sin_a1_before_a1_for_a2
+                end_rate_a1_for_a2 = k.one_by_link_length_2_squared * (
+                    k.product_in_end_a1_for_a2 * span_rear_x * cos_a1_before_a1_for_a2
+                    - k.product_in_end_a1_for_a2 * span_rear_y * sin_a1_before_a1_for_a2
                 )
                 linear_a1_for_a2 = (
                     arm_x_a1_for_a2 * arm_x_rate_a1_for_a2
                     + arm_y_a1_for_a2 * arm_y_rate_a1_for_a2
-                    - value_a1_for_a2 * value_rate_a1_for_a2
+                    - end_a1_for_a2 * end_rate_a1_for_a2
                 )
                 square_a1_for_a2 = (
                     arm_x_rate_a1_for_a2 * arm_x_rate_a1_for_a2
                     + arm_y_rate_a1_for_a2 * arm_y_rate_a1_for_a2
-                    - value_rate_a1_for_a2 * value_rate_a1_for_a2
+                    - end_rate_a1_for_a2 * end_rate_a1_for_a2
                 )
                 beside_a1 = k.machine_scale * cos_swing_a1
                 way_a1_for_a2 = select(
@@ -274,15 +307,15 @@ class ArrayPrograms(Programs):
                     arm_y_a1_for_a2,
                     cos_a1_before_a1_for_a2,
                     cos_swing_a1,
+                    end_a1_for_a2,
+                    missing_a1_for_a2,
                     one_by_effective_a1,
                     sigma_t,
                     sin_a1_before_a1_for_a2,
-                    size_a1_for_a2,
                     span_rear_x,
                     span_rear_y,
                     span_upper_x,
                     span_upper_y,
-                    value_a1_for_a2,
                 ),
             )
             return (sin_a1, cos_a1)
@@ -304,8 +337,8 @@ class ArrayPrograms(Programs):
                 span_upper_y,
             ),
         )
-        along_a2 = span_rear_x - k.quotient_in_along_a2 * sin_a1
-        across_a2 = k.quotient_in_along_a2 * cos_a1 - span_rear_y
+        along_a2 = span_rear_x - k.quotient_in_along_a2_before_a1_for_a2 * sin_a1
+        across_a2 = k.quotient_in_along_a2_before_a1_for_a2 * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = select(effective_a2 > k.link_length_5_times_shortest_link, effective_a2, 1.0)
