@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from derive.description.joints import Kind
-from derive.importing.arms.lines import ROUNDING, Arm, Line, feet, relation
+from derive.importing.arms.lines import ROUNDING, Arm, relation, spread
 from derive.importing.arms.snapping import Snapped
 
 _NEARLY = 2e-2
@@ -56,7 +56,7 @@ def closed_form(arm: Arm, names: Sequence[str], limit: float) -> str:
         if any(line.kind is Kind.LINEAR for line in three):
             continue
         apart = max(relation(a, b).angle for a, b in zip(three, three[1:], strict=False))
-        found.append((_spread(three) / arm.size, f"{three_names} meet in one point"))
+        found.append((spread(three) / arm.size, f"{three_names} meet in one point"))
         found.append((apart, f"{three_names} are parallel"))
     if not found:
         return "Slides among the axes: most chains with them have a closed form."
@@ -66,16 +66,6 @@ def closed_form(arm: Arm, names: Sequence[str], limit: float) -> str:
     if amount > _NEARLY:
         return "No three neighbouring axes meet in one point or are parallel: a closed form is unlikely."
     return f"No three neighbouring axes meet in one point or are parallel; with --snap {_above(amount)} {words}."
-
-
-def _spread(lines: Sequence[Line]) -> float:
-    """How far three lines are from meeting in one point: their distances, and how far apart they pass the middle."""
-    first, middle, last = lines
-    before, behind = feet(first, middle), feet(middle, last)
-    if before is None or behind is None:
-        return float("inf")
-    gaps = (before[0] - before[1], behind[0] - behind[1], before[1] - behind[0])
-    return float(max(np.linalg.norm(gap) for gap in gaps))
 
 
 def _distance_hints(distance: float, put_back: float, limit: float) -> Iterator[str]:

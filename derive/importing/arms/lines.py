@@ -126,3 +126,13 @@ def feet(first: Line, second: Line) -> tuple[Array, Array] | None:
         first.point + first.direction * (along - other * cosine) / determinant,
         second.point + second.direction * (along * cosine - other) / determinant,
     )
+
+
+def spread(lines: Sequence[Line]) -> float:
+    """How far three lines are from meeting in one point: their distances, and how far apart they pass the middle."""
+    first, middle, last = lines
+    before, behind = feet(first, middle), feet(middle, last)
+    if before is None or behind is None:
+        return float("inf")
+    gaps = (before[0] - before[1], behind[0] - behind[1], before[1] - behind[0])
+    return float(max(np.linalg.norm(gap) for gap in gaps))

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from derive.description.joints import Kind
-from derive.importing.arms.lines import Arm, Line, moved, relation
+from derive.importing.arms.lines import Arm, Line, moved, relation, spread
 from derive.importing.robot import Array, UnreadableRobot
 
 _SAMPLES = 6
@@ -40,6 +41,10 @@ class Motions:
         """The rank of some rows at a general position; singular values below the least one count as zero."""
         chosen = self.jacobians[:, rows] if axes is None else self.jacobians[:, rows][:, :, list(axes)]
         return int(max(np.linalg.matrix_rank(j, tol=least) for j in chosen))
+
+    def least(self, axes: Sequence[int]) -> float:
+        """The least singular value with some axes, the mean of all samples."""
+        return float(np.mean([np.linalg.svd(j[:, list(axes)], compute_uv=False)[-1] for j in self.jacobians]))
 
     def span(self, rows: slice) -> Array:
         """Directions (rows) that the motions of all samples span."""
@@ -175,8 +180,38 @@ def _to_hold(arm: Arm, seen: Motions, free: Sequence[int], count: int) -> tuple[
         possible = [k for k in rest if seen.rank(axes=[r for r in rest if r != k], least=_WELL) == rank]
         if not possible:
             break
-        held.append(min(possible, key=lambda k: _preference(arm, rest, k)))
+        best = min(possible, key=lambda k: _preference(arm, rest, k))
+        solved = [k for k in possible if _is_solved(arm, [r for r in rest if r != k], k)]
+        if solved and (best not in solved or rest.index(best) != 2):  # the one without which the tip moves best
+            best = max(solved, key=lambda k: seen.least([r for r in rest if r != k]))
+        held.append(best)
     return tuple(held)
+
+
+def _is_solved(arm: Arm, axes: Sequence[int], held: int) -> bool:
+    """Whether a closed form is likely with six axes: three neighbours meet in one point or are parallel, and two
+    neighbours of the other three meet or are parallel; the held one stands between none of these.
+    """
+    by_axis = {line.drives[0][0]: line for line in arm.lines if len(line.drives) == 1 and line.kind is not Kind.LINEAR}
+    if len(axes) != 6 or any(k not in by_axis for k in axes):
+        return False
+    for start in range(4):
+        three = axes[start : start + 3]
+        others = [pair for pair in pairwise(axes) if not set(pair) & set(three)]
+        lines = [by_axis[k] for k in three]
+        is_parallel = max(relation(a, b).angle for a, b in pairwise(lines)) < 1e-6
+        is_wrist = spread(lines) < 1e-6 * arm.size or is_parallel
+        if is_wrist and not three[0] < held < three[2] and any(_is_simple(arm, by_axis, p, held) for p in others):
+            return True
+    return False
+
+
+def _is_simple(arm: Arm, by_axis: Mapping[int, Line], pair: tuple[int, int], held: int) -> bool:
+    """Whether two axes meet or are parallel, however a held one stands."""
+    if pair[0] < held < pair[1] or pair[0] not in by_axis or pair[1] not in by_axis:
+        return False
+    stands = relation(by_axis[pair[0]], by_axis[pair[1]])
+    return stands.distance < 1e-6 * arm.size or stands.angle < 1e-6
 
 
 def _preference(arm: Arm, axes: Sequence[int], axis: int) -> tuple[bool, int, int]:
@@ -189,10 +224,4 @@ def _preference(arm: Arm, axes: Sequence[int], axis: int) -> tuple[bool, int, in
 def _simple_pairs(arm: Arm, axes: Sequence[int], held: int) -> int:
     """How many axes next to each other meet or are parallel, however the held one stands; the first two count more."""
     by_axis = {line.drives[0][0]: line for line in arm.lines if len(line.drives) == 1}
-    found = 0
-    for first, second in zip(axes[:3], axes[1:3], strict=False):
-        if first < held < second or first not in by_axis or second not in by_axis:
-            continue
-        stands = relation(by_axis[first], by_axis[second])
-        found += stands.distance < 1e-6 * arm.size or stands.angle < 1e-6
-    return min(found, 1)
+    return int(any(_is_simple(arm, by_axis, pair, held) for pair in pairwise(axes[:3])))

@@ -7,7 +7,7 @@ graphs and a viewer along, and read a file with a wrong number or an unknown joi
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -54,7 +54,7 @@ def read_urdf(path: Path, base: str | None, tip: str | None, scale: float) -> Ro
     base, tip = ends_of(path, edges, links, base, tip)
     joints = {required(path, j, "name"): j for j in root.findall("joint")}
     passed = path_between(path, edges, links, base, tip)
-    followers = {n: f for n, j in joints.items() if (f := _follower(path, joints, j, scale)) is not None}
+    followers = _followers(path, joints, [edge.name for edge, _ in passed], scale)
     steps = tuple(
         step
         for edge, is_up in passed
@@ -134,6 +134,19 @@ def _direction(path: Path, joint: Element, name: str) -> Triple:
     if size < 1e-9:
         raise UnreadableRobot(f"{path}: joint {name!r}: its axis has no direction")
     return (stated[0] / size, stated[1] / size, stated[2] / size)
+
+
+def _followers(path: Path, joints: Mapping[str, Element], passed: Sequence[str], scale: float) -> dict[str, Follower]:
+    """Those among some joints, and among the joints that they follow; the mimics of all others are not read."""
+    found: dict[str, Follower] = {}
+    left = list(passed)
+    while left:
+        name = left.pop()
+        follower = None if name in found else _follower(path, joints, joints[name], scale)
+        if follower is not None:
+            found[name] = follower
+            left.append(follower.leader)
+    return found
 
 
 def _follower(path: Path, joints: Mapping[str, Element], joint: Element, scale: float) -> Follower | None:
