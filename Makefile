@@ -17,7 +17,7 @@ BENCH := .venv-bench
 
 WHEEL := .venv-wheel
 
-.PHONY: generate check test quick report bench wheel javascript c linuxcnc view prove-linuxcnc
+.PHONY: generate check test quick report bench wheel javascript c clang linuxcnc view prove-linuxcnc
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -35,6 +35,11 @@ c: $(READY)
 linuxcnc: $(READY)
 	$(RUN) -m derive $(if $(wildcard $(MECHANISM)),derive $(MECHANISM) --out $(OUT),generate --output $(OUT) \
 		$(if $(MECHANISM),--only $(MECHANISM)) $(if $(FRESH),--fresh)) --language linuxcnc $(OPTIONS)
+
+# The same sources through clang, which the package ziglang brings; the tests compile them with gcc.
+clang: c
+	$(RUN) -m pip install --quiet --editable '.[clang]'
+	$(RUN) -m tests.c.clang $(OUT)/c
 
 # One page with all machines, build/viewer.html, which opens in a browser from disk; MECHANISM=my_machine.py: that machine alone.
 view: $(READY)

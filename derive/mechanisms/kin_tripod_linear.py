@@ -29,7 +29,12 @@ INNER = optional_length("inner_radius", "Plate centre to the rod joints", nomina
 L = length("arm_length", "Length of the rods", nominal=400.0)
 TILT = angle("rail_angle", "Angle of the rails to the vertical, outward going down", nominal=30.0, low=0.0, high=90.0)
 SWING = angle(
-    "max_angle_ball_joint", "Largest swing of a rod out of the plane of its rail", nominal=45.0, low=0.0, high=90.0
+    "max_angle_ball_joint",
+    "Largest swing of a rod out of the plane of its rail",
+    nominal=45.0,
+    low=0.0,
+    high=90.0,
+    default=45.0,
 )
 AXES = tuple(linear(f"A{k}", f"Carriage {k}; positive goes down its rail", nominal=50.0) for k in (1, 2, 3))
 DIRECTIONS = [vector(cos(pi * k), sin(pi * k)) for k in (Rational(1), Rational(5, 3), Rational(1, 3))]

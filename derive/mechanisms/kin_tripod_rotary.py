@@ -28,7 +28,12 @@ DRIVES = length("arm_1_radius", "Radius of the circle of the drive axes", nomina
 STEWART = optional_length("stewart_radius", "Radius of the circle of the six rod joints on the plate", nominal=50.0)
 APART = optional_length("distance", "Distance of the two rods of a pair", nominal=40.0)
 SWING = angle(
-    "max_angle_ball_joint", "Largest swing of a rod out of the plane of its arm", nominal=45.0, low=0.0, high=90.0
+    "max_angle_ball_joint",
+    "Largest swing of a rod out of the plane of its arm",
+    nominal=45.0,
+    low=0.0,
+    high=90.0,
+    default=45.0,
 )
 AXES = tuple(rotary(f"A{k}", f"Arm {k}, from horizontal outward; positive is down") for k in (1, 2, 3))
 DIRECTIONS = [vector(cos(pi * k), sin(pi * k)) for k in (Rational(1), Rational(5, 3), Rational(1, 3))]

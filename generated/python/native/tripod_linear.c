@@ -26,7 +26,7 @@ static const softkin_parameter PARAMETERS[] = {
       false, false, 0, NAN, 30.0, "rail_angle must be at least 0 and at most 90 (Angle of the rails to the "
       "vertical, outward going down)", offsetof(tripod_linear_parameters, rail_angle)},
   {"max_angle_ball_joint", "angle", "deg", "Largest swing of a rod out of the plane of its rail", 0.0, 90.0,
-      false, false, false, 0, NAN, 45.0,
+      false, false, false, 0, 45.0, 45.0,
       "max_angle_ball_joint must be at least 0 and at most 90 (Largest swing of a rod "
       "out of the plane of its rail)", offsetof(tripod_linear_parameters, max_angle_ball_joint)},
   {"offset_a1", "distance", "u", "A1: axis value at the kinematic zero position", -1e9, 1e9, false, false,

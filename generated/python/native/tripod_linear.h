@@ -45,7 +45,7 @@ typedef struct {
   /** Angle of the rails to the vertical, outward going down [deg]: at least 0 and at most 90; must be given
    * */
   double rail_angle;
-  /** Largest swing of a rod out of the plane of its rail [deg]: at least 0 and at most 90; must be given */
+  /** Largest swing of a rod out of the plane of its rail [deg]: at least 0 and at most 90; default 45 */
   double max_angle_ball_joint;
   /** A1: axis value at the kinematic zero position [u]: at least -1e+09 and at most 1e+09; default 0 */
   double offset_a1;

@@ -27,7 +27,7 @@ static const softkin_parameter PARAMETERS[] = {
       40.0, "distance must be at least 0 and at most 1e+09 (Distance of the two rods of a " "pair)",
       offsetof(tripod_rotary_parameters, distance)},
   {"max_angle_ball_joint", "angle", "deg", "Largest swing of a rod out of the plane of its arm", 0.0, 90.0,
-      false, false, false, 0, NAN, 45.0,
+      false, false, false, 0, 45.0, 45.0,
       "max_angle_ball_joint must be at least 0 and at most 90 (Largest swing of a rod "
       "out of the plane of its arm)", offsetof(tripod_rotary_parameters, max_angle_ball_joint)},
   {"offset_a1", "angle", "deg", "A1: axis value at the kinematic zero position", -1e9, 1e9, false, false,

@@ -46,7 +46,7 @@ typedef struct {
   double stewart_radius;
   /** Distance of the two rods of a pair [u]: at least 0 and at most 1e+09; default 0 */
   double distance;
-  /** Largest swing of a rod out of the plane of its arm [deg]: at least 0 and at most 90; must be given */
+  /** Largest swing of a rod out of the plane of its arm [deg]: at least 0 and at most 90; default 45 */
   double max_angle_ball_joint;
   /** A1: axis value at the kinematic zero position [deg]: at least -1e+09 and at most 1e+09; default 0 */
   double offset_a1;

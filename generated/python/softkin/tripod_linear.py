@@ -140,7 +140,7 @@ class TripodLinear(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Linear"
-    KEY = "tripod_linear 7a0dd69769126857"
+    KEY = "tripod_linear 82b92b649a2507c5"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1; positive goes down its rail", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2; positive goes down its rail", multi_turn=False),
@@ -166,7 +166,7 @@ class TripodLinear(OffsetKinematics):
             "Largest swing of a rod out of the plane of its rail",
             low=0.0,
             high=90.0,
-            default=None,
+            default=45.0,
         ),
         Parameter.of("distance", "offset_a1", "A1: axis value at the kinematic zero position"),
         Parameter.of("distance", "offset_a2", "A2: axis value at the kinematic zero position"),
@@ -234,7 +234,7 @@ class TripodLinear(OffsetKinematics):
         inner_radius: float = 0.0,
         arm_length: float,
         rail_angle: float,
-        max_angle_ball_joint: float,
+        max_angle_ball_joint: float = 45.0,
         offset_a1: float = 0.0,
         offset_a2: float = 0.0,
         offset_a3: float = 0.0,

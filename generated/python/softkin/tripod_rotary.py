@@ -142,7 +142,7 @@ class TripodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
-    KEY = "tripod_rotary 5c7553491eee0406"
+    KEY = "tripod_rotary fb577d74b68b8bbd"
     AXES = (
         Axis(
             name="A1",
@@ -178,7 +178,7 @@ class TripodRotary(OffsetKinematics):
             "Largest swing of a rod out of the plane of its arm",
             low=0.0,
             high=90.0,
-            default=None,
+            default=45.0,
         ),
         Parameter.of("angle", "offset_a1", "A1: axis value at the kinematic zero position"),
         Parameter.of("angle", "offset_a2", "A2: axis value at the kinematic zero position"),
@@ -251,7 +251,7 @@ class TripodRotary(OffsetKinematics):
         arm_1_radius: float,
         stewart_radius: float = 0.0,
         distance: float = 0.0,
-        max_angle_ball_joint: float,
+        max_angle_ball_joint: float = 45.0,
         offset_a1: float = 0.0,
         offset_a2: float = 0.0,
         offset_a3: float = 0.0,
