@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pickle
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from unittest.mock import patch
 
@@ -28,8 +28,9 @@ def generate(output: str, evidence: str) -> int:
     parts: list[Part] = []
     attempts = command.attempts
 
-    def witnessed(work: Work, profile: str | None) -> Iterator[Built | Failure]:
-        for (_, mechanism), built in zip(work.entries, attempts(work, profile), strict=True):
+    def witnessed(work: Work, profile: str | None, wanted: Sequence[str]) -> Iterator[Built | Failure]:
+        every = [*wanted, javascript.name]
+        for (_, mechanism), built in zip(work.entries, attempts(work, profile, every), strict=True):
             assert isinstance(built, Built) and built.evidence is not None, "the cache was read"
             found[mechanism.name] = built.evidence
             parts.append(built.parts[javascript.name])

@@ -11,7 +11,7 @@ the side of the sign of h.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -130,6 +130,9 @@ def _condition(
         return _least_size(conditioning, determinant, word, (there, value))
     if not moved or (turned and there.free_symbols & {*own, *dependent}):
         return None
+    chosen = {name for name, v in dependent.items() if _is_chosen(v, {*own, *dependent})}
+    if any(name in chosen or (name in dependent and dependent[name].free_symbols & chosen) for name in moved):
+        return None
     parts = tuple(p for name in moved for p in [own.get(name) or _part(name, dependent[name], angle)] if p is not None)
     read = {s for part in parts for coefficient in (part.along, part.across) for s in coefficient.free_symbols}
     if len(parts) < len(moved) or read & dependent.keys():
@@ -186,10 +189,18 @@ def _dependent(statements: Sequence[Statement], angle: sp.Symbol) -> dict[sp.Sym
     """Every name that depends on the angle, through the angle's cosine and sine."""
     own = {cosine(angle), sine(angle)}
     dependent: dict[sp.Symbol, sp.Expr] = {}
+    written_out: dict[sp.Symbol, sp.Expr] = {}
     for s in statements:
         if isinstance(s, Let) and s.name not in own and s.value.free_symbols & (own | dependent.keys()):
-            dependent[s.name] = s.value if isinstance(s.value, Root) else s.value.xreplace(dependent)
+            dependent[s.name] = s.value if isinstance(s.value, Root) else s.value.xreplace(written_out)
+            if not _is_chosen(s.value, own | dependent.keys()):
+                written_out[s.name] = dependent[s.name]
     return dependent
+
+
+def _is_chosen(value: sp.Basic, names: Set[sp.Symbol]) -> bool:
+    """Whether a value is chosen by what depends on these names: written out, such values grow with every choice."""
+    return any(choice.free_symbols & names for choice in value.atoms(Select))
 
 
 def _squares(value: sp.Expr, dependent: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
