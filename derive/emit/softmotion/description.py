@@ -11,7 +11,6 @@ from jinja2 import Environment
 
 from derive.description.mechanism import Kind, Role
 from derive.emit.softmotion.block import Block
-from derive.emit.softmotion.directions import directions_at_zero
 from derive.emit.softmotion.inputs import inputs
 from derive.emit.st.layout import WIDTH
 from derive.emit.st.names import respelled
@@ -26,6 +25,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.reference_cases import Called
 from derive.report.cost import Bound, Cost, Costs, costs_of
 from derive.report.reasons import workspace
+from derive.report.zero_directions import directions_at_zero
 
 _WIDTH = 100
 _NAMES_DIRECTION = re.compile(r"\b[XYZ]\b")
