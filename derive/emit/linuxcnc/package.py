@@ -101,7 +101,9 @@ def _templates() -> Environment:
 
 
 def _inner(source: str, module: str) -> str:
-    return _LINES.sub("", source).replace(f'#include "{module}.h"\n', "")
+    """A source or header without what it includes; all branches together are not asked, and need no room."""
+    alone = _LINES.sub("", source).replace(f'#include "{module}.h"\n', "")
+    return re.sub(r"(#define SOFTKIN_MOST_TOGETHER) \d+", r"\1 1", alone)
 
 
 def _macros(source: str) -> list[str]:

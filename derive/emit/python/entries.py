@@ -184,7 +184,7 @@ _OF_INIT = frozenset({"self", "locals", "unrolled", "Constants", "limits"})
 """What the text of `__init__` reads."""
 OF_CLASS = frozenset(
     """
-    AXES BRANCHES CONFIGURATION DEFAULT_CONFIGURATION DISTANCE_AXES FREEDOM HELD JACOBIAN_ROWS LIMIT_KEYS MARGINS
+    AXES BRANCHES CONFIGURATION DEFAULT_CONFIGURATION DISTANCE_AXES FREEDOM HELD JACOBIAN_ROWS KEY LIMIT_KEYS MARGINS
     NAME PARAMETERS PERIOD_AXES READS_ROTATION ROLE axis_velocities branch branches changed checks_limits condition
     configuration configuration_offset diagnose forward forward_batch from_dict from_json image_on in_degrees
     in_radians inverse inverse_all inverse_all_batch inverse_batch inverse_offset is_compatible jacobian

@@ -92,7 +92,7 @@ def printed(
 def _roots_of_numbers(program: Program) -> Iterator[tuple[str, str]]:
     """The literals of the values that are roots of numbers, by the names of the values."""
     for let in program.lets():
-        if isinstance(let.value, Root) and let.value.args[0].is_number:
+        if isinstance(let.value, Root) and let.value.args[0].is_Number:
             yield let.name.name, literal(math.sqrt(float(let.value.args[0])))
 
 

@@ -79,7 +79,7 @@ const softkin_native softkin_machines[] = {
     {"hgantry2 45ec8203f126ca47", &hgantry2_mechanism},
     {"hgantry3 8a4a1aed316d0d03", &hgantry3_mechanism},
     {"kin_5axes 9c5e1f5f6ab58ee5", &kin_5axes_mechanism},
-    {"mc_kin_type_12_xy ffe709bdb34eee60", &mc_kin_type_12_xy_mechanism},
+    {"mc_kin_type_12_xy 48abd37b1795bc5f", &mc_kin_type_12_xy_mechanism},
     {"p2c_type1 e90aa482585d386b", &p2c_type1_mechanism},
     {"p2c_type2 eebd664511e03bbf", &p2c_type2_mechanism},
     {"p2x_type1 c381730c7667da65", &p2x_type1_mechanism},

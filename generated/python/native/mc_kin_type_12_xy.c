@@ -217,111 +217,21 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* twice the scale, as the sum of both: then cosine and sine agree */
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
-  const double one_by_sum_a1 = 1.0/divisor_of_cos_a1;
-  const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)*one_by_sum_a1;
-  /* rod rear: known part of its vector */
-  const double span_rear_x = -k->link_length_3_by_link_length_2*span_upper_x;
+  const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
+  const double sign_t = sigma_t; /* t: +1 left, -1 right */
   /* sine squared, times the squared scale */
   const double sine_square_a1 = one_less_cos_a1*one_plus_cos_a1;
-  const double root_of_sine_square_a1 = softkin_root(sine_square_a1);
-  const double product_in_ahead_squared_a1 = one_by_sum_a1*root_of_sine_square_a1;
-  /* the triangle of the swing, as long as the machine */
-  const double ahead_squared_a1 = k->machine_scale_squared_times_4*one_by_sum_a1*product_in_ahead_squared_a1
-      *root_of_sine_square_a1;
-  const double sign_t = sigma_t; /* t: +1 left, -1 right */
-  const double sin_swing_a1 = -2.0*product_in_ahead_squared_a1*sign_t;
-  const double one_by_effective_a1 = 1.0/divisor_a1;
-  const double sin_a1_before_a1_for_a2 = one_by_effective_a1
-      *(span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1);
+  const double sin_swing_a1 = -2.0*softkin_root(sine_square_a1)*sign_t/divisor_of_cos_a1;
+  const double sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_a1_before_a1_for_a2 = one_by_effective_a1
-      *(span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1);
-  const double span_rear_y = -k->link_length_3_by_link_length_2*span_upper_y;
-  double sin_a1, cos_a1;
-  if (ahead_squared_a1 > k->machine_scale_squared_times_plane) {
-    sin_a1 = sin_a1_before_a1_for_a2; /* turned so that a2 has a solution */
-    cos_a1 = cos_a1_before_a1_for_a2; /* turned so that a2 has a solution */
-  } else {
-    const double along_a2_before_a1_for_a2 = span_rear_x
-        - k->quotient_in_along_a2_before_a1_for_a2*sin_a1_before_a1_for_a2;
-    const double across_a2_before_a1_for_a2 = k->quotient_in_along_a2_before_a1_for_a2
-        *cos_a1_before_a1_for_a2 - span_rear_y;
-    const double effective_a2_before_a1_for_a2 = sqrt(across_a2_before_a1_for_a2*across_a2_before_a1_for_a2
-        + along_a2_before_a1_for_a2*along_a2_before_a1_for_a2);
-    const double divisor_a2_before_a1_for_a2 =
-        effective_a2_before_a1_for_a2 > k->link_length_5_times_shortest_link ? effective_a2_before_a1_for_a2
-        : 1.0;
-    const double one_less_cos_a2_before_a1_for_a2 = (divisor_a2_before_a1_for_a2
-        + k->link_length_4_plus_link_length_5)
-        *(divisor_a2_before_a1_for_a2 + k->link_length_5_minus_link_length_4);
-    const double one_plus_cos_a2_before_a1_for_a2 = (k->link_length_4_plus_link_length_5
-        - divisor_a2_before_a1_for_a2)*(divisor_a2_before_a1_for_a2 - k->link_length_5_minus_link_length_4);
-    const double end_a1_for_a2 = -k->one_by_link_length_2_squared
-        *(k->sum_in_end_a1_for_a2
-        + (k->link_length_2_squared*span_rear_x - k->product_in_end_a1_for_a2*sin_a1_before_a1_for_a2)
-        *span_rear_x + (k->link_length_2_squared*span_rear_y
-        - k->product_in_end_a1_for_a2*cos_a1_before_a1_for_a2)*span_rear_y);
-    const double arm_x_a1_for_a2 = span_rear_x*k->twice_link_length_5
-        - k->quotient_in_arm_x_a1_for_a2*sin_a1_before_a1_for_a2;
-    const double arm_y_a1_for_a2 = k->quotient_in_arm_x_a1_for_a2*cos_a1_before_a1_for_a2
-        - span_rear_y*k->twice_link_length_5;
-    const double arm_a1_for_a2 = sqrt(arm_x_a1_for_a2*arm_x_a1_for_a2 + arm_y_a1_for_a2*arm_y_a1_for_a2);
-    const double sum_in_value_a1_for_a2 = one_less_cos_a2_before_a1_for_a2 + one_plus_cos_a2_before_a1_for_a2;
-    double value_a1_for_a2, size_a1_for_a2, missing_a1_for_a2;
-    if (sum_in_value_a1_for_a2 > 4.0*arm_a1_for_a2) {
-      value_a1_for_a2 = 2.0*end_a1_for_a2; /* a2 has solutions where this is within its bound */
-      size_a1_for_a2 = 2.0*arm_a1_for_a2;
-      missing_a1_for_a2 = (fabs(end_a1_for_a2) - arm_a1_for_a2)*(arm_a1_for_a2 + fabs(end_a1_for_a2));
-    } else {
-      /* a2 has solutions where this is within its bound */
-      value_a1_for_a2 = one_plus_cos_a2_before_a1_for_a2 - one_less_cos_a2_before_a1_for_a2;
-      size_a1_for_a2 = 1.00000000000025*sum_in_value_a1_for_a2;
-      missing_a1_for_a2 = -one_less_cos_a2_before_a1_for_a2*one_plus_cos_a2_before_a1_for_a2;
-    }
-    if (fabs(value_a1_for_a2) <= size_a1_for_a2) {
-      sin_a1 = sin_a1_before_a1_for_a2; /* turned so that a2 has a solution */
-      cos_a1 = cos_a1_before_a1_for_a2; /* turned so that a2 has a solution */
-    } else {
-      const double arm_x_rate_a1_for_a2 = -k->quotient_in_arm_x_rate_a1_for_a2*cos_a1_before_a1_for_a2;
-      const double arm_y_rate_a1_for_a2 = -k->quotient_in_arm_x_rate_a1_for_a2*sin_a1_before_a1_for_a2;
-      const double end_rate_a1_for_a2 = k->one_by_link_length_2_squared
-          *(k->product_in_end_a1_for_a2*span_rear_x*cos_a1_before_a1_for_a2
-          - k->product_in_end_a1_for_a2*span_rear_y*sin_a1_before_a1_for_a2);
-      const double linear_a1_for_a2 = arm_x_a1_for_a2*arm_x_rate_a1_for_a2
-          + arm_y_a1_for_a2*arm_y_rate_a1_for_a2 - end_a1_for_a2*end_rate_a1_for_a2;
-      const double square_a1_for_a2 = arm_x_rate_a1_for_a2*arm_x_rate_a1_for_a2
-          + arm_y_rate_a1_for_a2*arm_y_rate_a1_for_a2 - end_rate_a1_for_a2*end_rate_a1_for_a2;
-      const double beside_a1 = k->machine_scale*cos_swing_a1;
-      const double way_a1_for_a2 = fabs(linear_a1_for_a2) > 0.0 ? (linear_a1_for_a2 > 0.0 ? 1.0 : -1.0)
-          : (-beside_a1*sign_t >= 0.0 ? 1.0 : -1.0);
-      const double divisor_a1_for_a2 = linear_a1_for_a2
-          + softkin_root(linear_a1_for_a2*linear_a1_for_a2 + missing_a1_for_a2*square_a1_for_a2)
-          *way_a1_for_a2;
-      /* turn of a1 that makes the arm of a2 long enough */
-      const double turn_a1_for_a2 = fabs(divisor_a1_for_a2) > 0.0
-          ? missing_a1_for_a2/(fabs(divisor_a1_for_a2) > 0.0 ? divisor_a1_for_a2 : 1.0) : 0.0;
-      const double turned_length_a1_for_a2 = softkin_root(1.0 + turn_a1_for_a2*turn_a1_for_a2);
-      const double turned_sin_a1_for_a2 = (sin_a1_before_a1_for_a2 + turn_a1_for_a2*cos_a1_before_a1_for_a2)
-          /turned_length_a1_for_a2;
-      const double turned_cos_a1_for_a2 = (cos_a1_before_a1_for_a2 - turn_a1_for_a2*sin_a1_before_a1_for_a2)
-          /turned_length_a1_for_a2;
-      /* residual of the equation of a1 */
-      const double turned_cost_a1_for_a2 = fabs(beside_a1
-          - k->machine_scale*one_by_effective_a1
-          *(span_upper_x*turned_sin_a1_for_a2 + span_upper_y*turned_cos_a1_for_a2));
-      if (turned_cost_a1_for_a2 > k->machine_scale_times_rounding) {
-        sin_a1 = sin_a1_before_a1_for_a2; /* turned so that a2 has a solution */
-        cos_a1 = cos_a1_before_a1_for_a2; /* turned so that a2 has a solution */
-      } else {
-        sin_a1 = turned_sin_a1_for_a2; /* turned so that a2 has a solution */
-        cos_a1 = turned_cos_a1_for_a2; /* turned so that a2 has a solution */
-      }
-    }
-  }
+  const double cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1;
   const double pivot_upper_x = -k->link_length_1*sin_a1; /* rod upper: centre about which it swings */
   const double pivot_upper_y = -k->link_length_1*cos_a1;
-  const double along_a2 = span_rear_x - k->quotient_in_along_a2_before_a1_for_a2*sin_a1;
-  const double across_a2 = k->quotient_in_along_a2_before_a1_for_a2*cos_a1 - span_rear_y;
+  /* rod rear: known part of its vector */
+  const double span_rear_x = -k->link_length_3_by_link_length_2*span_upper_x;
+  const double along_a2 = span_rear_x - k->quotient_in_along_a2*sin_a1;
+  const double span_rear_y = -k->link_length_3_by_link_length_2*span_upper_y;
+  const double across_a2 = k->quotient_in_along_a2*cos_a1 - span_rear_y;
   /* effective length of the arm that a2 turns */
   const double effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2);
   const double divisor_a2 = effective_a2 > k->link_length_5_times_shortest_link ? effective_a2 : 1.0;
@@ -691,27 +601,26 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
   const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
+  const double cos_swing_a1_times_span_upper_x = span_upper_x*cos_swing_a1;
   /* sine squared, times the squared scale */
   const double sine_square_a1 = one_less_cos_a1*one_plus_cos_a1;
-  const double root_of_sine_square_a1_by_sum_a1 = softkin_root(sine_square_a1)/divisor_of_cos_a1;
-  const double cos_swing_a1_times_span_upper_x = span_upper_x*cos_swing_a1;
-  const double sin_swing_a1_right = 2.0*root_of_sine_square_a1_by_sum_a1;
+  const double sin_swing_a1_right = 2.0*softkin_root(sine_square_a1)/divisor_of_cos_a1;
   const double sin_swing_a1_right_times_span_upper_y = span_upper_y*sin_swing_a1_right;
-  const double sin_a1_before_a1_for_a2_left = (cos_swing_a1_times_span_upper_x
-      - sin_swing_a1_right_times_span_upper_y)/divisor_a1;
+  const double sin_a1_left = (cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y)
+      /divisor_a1;
   const double cos_swing_a1_times_span_upper_y = span_upper_y*cos_swing_a1;
   const double sin_swing_a1_right_times_span_upper_x = span_upper_x*sin_swing_a1_right;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_a1_before_a1_for_a2_left = (cos_swing_a1_times_span_upper_y
-      + sin_swing_a1_right_times_span_upper_x)/divisor_a1;
+  const double cos_a1_left = (cos_swing_a1_times_span_upper_y + sin_swing_a1_right_times_span_upper_x)
+      /divisor_a1;
   /* rod upper: centre about which it swings */
-  const double pivot_upper_x_left = -k->link_length_1*sin_a1_before_a1_for_a2_left;
-  const double pivot_upper_y_left = -k->link_length_1*cos_a1_before_a1_for_a2_left;
+  const double pivot_upper_x_left = -k->link_length_1*sin_a1_left;
+  const double pivot_upper_y_left = -k->link_length_1*cos_a1_left;
   /* rod rear: known part of its vector */
   const double span_rear_x = -k->link_length_3_by_link_length_2*span_upper_x;
-  const double along_a2_left = span_rear_x - quotient_in_along_a2_left*sin_a1_before_a1_for_a2_left;
+  const double along_a2_left = span_rear_x - quotient_in_along_a2_left*sin_a1_left;
   const double span_rear_y = -k->link_length_3_by_link_length_2*span_upper_y;
-  const double across_a2_left = quotient_in_along_a2_left*cos_a1_before_a1_for_a2_left - span_rear_y;
+  const double across_a2_left = quotient_in_along_a2_left*cos_a1_left - span_rear_y;
   /* effective length of the arm that a2 turns */
   const double effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left);
   const double divisor_a2_left = effective_a2_left > k->link_length_5_times_shortest_link ? effective_a2_left
@@ -735,7 +644,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double cos_a2_left_left = (along_a2_left_times_cos_swing_a2_left + product_in_cos_a2_left_left)
       /divisor_a2_left;
   const double product_in_scaled_pivot_rear_x_left_left = quotient_in_scaled_pivot_rear_y_left_left
-      *sin_a1_before_a1_for_a2_left;
+      *sin_a1_left;
   /* rod rear: centre about which it swings */
   const double scaled_pivot_rear_x_left_left = product_in_scaled_pivot_rear_x_left_left
       - k->quotient_in_scaled_pivot_rear_y_2*cos_a2_left_left;
@@ -744,7 +653,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_a2_left_left = (across_a2_left_times_cos_swing_a2_left - product_in_sin_a2_left_left)
       /divisor_a2_left;
   const double product_in_scaled_pivot_rear_y_left_left = quotient_in_scaled_pivot_rear_y_left_left
-      *cos_a1_before_a1_for_a2_left;
+      *cos_a1_left;
   const double scaled_pivot_rear_y_left_left = product_in_scaled_pivot_rear_y_left_left
       + k->quotient_in_scaled_pivot_rear_y_2*sin_a2_left_left;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
@@ -757,16 +666,16 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       /divisor_a2_left;
   const double scaled_pivot_rear_y_left_right = product_in_scaled_pivot_rear_y_left_left
       + k->quotient_in_scaled_pivot_rear_y_2*sin_a2_left_right;
-  const double sin_a1_before_a1_for_a2_right = (cos_swing_a1_times_span_upper_x
-      + sin_swing_a1_right_times_span_upper_y)/divisor_a1;
+  const double sin_a1_right = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y)
+      /divisor_a1;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_a1_before_a1_for_a2_right = (cos_swing_a1_times_span_upper_y
-      - sin_swing_a1_right_times_span_upper_x)/divisor_a1;
+  const double cos_a1_right = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x)
+      /divisor_a1;
   /* rod upper: centre about which it swings */
-  const double pivot_upper_x_right = -k->link_length_1*sin_a1_before_a1_for_a2_right;
-  const double pivot_upper_y_right = -k->link_length_1*cos_a1_before_a1_for_a2_right;
-  const double along_a2_right = span_rear_x - quotient_in_along_a2_left*sin_a1_before_a1_for_a2_right;
-  const double across_a2_right = quotient_in_along_a2_left*cos_a1_before_a1_for_a2_right - span_rear_y;
+  const double pivot_upper_x_right = -k->link_length_1*sin_a1_right;
+  const double pivot_upper_y_right = -k->link_length_1*cos_a1_right;
+  const double along_a2_right = span_rear_x - quotient_in_along_a2_left*sin_a1_right;
+  const double across_a2_right = quotient_in_along_a2_left*cos_a1_right - span_rear_y;
   /* effective length of the arm that a2 turns */
   const double effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right);
   const double divisor_a2_right = effective_a2_right > k->link_length_5_times_shortest_link
@@ -790,7 +699,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double cos_a2_right_left = (along_a2_right_times_cos_swing_a2_right + product_in_cos_a2_right_left)
       /divisor_a2_right;
   const double product_in_scaled_pivot_rear_x_right_left = quotient_in_scaled_pivot_rear_y_left_left
-      *sin_a1_before_a1_for_a2_right;
+      *sin_a1_right;
   /* rod rear: centre about which it swings */
   const double scaled_pivot_rear_x_right_left = product_in_scaled_pivot_rear_x_right_left
       - k->quotient_in_scaled_pivot_rear_y_2*cos_a2_right_left;
@@ -799,7 +708,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_a2_right_left = (across_a2_right_times_cos_swing_a2_right - product_in_sin_a2_right_left)
       /divisor_a2_right;
   const double product_in_scaled_pivot_rear_y_right_left = quotient_in_scaled_pivot_rear_y_left_left
-      *cos_a1_before_a1_for_a2_right;
+      *cos_a1_right;
   const double scaled_pivot_rear_y_right_left = product_in_scaled_pivot_rear_y_right_left
       + k->quotient_in_scaled_pivot_rear_y_2*sin_a2_right_left;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
@@ -848,12 +757,6 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(fabs(cos_swing_a1) <= 1.0000000000005)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 4);
   }
-  /* the triangle of the swing, as long as the machine */
-  const double ahead_squared_a1 = k->machine_scale_squared_times_4*root_of_sine_square_a1_by_sum_a1
-      *root_of_sine_square_a1_by_sum_a1;
-  if (!(ahead_squared_a1 > k->machine_scale_squared_times_plane)) {
-    return false;
-  }
   int refusal_left_left, refusal_left_right;
   if (effective_a2_left > k->link_length_5_times_shortest_link
       && fabs(cos_swing_a2_left) <= 1.0000000000005) {
@@ -877,8 +780,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
     refusal_left_right = 3;
   }
-  const double axis_a1_left = k->offset_a1
-      + softkin_angle_of(sin_a1_before_a1_for_a2_left, cos_a1_before_a1_for_a2_left)*SOFTKIN_RADIAN;
+  const double axis_a1_left = k->offset_a1 + softkin_angle_of(sin_a1_left, cos_a1_left)*SOFTKIN_RADIAN;
   const double axis_a2_left_left = k->offset_a2
       + softkin_angle_of(sin_a2_left_left, cos_a2_left_left)*SOFTKIN_RADIAN;
   const double axis_a2_left_right = k->offset_a2
@@ -906,8 +808,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
     refusal_right_right = 3;
   }
-  const double axis_a1_right = k->offset_a1
-      + softkin_angle_of(sin_a1_before_a1_for_a2_right, cos_a1_before_a1_for_a2_right)*SOFTKIN_RADIAN;
+  const double axis_a1_right = k->offset_a1 + softkin_angle_of(sin_a1_right, cos_a1_right)*SOFTKIN_RADIAN;
   const double axis_a2_right_left = k->offset_a2
       + softkin_angle_of(sin_a2_right_left, cos_a2_right_left)*SOFTKIN_RADIAN;
   const double axis_a2_right_right = k->offset_a2
@@ -974,8 +875,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double link_length_1_times_shortest_link = 1e-9*p->link_length_1;
   const double link_length_5_times_shortest_link = 1e-9*p->link_length_5;
-  const double machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale;
-  const double machine_scale_times_rounding = 1e-12*machine_scale;
   const double link_length_3_by_link_length_2 = p->link_length_3/p->link_length_2;
   const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
   const double link_length_2_by_link_length_3 = p->link_length_2/p->link_length_3;
@@ -988,27 +887,11 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double quotient_in_scaled_pivot_rear_y_2 = p->link_length_2*p->link_length_5/p->link_length_3;
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
-  const double machine_scale_squared_times_4 = 4.0*machine_scale*machine_scale;
   const double link_length_5_minus_link_length_4 = p->link_length_5 - p->link_length_4;
   const double link_length_4_plus_link_length_5 = p->link_length_4 + p->link_length_5;
-  const double link_length_2_squared = p->link_length_2*p->link_length_2;
-  const double sum_in_end_a1_for_a2 = p->link_length_1*p->link_length_1*p->link_length_2*p->link_length_2
-      + 2.0*p->link_length_1*p->link_length_1*p->link_length_2*p->link_length_3
-      + p->link_length_1*p->link_length_1*p->link_length_3*p->link_length_3
-      + p->link_length_2*p->link_length_2*p->link_length_5*p->link_length_5
-      - p->link_length_2*p->link_length_2*p->link_length_4*p->link_length_4;
-  const double quotient_in_arm_x_rate_a1_for_a2 = (2.0*p->link_length_1*p->link_length_2*p->link_length_5
-      + 2.0*p->link_length_1*p->link_length_3*p->link_length_5)/p->link_length_2;
   const double quotient_in_type2_arms_aligned = assembly_sign*p->link_length_3
       /(p->link_length_4*p->link_length_2*p->link_length_2);
-  const double product_in_end_a1_for_a2 = 2.0*p->link_length_1*p->link_length_2
-      *link_length_2_plus_link_length_3;
-  const double one_by_link_length_2_squared = 1.0/link_length_2_squared;
-  const double quotient_in_along_a2_before_a1_for_a2 = p->link_length_1*link_length_2_plus_link_length_3
-      /p->link_length_2;
-  const double quotient_in_arm_x_a1_for_a2 = 2.0*p->link_length_1*link_length_2_plus_link_length_3
-      *p->link_length_5/p->link_length_2;
-  const double twice_link_length_5 = 2.0*p->link_length_5;
+  const double quotient_in_along_a2 = p->link_length_1*link_length_2_plus_link_length_3/p->link_length_2;
   const double quotient_in_margin_arms_aligned = p->link_length_3
       /(p->link_length_4*p->link_length_2*p->link_length_2);
   const double twice_link_length_1 = 2.0*p->link_length_1;
@@ -1016,6 +899,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double product_in_slope_2_by_x = p->link_length_1*link_length_3_by_link_length_2_plus_one;
   const double link_length_3_times_2_by_link_length_2 = 2.0*p->link_length_3/p->link_length_2;
   const double product_in_slope_2_by_a1 = 2.0*p->link_length_1*link_length_3_by_link_length_2_plus_one;
+  const double twice_link_length_5 = 2.0*p->link_length_5;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1032,7 +916,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a1 = p->offset_a1;
   made.offset_a2 = p->offset_a2;
   made.min_type2_margin = p->min_type2_margin;
-  made.machine_scale = machine_scale;
   made.assembly_sign = assembly_sign;
   made.product_in_normal_divisor = product_in_normal_divisor;
   made.link_length_2_squared_times_rounding = link_length_2_squared_times_rounding;
@@ -1042,8 +925,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.machine_scale_times_plane = machine_scale_times_plane;
   made.link_length_1_times_shortest_link = link_length_1_times_shortest_link;
   made.link_length_5_times_shortest_link = link_length_5_times_shortest_link;
-  made.machine_scale_squared_times_plane = machine_scale_squared_times_plane;
-  made.machine_scale_times_rounding = machine_scale_times_rounding;
   made.link_length_3_by_link_length_2 = link_length_3_by_link_length_2;
   made.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle;
   made.link_length_2_by_link_length_3 = link_length_2_by_link_length_3;
@@ -1055,23 +936,16 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.quotient_in_scaled_pivot_rear_y_2 = quotient_in_scaled_pivot_rear_y_2;
   made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
-  made.machine_scale_squared_times_4 = machine_scale_squared_times_4;
   made.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4;
   made.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5;
-  made.link_length_2_squared = link_length_2_squared;
-  made.sum_in_end_a1_for_a2 = sum_in_end_a1_for_a2;
-  made.quotient_in_arm_x_rate_a1_for_a2 = quotient_in_arm_x_rate_a1_for_a2;
   made.quotient_in_type2_arms_aligned = quotient_in_type2_arms_aligned;
-  made.product_in_end_a1_for_a2 = product_in_end_a1_for_a2;
-  made.one_by_link_length_2_squared = one_by_link_length_2_squared;
-  made.quotient_in_along_a2_before_a1_for_a2 = quotient_in_along_a2_before_a1_for_a2;
-  made.quotient_in_arm_x_a1_for_a2 = quotient_in_arm_x_a1_for_a2;
-  made.twice_link_length_5 = twice_link_length_5;
+  made.quotient_in_along_a2 = quotient_in_along_a2;
   made.quotient_in_margin_arms_aligned = quotient_in_margin_arms_aligned;
   made.twice_link_length_1 = twice_link_length_1;
   made.product_in_slope_2_by_x = product_in_slope_2_by_x;
   made.link_length_3_times_2_by_link_length_2 = link_length_3_times_2_by_link_length_2;
   made.product_in_slope_2_by_a1 = product_in_slope_2_by_a1;
+  made.twice_link_length_5 = twice_link_length_5;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(mc_kin_type_12_xy_machine *)machine = made;
   return SOFTKIN_OK;

@@ -736,6 +736,7 @@ softkin_status softkin_inverse_all(const softkin_mechanism *kind, const void *ma
   double line[SOFTKIN_MOST_TOGETHER*SOFTKIN_MOST_AXES];
   softkin_status outcomes[SOFTKIN_MOST_TOGETHER];
   const bool is_together = all == SOFTKIN_OK && !is_searched
+      && 1 << kind->branch_count <= SOFTKIN_MOST_TOGETHER
       && together(kind, machine, &given, outcomes, line);
   for (int slot = 0; slot < 1 << kind->branch_count; slot += 1) {
     int8_t signs[SOFTKIN_MOST_BRANCHES], bytes[SOFTKIN_MOST_BRANCHES + SOFTKIN_MOST_AXES] = {0};

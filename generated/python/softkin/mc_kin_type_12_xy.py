@@ -21,9 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 26 additions, 37 multiplications, 1 divisions, 2 square roots, 4 sines
-    inverse: 51 additions, 51 multiplications, 8 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 164 additions, 130 multiplications, 22 divisions, 8 square roots, 6 sines
-    a branch at a singular pose, more: 29 additions, 48 multiplications, 3 divisions, 4 square roots, 0 sines
+    inverse: 51 additions, 44 multiplications, 10 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 164 additions, 121 multiplications, 27 divisions, 9 square roots, 6 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -105,8 +104,6 @@ class Constants:
         machine_scale_times_plane = 1e-6 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_5_times_shortest_link = 1e-9 * link_length_5
-        machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
-        machine_scale_times_rounding = 1e-12 * machine_scale
         link_length_3_by_link_length_2 = link_length_3 / link_length_2
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         link_length_2_by_link_length_3 = link_length_2 / link_length_3
@@ -119,37 +116,20 @@ class Constants:
         quotient_in_scaled_pivot_rear_y_2 = link_length_2 * link_length_5 / link_length_3
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        machine_scale_squared_times_4 = 4.0 * machine_scale * machine_scale
         link_length_5_minus_link_length_4 = link_length_5 - link_length_4
         link_length_4_plus_link_length_5 = link_length_4 + link_length_5
-        link_length_2_squared = link_length_2 * link_length_2
-        sum_in_end_a1_for_a2 = (
-            link_length_1 * link_length_1 * link_length_2 * link_length_2
-            + 2.0 * link_length_1 * link_length_1 * link_length_2 * link_length_3
-            + link_length_1 * link_length_1 * link_length_3 * link_length_3
-            + link_length_2 * link_length_2 * link_length_5 * link_length_5
-            - link_length_2 * link_length_2 * link_length_4 * link_length_4
-        )
-        quotient_in_arm_x_rate_a1_for_a2 = (
-            2.0 * link_length_1 * link_length_2 * link_length_5 + 2.0 * link_length_1 * link_length_3 * link_length_5
-        ) / link_length_2
         quotient_in_type2_arms_aligned = assembly_sign * link_length_3 / (link_length_4 * link_length_2 * link_length_2)
-        product_in_end_a1_for_a2 = 2.0 * link_length_1 * link_length_2 * link_length_2_plus_link_length_3
-        one_by_link_length_2_squared = 1.0 / link_length_2_squared
-        quotient_in_along_a2_before_a1_for_a2 = link_length_1 * link_length_2_plus_link_length_3 / link_length_2
-        quotient_in_arm_x_a1_for_a2 = (
-            2.0 * link_length_1 * link_length_2_plus_link_length_3 * link_length_5 / link_length_2
-        )
-        twice_link_length_5 = 2.0 * link_length_5
+        quotient_in_along_a2 = link_length_1 * link_length_2_plus_link_length_3 / link_length_2
         quotient_in_margin_arms_aligned = link_length_3 / (link_length_4 * link_length_2 * link_length_2)
         twice_link_length_1 = 2.0 * link_length_1
         link_length_3_by_link_length_2_plus_one = 1.0 + link_length_3_by_link_length_2
         product_in_slope_2_by_x = link_length_1 * link_length_3_by_link_length_2_plus_one
         link_length_3_times_2_by_link_length_2 = 2.0 * link_length_3 / link_length_2
         product_in_slope_2_by_a1 = 2.0 * link_length_1 * link_length_3_by_link_length_2_plus_one
+        twice_link_length_5 = 2.0 * link_length_5
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
         self.link_length_5, self.swap_xy, self.offset_a1, self.offset_a2 = link_length_5, swap_xy, offset_a1, offset_a2
-        self.min_type2_margin, self.machine_scale, self.assembly_sign = min_type2_margin, machine_scale, assembly_sign
+        self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
         self.product_in_normal_divisor = product_in_normal_divisor
         self.link_length_2_squared_times_rounding = link_length_2_squared_times_rounding
         self.link_length_2_plus_radius_2 = link_length_2_plus_radius_2
@@ -158,8 +138,6 @@ class Constants:
         self.machine_scale_times_plane = machine_scale_times_plane
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_5_times_shortest_link = link_length_5_times_shortest_link
-        self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
-        self.machine_scale_times_rounding = machine_scale_times_rounding
         self.link_length_3_by_link_length_2 = link_length_3_by_link_length_2
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
         self.link_length_2_by_link_length_3 = link_length_2_by_link_length_3
@@ -169,20 +147,14 @@ class Constants:
         self.quotient_in_scaled_pivot_rear_y_2 = quotient_in_scaled_pivot_rear_y_2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
-        self.machine_scale_squared_times_4 = machine_scale_squared_times_4
         self.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4
         self.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5
-        self.link_length_2_squared, self.sum_in_end_a1_for_a2 = link_length_2_squared, sum_in_end_a1_for_a2
-        self.quotient_in_arm_x_rate_a1_for_a2 = quotient_in_arm_x_rate_a1_for_a2
         self.quotient_in_type2_arms_aligned = quotient_in_type2_arms_aligned
-        self.product_in_end_a1_for_a2 = product_in_end_a1_for_a2
-        self.one_by_link_length_2_squared = one_by_link_length_2_squared
-        self.quotient_in_along_a2_before_a1_for_a2 = quotient_in_along_a2_before_a1_for_a2
-        self.quotient_in_arm_x_a1_for_a2, self.twice_link_length_5 = quotient_in_arm_x_a1_for_a2, twice_link_length_5
+        self.quotient_in_along_a2 = quotient_in_along_a2
         self.quotient_in_margin_arms_aligned = quotient_in_margin_arms_aligned
         self.twice_link_length_1, self.product_in_slope_2_by_x = twice_link_length_1, product_in_slope_2_by_x
         self.link_length_3_times_2_by_link_length_2 = link_length_3_times_2_by_link_length_2
-        self.product_in_slope_2_by_a1 = product_in_slope_2_by_a1
+        self.product_in_slope_2_by_a1, self.twice_link_length_5 = product_in_slope_2_by_a1, twice_link_length_5
 
 
 class KinType12XY(OffsetKinematics):
@@ -194,7 +166,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
-    KEY = "mc_kin_type_12_xy ffe709bdb34eee60"
+    KEY = "mc_kin_type_12_xy 48abd37b1795bc5f"
     AXES = (
         Axis(
             name="A1",
@@ -414,26 +386,17 @@ class KinType12XY(OffsetKinematics):
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
-        link_length_2_squared = k.link_length_2_squared
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
-        link_length_5_times_shortest_link, machine_scale = k.link_length_5_times_shortest_link, k.machine_scale
-        machine_scale_squared_times_4 = k.machine_scale_squared_times_4
-        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
-        machine_scale_times_plane = k.machine_scale_times_plane
-        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        one_by_link_length_2_squared = k.one_by_link_length_2_squared
-        product_in_end_a1_for_a2 = k.product_in_end_a1_for_a2
-        quotient_in_along_a2_before_a1_for_a2 = k.quotient_in_along_a2_before_a1_for_a2
-        quotient_in_arm_x_a1_for_a2 = k.quotient_in_arm_x_a1_for_a2
-        quotient_in_arm_x_rate_a1_for_a2 = k.quotient_in_arm_x_rate_a1_for_a2
+        quotient_in_along_a2 = k.quotient_in_along_a2
         quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
         quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
         quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
-        single_a2, sum_in_end_a1_for_a2, swap_xy = k.single_a2, k.sum_in_end_a1_for_a2, k.swap_xy
-        twice_link_length_5 = k.twice_link_length_5
+        single_a2, swap_xy = k.single_a2, k.swap_xy
         if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -461,126 +424,18 @@ class KinType12XY(OffsetKinematics):
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
-        one_by_sum_a1 = 1.0 / divisor_of_cos_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) * one_by_sum_a1
-        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
-        root_of_sine_square_a1 = sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0
-        product_in_ahead_squared_a1 = one_by_sum_a1 * root_of_sine_square_a1
-        # the triangle of the swing, as long as the machine
-        ahead_squared_a1 = (
-            machine_scale_squared_times_4 * one_by_sum_a1 * product_in_ahead_squared_a1 * root_of_sine_square_a1
-        )
-        sin_swing_a1 = -2.0 * sigma_t * product_in_ahead_squared_a1
-        one_by_effective_a1 = 1.0 / divisor_a1
-        sin_a1_before_a1_for_a2 = one_by_effective_a1 * (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1)
+        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
+        sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1_before_a1_for_a2 = one_by_effective_a1 * (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1)
-        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        # turned so that a2 has a solution
-        if ahead_squared_a1 > machine_scale_squared_times_plane:
-            sin_a1 = sin_a1_before_a1_for_a2
-            cos_a1 = cos_a1_before_a1_for_a2
-        else:
-            along_a2_before_a1_for_a2 = span_rear_x - quotient_in_along_a2_before_a1_for_a2 * sin_a1_before_a1_for_a2
-            across_a2_before_a1_for_a2 = quotient_in_along_a2_before_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y
-            effective_a2_before_a1_for_a2 = sqrt(
-                across_a2_before_a1_for_a2 * across_a2_before_a1_for_a2
-                + along_a2_before_a1_for_a2 * along_a2_before_a1_for_a2
-            )
-            divisor_a2_before_a1_for_a2 = (
-                effective_a2_before_a1_for_a2
-                if effective_a2_before_a1_for_a2 > link_length_5_times_shortest_link
-                else 1.0
-            )
-            one_less_cos_a2_before_a1_for_a2 = (divisor_a2_before_a1_for_a2 + link_length_4_plus_link_length_5) * (
-                divisor_a2_before_a1_for_a2 + link_length_5_minus_link_length_4
-            )
-            one_plus_cos_a2_before_a1_for_a2 = (link_length_4_plus_link_length_5 - divisor_a2_before_a1_for_a2) * (
-                divisor_a2_before_a1_for_a2 - link_length_5_minus_link_length_4
-            )
-            end_a1_for_a2 = -one_by_link_length_2_squared * (
-                sum_in_end_a1_for_a2
-                + (link_length_2_squared * span_rear_x - product_in_end_a1_for_a2 * sin_a1_before_a1_for_a2)
-                * span_rear_x
-                + (link_length_2_squared * span_rear_y - product_in_end_a1_for_a2 * cos_a1_before_a1_for_a2)
-                * span_rear_y
-            )
-            arm_x_a1_for_a2 = span_rear_x * twice_link_length_5 - quotient_in_arm_x_a1_for_a2 * sin_a1_before_a1_for_a2
-            arm_y_a1_for_a2 = quotient_in_arm_x_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y * twice_link_length_5
-            arm_a1_for_a2 = sqrt(arm_x_a1_for_a2 * arm_x_a1_for_a2 + arm_y_a1_for_a2 * arm_y_a1_for_a2)
-            sum_in_value_a1_for_a2 = one_less_cos_a2_before_a1_for_a2 + one_plus_cos_a2_before_a1_for_a2
-            # a2 has solutions where this is within its bound
-            if sum_in_value_a1_for_a2 > 4.0 * arm_a1_for_a2:
-                value_a1_for_a2 = 2.0 * end_a1_for_a2
-                size_a1_for_a2 = 2.0 * arm_a1_for_a2
-                missing_a1_for_a2 = (abs(end_a1_for_a2) - arm_a1_for_a2) * (arm_a1_for_a2 + abs(end_a1_for_a2))
-            else:
-                value_a1_for_a2 = one_plus_cos_a2_before_a1_for_a2 - one_less_cos_a2_before_a1_for_a2
-                size_a1_for_a2 = 1.00000000000025 * sum_in_value_a1_for_a2
-                missing_a1_for_a2 = -one_less_cos_a2_before_a1_for_a2 * one_plus_cos_a2_before_a1_for_a2
-            # turned so that a2 has a solution
-            if abs(value_a1_for_a2) <= size_a1_for_a2:
-                sin_a1 = sin_a1_before_a1_for_a2
-                cos_a1 = cos_a1_before_a1_for_a2
-            else:
-                arm_x_rate_a1_for_a2 = -quotient_in_arm_x_rate_a1_for_a2 * cos_a1_before_a1_for_a2
-                arm_y_rate_a1_for_a2 = -quotient_in_arm_x_rate_a1_for_a2 * sin_a1_before_a1_for_a2
-                end_rate_a1_for_a2 = one_by_link_length_2_squared * (
-                    product_in_end_a1_for_a2 * span_rear_x * cos_a1_before_a1_for_a2
-                    - product_in_end_a1_for_a2 * span_rear_y * sin_a1_before_a1_for_a2
-                )
-                linear_a1_for_a2 = (
-                    arm_x_a1_for_a2 * arm_x_rate_a1_for_a2
-                    + arm_y_a1_for_a2 * arm_y_rate_a1_for_a2
-                    - end_a1_for_a2 * end_rate_a1_for_a2
-                )
-                square_a1_for_a2 = (
-                    arm_x_rate_a1_for_a2 * arm_x_rate_a1_for_a2
-                    + arm_y_rate_a1_for_a2 * arm_y_rate_a1_for_a2
-                    - end_rate_a1_for_a2 * end_rate_a1_for_a2
-                )
-                beside_a1 = machine_scale * cos_swing_a1
-                way_a1_for_a2 = (
-                    (1.0 if linear_a1_for_a2 > 0.0 else -1.0)
-                    if abs(linear_a1_for_a2) > 0.0
-                    else (1.0 if -sigma_t * beside_a1 >= 0.0 else -1.0)
-                )
-                divisor_a1_for_a2 = (
-                    linear_a1_for_a2
-                    + root(linear_a1_for_a2 * linear_a1_for_a2 + missing_a1_for_a2 * square_a1_for_a2) * way_a1_for_a2
-                )
-                # turn of a1 that makes the arm of a2 long enough
-                turn_a1_for_a2 = (
-                    missing_a1_for_a2 / (divisor_a1_for_a2 if abs(divisor_a1_for_a2) > 0.0 else 1.0)
-                    if abs(divisor_a1_for_a2) > 0.0
-                    else 0.0
-                )
-                turned_length_a1_for_a2 = root(1.0 + turn_a1_for_a2 * turn_a1_for_a2)
-                turned_sin_a1_for_a2 = (
-                    sin_a1_before_a1_for_a2 + turn_a1_for_a2 * cos_a1_before_a1_for_a2
-                ) / turned_length_a1_for_a2
-                turned_cos_a1_for_a2 = (
-                    cos_a1_before_a1_for_a2 - turn_a1_for_a2 * sin_a1_before_a1_for_a2
-                ) / turned_length_a1_for_a2
-                # residual of the equation of a1
-                turned_cost_a1_for_a2 = abs(
-                    beside_a1
-                    - machine_scale
-                    * one_by_effective_a1
-                    * (span_upper_x * turned_sin_a1_for_a2 + span_upper_y * turned_cos_a1_for_a2)
-                )
-                # turned so that a2 has a solution
-                if turned_cost_a1_for_a2 > machine_scale_times_rounding:
-                    sin_a1 = sin_a1_before_a1_for_a2
-                    cos_a1 = cos_a1_before_a1_for_a2
-                else:
-                    sin_a1 = turned_sin_a1_for_a2
-                    cos_a1 = turned_cos_a1_for_a2
+        cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         pivot_upper_y = -link_length_1 * cos_a1
-        along_a2 = span_rear_x - quotient_in_along_a2_before_a1_for_a2 * sin_a1
-        across_a2 = quotient_in_along_a2_before_a1_for_a2 * cos_a1 - span_rear_y
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        along_a2 = span_rear_x - quotient_in_along_a2 * sin_a1
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
+        across_a2 = quotient_in_along_a2 * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -904,26 +759,17 @@ class KinType12XY(OffsetKinematics):
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
-        link_length_2_squared = k.link_length_2_squared
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
-        link_length_5_times_shortest_link, machine_scale = k.link_length_5_times_shortest_link, k.machine_scale
-        machine_scale_squared_times_4 = k.machine_scale_squared_times_4
-        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
-        machine_scale_times_plane = k.machine_scale_times_plane
-        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        one_by_link_length_2_squared = k.one_by_link_length_2_squared
-        product_in_end_a1_for_a2 = k.product_in_end_a1_for_a2
-        quotient_in_along_a2_before_a1_for_a2 = k.quotient_in_along_a2_before_a1_for_a2
-        quotient_in_arm_x_a1_for_a2 = k.quotient_in_arm_x_a1_for_a2
-        quotient_in_arm_x_rate_a1_for_a2 = k.quotient_in_arm_x_rate_a1_for_a2
+        quotient_in_along_a2 = k.quotient_in_along_a2
         quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
         quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
         quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
-        single_a2, sum_in_end_a1_for_a2, swap_xy = k.single_a2, k.sum_in_end_a1_for_a2, k.swap_xy
-        twice_link_length_5 = k.twice_link_length_5
+        single_a2, swap_xy = k.single_a2, k.swap_xy
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -953,126 +799,18 @@ class KinType12XY(OffsetKinematics):
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
-        one_by_sum_a1 = 1.0 / divisor_of_cos_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) * one_by_sum_a1
-        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
-        root_of_sine_square_a1 = sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0
-        product_in_ahead_squared_a1 = one_by_sum_a1 * root_of_sine_square_a1
-        # the triangle of the swing, as long as the machine
-        ahead_squared_a1 = (
-            machine_scale_squared_times_4 * one_by_sum_a1 * product_in_ahead_squared_a1 * root_of_sine_square_a1
-        )
-        sin_swing_a1 = -2.0 * sigma_t * product_in_ahead_squared_a1
-        one_by_effective_a1 = 1.0 / divisor_a1
-        sin_a1_before_a1_for_a2 = one_by_effective_a1 * (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1)
+        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
+        sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1_before_a1_for_a2 = one_by_effective_a1 * (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1)
-        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        # turned so that a2 has a solution
-        if ahead_squared_a1 > machine_scale_squared_times_plane:
-            sin_a1 = sin_a1_before_a1_for_a2
-            cos_a1 = cos_a1_before_a1_for_a2
-        else:
-            along_a2_before_a1_for_a2 = span_rear_x - quotient_in_along_a2_before_a1_for_a2 * sin_a1_before_a1_for_a2
-            across_a2_before_a1_for_a2 = quotient_in_along_a2_before_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y
-            effective_a2_before_a1_for_a2 = sqrt(
-                across_a2_before_a1_for_a2 * across_a2_before_a1_for_a2
-                + along_a2_before_a1_for_a2 * along_a2_before_a1_for_a2
-            )
-            divisor_a2_before_a1_for_a2 = (
-                effective_a2_before_a1_for_a2
-                if effective_a2_before_a1_for_a2 > link_length_5_times_shortest_link
-                else 1.0
-            )
-            one_less_cos_a2_before_a1_for_a2 = (divisor_a2_before_a1_for_a2 + link_length_4_plus_link_length_5) * (
-                divisor_a2_before_a1_for_a2 + link_length_5_minus_link_length_4
-            )
-            one_plus_cos_a2_before_a1_for_a2 = (link_length_4_plus_link_length_5 - divisor_a2_before_a1_for_a2) * (
-                divisor_a2_before_a1_for_a2 - link_length_5_minus_link_length_4
-            )
-            end_a1_for_a2 = -one_by_link_length_2_squared * (
-                sum_in_end_a1_for_a2
-                + (link_length_2_squared * span_rear_x - product_in_end_a1_for_a2 * sin_a1_before_a1_for_a2)
-                * span_rear_x
-                + (link_length_2_squared * span_rear_y - product_in_end_a1_for_a2 * cos_a1_before_a1_for_a2)
-                * span_rear_y
-            )
-            arm_x_a1_for_a2 = span_rear_x * twice_link_length_5 - quotient_in_arm_x_a1_for_a2 * sin_a1_before_a1_for_a2
-            arm_y_a1_for_a2 = quotient_in_arm_x_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y * twice_link_length_5
-            arm_a1_for_a2 = sqrt(arm_x_a1_for_a2 * arm_x_a1_for_a2 + arm_y_a1_for_a2 * arm_y_a1_for_a2)
-            sum_in_value_a1_for_a2 = one_less_cos_a2_before_a1_for_a2 + one_plus_cos_a2_before_a1_for_a2
-            # a2 has solutions where this is within its bound
-            if sum_in_value_a1_for_a2 > 4.0 * arm_a1_for_a2:
-                value_a1_for_a2 = 2.0 * end_a1_for_a2
-                size_a1_for_a2 = 2.0 * arm_a1_for_a2
-                missing_a1_for_a2 = (abs(end_a1_for_a2) - arm_a1_for_a2) * (arm_a1_for_a2 + abs(end_a1_for_a2))
-            else:
-                value_a1_for_a2 = one_plus_cos_a2_before_a1_for_a2 - one_less_cos_a2_before_a1_for_a2
-                size_a1_for_a2 = 1.00000000000025 * sum_in_value_a1_for_a2
-                missing_a1_for_a2 = -one_less_cos_a2_before_a1_for_a2 * one_plus_cos_a2_before_a1_for_a2
-            # turned so that a2 has a solution
-            if abs(value_a1_for_a2) <= size_a1_for_a2:
-                sin_a1 = sin_a1_before_a1_for_a2
-                cos_a1 = cos_a1_before_a1_for_a2
-            else:
-                arm_x_rate_a1_for_a2 = -quotient_in_arm_x_rate_a1_for_a2 * cos_a1_before_a1_for_a2
-                arm_y_rate_a1_for_a2 = -quotient_in_arm_x_rate_a1_for_a2 * sin_a1_before_a1_for_a2
-                end_rate_a1_for_a2 = one_by_link_length_2_squared * (
-                    product_in_end_a1_for_a2 * span_rear_x * cos_a1_before_a1_for_a2
-                    - product_in_end_a1_for_a2 * span_rear_y * sin_a1_before_a1_for_a2
-                )
-                linear_a1_for_a2 = (
-                    arm_x_a1_for_a2 * arm_x_rate_a1_for_a2
-                    + arm_y_a1_for_a2 * arm_y_rate_a1_for_a2
-                    - end_a1_for_a2 * end_rate_a1_for_a2
-                )
-                square_a1_for_a2 = (
-                    arm_x_rate_a1_for_a2 * arm_x_rate_a1_for_a2
-                    + arm_y_rate_a1_for_a2 * arm_y_rate_a1_for_a2
-                    - end_rate_a1_for_a2 * end_rate_a1_for_a2
-                )
-                beside_a1 = machine_scale * cos_swing_a1
-                way_a1_for_a2 = (
-                    (1.0 if linear_a1_for_a2 > 0.0 else -1.0)
-                    if abs(linear_a1_for_a2) > 0.0
-                    else (1.0 if -sigma_t * beside_a1 >= 0.0 else -1.0)
-                )
-                divisor_a1_for_a2 = (
-                    linear_a1_for_a2
-                    + root(linear_a1_for_a2 * linear_a1_for_a2 + missing_a1_for_a2 * square_a1_for_a2) * way_a1_for_a2
-                )
-                # turn of a1 that makes the arm of a2 long enough
-                turn_a1_for_a2 = (
-                    missing_a1_for_a2 / (divisor_a1_for_a2 if abs(divisor_a1_for_a2) > 0.0 else 1.0)
-                    if abs(divisor_a1_for_a2) > 0.0
-                    else 0.0
-                )
-                turned_length_a1_for_a2 = root(1.0 + turn_a1_for_a2 * turn_a1_for_a2)
-                turned_sin_a1_for_a2 = (
-                    sin_a1_before_a1_for_a2 + turn_a1_for_a2 * cos_a1_before_a1_for_a2
-                ) / turned_length_a1_for_a2
-                turned_cos_a1_for_a2 = (
-                    cos_a1_before_a1_for_a2 - turn_a1_for_a2 * sin_a1_before_a1_for_a2
-                ) / turned_length_a1_for_a2
-                # residual of the equation of a1
-                turned_cost_a1_for_a2 = abs(
-                    beside_a1
-                    - machine_scale
-                    * one_by_effective_a1
-                    * (span_upper_x * turned_sin_a1_for_a2 + span_upper_y * turned_cos_a1_for_a2)
-                )
-                # turned so that a2 has a solution
-                if turned_cost_a1_for_a2 > machine_scale_times_rounding:
-                    sin_a1 = sin_a1_before_a1_for_a2
-                    cos_a1 = cos_a1_before_a1_for_a2
-                else:
-                    sin_a1 = turned_sin_a1_for_a2
-                    cos_a1 = turned_cos_a1_for_a2
+        cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         pivot_upper_y = -link_length_1 * cos_a1
-        along_a2 = span_rear_x - quotient_in_along_a2_before_a1_for_a2 * sin_a1
-        across_a2 = quotient_in_along_a2_before_a1_for_a2 * cos_a1 - span_rear_y
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        along_a2 = span_rear_x - quotient_in_along_a2 * sin_a1
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
+        across_a2 = quotient_in_along_a2 * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -1247,13 +985,12 @@ class KinType12XY(OffsetKinematics):
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
         solve = self._all_trusted  # a separate statement is faster
-        return solve(frame, reference) or super().branches(frame, reference)  # near a fold, one branch after the other
+        return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
-        found = solve(frame, signs, reference)
-        return super().branch(frame, signs, reference) if found == () else found  # near a fold, by the complete program
+        return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         return self._finished(self._all_trusted, self._finish, position, rotation, reference)

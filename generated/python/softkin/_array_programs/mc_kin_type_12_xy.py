@@ -11,7 +11,6 @@ from softkin._array import (
     absolute,
     cos,
     degrees,
-    elsewhere,
     nearest_period,
     passed,
     reasonable,
@@ -24,7 +23,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector, Whole
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.mc_kin_type_12_xy import Constants
 
 
@@ -32,7 +31,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 124
+    VALUES = 79
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -150,195 +149,16 @@ class ArrayPrograms(Programs):
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
-        one_by_sum_a1 = 1.0 / divisor_of_cos_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) * one_by_sum_a1
-        span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
-        root_of_sine_square_a1 = root(sine_square_a1)
-        product_in_ahead_squared_a1 = one_by_sum_a1 * root_of_sine_square_a1
-        # the triangle of the swing, as long as the machine
-        ahead_squared_a1 = (
-            k.machine_scale_squared_times_4 * one_by_sum_a1 * product_in_ahead_squared_a1 * root_of_sine_square_a1
-        )
-        sin_swing_a1 = -2.0 * sigma_t * product_in_ahead_squared_a1
-        one_by_effective_a1 = 1.0 / divisor_a1
-        sin_a1_before_a1_for_a2 = one_by_effective_a1 * (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1)
+        sin_swing_a1 = -2.0 * root(sine_square_a1) * sigma_t / divisor_of_cos_a1
+        sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
+        span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        along_a2 = span_rear_x - k.quotient_in_along_a2 * sin_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1_before_a1_for_a2 = one_by_effective_a1 * (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1)
+        cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
         span_rear_y = -k.link_length_3_by_link_length_2 * span_upper_y
-
-        def elsewhere_sin_a1(
-            cos_a1_before_a1_for_a2: Real,
-            cos_swing_a1: Real,
-            one_by_effective_a1: Real,
-            sigma_t: Whole,
-            sin_a1_before_a1_for_a2: Real,
-            span_rear_x: Real,
-            span_rear_y: Real,
-            span_upper_x: Real,
-            span_upper_y: Real,
-        ) -> Reals:
-            along_a2_before_a1_for_a2 = span_rear_x - k.quotient_in_along_a2_before_a1_for_a2 * sin_a1_before_a1_for_a2
-            across_a2_before_a1_for_a2 = k.quotient_in_along_a2_before_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y
-            effective_a2_before_a1_for_a2 = sqrt(
-                across_a2_before_a1_for_a2 * across_a2_before_a1_for_a2
-                + along_a2_before_a1_for_a2 * along_a2_before_a1_for_a2
-            )
-            divisor_a2_before_a1_for_a2 = select(
-                effective_a2_before_a1_for_a2 > k.link_length_5_times_shortest_link, effective_a2_before_a1_for_a2, 1.0
-            )
-            one_less_cos_a2_before_a1_for_a2 = (divisor_a2_before_a1_for_a2 + k.link_length_4_plus_link_length_5) * (
-                divisor_a2_before_a1_for_a2 + k.link_length_5_minus_link_length_4
-            )
-            one_plus_cos_a2_before_a1_for_a2 = (k.link_length_4_plus_link_length_5 - divisor_a2_before_a1_for_a2) * (
-                divisor_a2_before_a1_for_a2 - k.link_length_5_minus_link_length_4
-            )
-            end_a1_for_a2 = -k.one_by_link_length_2_squared * (
-                k.sum_in_end_a1_for_a2
-                + (k.link_length_2_squared * span_rear_x - k.product_in_end_a1_for_a2 * sin_a1_before_a1_for_a2)
-                * span_rear_x
-                + (k.link_length_2_squared * span_rear_y - k.product_in_end_a1_for_a2 * cos_a1_before_a1_for_a2)
-                * span_rear_y
-            )
-            arm_x_a1_for_a2 = (
-                span_rear_x * k.twice_link_length_5 - k.quotient_in_arm_x_a1_for_a2 * sin_a1_before_a1_for_a2
-            )
-            arm_y_a1_for_a2 = (
-                k.quotient_in_arm_x_a1_for_a2 * cos_a1_before_a1_for_a2 - span_rear_y * k.twice_link_length_5
-            )
-            arm_a1_for_a2 = sqrt(arm_x_a1_for_a2 * arm_x_a1_for_a2 + arm_y_a1_for_a2 * arm_y_a1_for_a2)
-            sum_in_value_a1_for_a2 = one_less_cos_a2_before_a1_for_a2 + one_plus_cos_a2_before_a1_for_a2
-
-            def elsewhere_value_a1_for_a2(
-                one_less_cos_a2_before_a1_for_a2: Real,
-                one_plus_cos_a2_before_a1_for_a2: Real,
-                sum_in_value_a1_for_a2: Real,
-            ) -> Reals:
-                value_a1_for_a2 = one_plus_cos_a2_before_a1_for_a2 - one_less_cos_a2_before_a1_for_a2
-                size_a1_for_a2 = 1.00000000000025 * sum_in_value_a1_for_a2
-                missing_a1_for_a2 = -one_less_cos_a2_before_a1_for_a2 * one_plus_cos_a2_before_a1_for_a2
-                return (value_a1_for_a2, size_a1_for_a2, missing_a1_for_a2)
-
-            value_a1_for_a2 = 2.0 * end_a1_for_a2
-            size_a1_for_a2 = 2.0 * arm_a1_for_a2
-            missing_a1_for_a2 = (absolute(end_a1_for_a2) - arm_a1_for_a2) * (arm_a1_for_a2 + absolute(end_a1_for_a2))
-            # a2 has solutions where this is within its bound
-            value_a1_for_a2, size_a1_for_a2, missing_a1_for_a2 = elsewhere(
-                sum_in_value_a1_for_a2 > 4.0 * arm_a1_for_a2,
-                (value_a1_for_a2, size_a1_for_a2, missing_a1_for_a2),
-                elsewhere_value_a1_for_a2,
-                (one_less_cos_a2_before_a1_for_a2, one_plus_cos_a2_before_a1_for_a2, sum_in_value_a1_for_a2),
-            )
-
-            def elsewhere_sin_a1(
-                arm_x_a1_for_a2: Real,
-                arm_y_a1_for_a2: Real,
-                cos_a1_before_a1_for_a2: Real,
-                cos_swing_a1: Real,
-                end_a1_for_a2: Real,
-                missing_a1_for_a2: Real,
-                one_by_effective_a1: Real,
-                sigma_t: Whole,
-                sin_a1_before_a1_for_a2: Real,
-                span_rear_x: Real,
-                span_rear_y: Real,
-                span_upper_x: Real,
-                span_upper_y: Real,
-            ) -> Reals:
-                arm_x_rate_a1_for_a2 = -k.quotient_in_arm_x_rate_a1_for_a2 * cos_a1_before_a1_for_a2
-                arm_y_rate_a1_for_a2 = -k.quotient_in_arm_x_rate_a1_for_a2 * sin_a1_before_a1_for_a2
-                end_rate_a1_for_a2 = k.one_by_link_length_2_squared * (
-                    k.product_in_end_a1_for_a2 * span_rear_x * cos_a1_before_a1_for_a2
-                    - k.product_in_end_a1_for_a2 * span_rear_y * sin_a1_before_a1_for_a2
-                )
-                linear_a1_for_a2 = (
-                    arm_x_a1_for_a2 * arm_x_rate_a1_for_a2
-                    + arm_y_a1_for_a2 * arm_y_rate_a1_for_a2
-                    - end_a1_for_a2 * end_rate_a1_for_a2
-                )
-                square_a1_for_a2 = (
-                    arm_x_rate_a1_for_a2 * arm_x_rate_a1_for_a2
-                    + arm_y_rate_a1_for_a2 * arm_y_rate_a1_for_a2
-                    - end_rate_a1_for_a2 * end_rate_a1_for_a2
-                )
-                beside_a1 = k.machine_scale * cos_swing_a1
-                way_a1_for_a2 = select(
-                    absolute(linear_a1_for_a2) > 0.0,
-                    select(linear_a1_for_a2 > 0.0, 1.0, -1.0),
-                    select(-sigma_t * beside_a1 >= 0.0, 1.0, -1.0),
-                )
-                divisor_a1_for_a2 = (
-                    linear_a1_for_a2
-                    + root(linear_a1_for_a2 * linear_a1_for_a2 + missing_a1_for_a2 * square_a1_for_a2) * way_a1_for_a2
-                )
-                # turn of a1 that makes the arm of a2 long enough
-                turn_a1_for_a2 = select(
-                    absolute(divisor_a1_for_a2) > 0.0,
-                    missing_a1_for_a2 / select(absolute(divisor_a1_for_a2) > 0.0, divisor_a1_for_a2, 1.0),
-                    0.0,
-                )
-                turned_length_a1_for_a2 = root(1.0 + turn_a1_for_a2 * turn_a1_for_a2)
-                turned_sin_a1_for_a2 = (
-                    sin_a1_before_a1_for_a2 + turn_a1_for_a2 * cos_a1_before_a1_for_a2
-                ) / turned_length_a1_for_a2
-                turned_cos_a1_for_a2 = (
-                    cos_a1_before_a1_for_a2 - turn_a1_for_a2 * sin_a1_before_a1_for_a2
-                ) / turned_length_a1_for_a2
-                # residual of the equation of a1
-                turned_cost_a1_for_a2 = absolute(
-                    beside_a1
-                    - k.machine_scale
-                    * one_by_effective_a1
-                    * (span_upper_x * turned_sin_a1_for_a2 + span_upper_y * turned_cos_a1_for_a2)
-                )
-                holds = turned_cost_a1_for_a2 > k.machine_scale_times_rounding
-                # turned so that a2 has a solution
-                sin_a1 = select(holds, sin_a1_before_a1_for_a2, turned_sin_a1_for_a2)
-                cos_a1 = select(holds, cos_a1_before_a1_for_a2, turned_cos_a1_for_a2)
-                return (sin_a1, cos_a1)
-
-            # turned so that a2 has a solution
-            sin_a1, cos_a1 = elsewhere(
-                absolute(value_a1_for_a2) <= size_a1_for_a2,
-                (sin_a1_before_a1_for_a2, cos_a1_before_a1_for_a2),
-                elsewhere_sin_a1,
-                (
-                    arm_x_a1_for_a2,
-                    arm_y_a1_for_a2,
-                    cos_a1_before_a1_for_a2,
-                    cos_swing_a1,
-                    end_a1_for_a2,
-                    missing_a1_for_a2,
-                    one_by_effective_a1,
-                    sigma_t,
-                    sin_a1_before_a1_for_a2,
-                    span_rear_x,
-                    span_rear_y,
-                    span_upper_x,
-                    span_upper_y,
-                ),
-            )
-            return (sin_a1, cos_a1)
-
-        # turned so that a2 has a solution
-        sin_a1, cos_a1 = elsewhere(
-            ahead_squared_a1 > k.machine_scale_squared_times_plane,
-            (sin_a1_before_a1_for_a2, cos_a1_before_a1_for_a2),
-            elsewhere_sin_a1,
-            (
-                cos_a1_before_a1_for_a2,
-                cos_swing_a1,
-                one_by_effective_a1,
-                sigma_t,
-                sin_a1_before_a1_for_a2,
-                span_rear_x,
-                span_rear_y,
-                span_upper_x,
-                span_upper_y,
-            ),
-        )
-        along_a2 = span_rear_x - k.quotient_in_along_a2_before_a1_for_a2 * sin_a1
-        across_a2 = k.quotient_in_along_a2_before_a1_for_a2 * cos_a1 - span_rear_y
+        across_a2 = k.quotient_in_along_a2 * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = select(effective_a2 > k.link_length_5_times_shortest_link, effective_a2, 1.0)

@@ -26,10 +26,8 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
     link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
     link_length_5_times_shortest_link, lowest_a1 = k.link_length_5_times_shortest_link, k.lowest_a1
-    lowest_a2, machine_scale_squared_times_4 = k.lowest_a2, k.machine_scale_squared_times_4
-    machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
-    machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
-    min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
+    lowest_a2, machine_scale_times_plane, mid_a1 = k.lowest_a2, k.machine_scale_times_plane, k.mid_a1
+    mid_a2, min_type2_margin, offset_a1, offset_a2 = k.mid_a2, k.min_type2_margin, k.offset_a1, k.offset_a2
     quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
     quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
     single_a2, sum_in_pivot_rear_x, swap_xy = k.single_a2, k.sum_in_pivot_rear_x, k.swap_xy
@@ -73,27 +71,19 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 4 * (refused[Status.UNREACHABLE],)
-        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
-        root_of_sine_square_a1_by_sum_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) / divisor_of_cos_a1
-        # the triangle of the swing, as long as the machine
-        ahead_squared_a1 = (
-            machine_scale_squared_times_4 * root_of_sine_square_a1_by_sum_a1 * root_of_sine_square_a1_by_sum_a1
-        )
-        # near a fold
-        if not (ahead_squared_a1 > machine_scale_squared_times_plane):
-            return ()
-        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         cos_swing_a1_times_span_upper_x = span_upper_x * cos_swing_a1
-        sin_swing_a1 = 2.0 * root_of_sine_square_a1_by_sum_a1
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) / divisor_of_cos_a1
         sin_swing_a1_right_times_span_upper_y = span_upper_y * sin_swing_a1
-        sin_a1_before_a1_for_a2 = (cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y) / divisor_a1
-        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1_before_a1_for_a2
+        sin_a1 = (cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y) / divisor_a1
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1
         cos_swing_a1_times_span_upper_y = span_upper_y * cos_swing_a1
         sin_swing_a1_right_times_span_upper_x = span_upper_x * sin_swing_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1_before_a1_for_a2 = (cos_swing_a1_times_span_upper_y + sin_swing_a1_right_times_span_upper_x) / divisor_a1
+        cos_a1 = (cos_swing_a1_times_span_upper_y + sin_swing_a1_right_times_span_upper_x) / divisor_a1
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        across_a2 = quotient_in_along_a2_left * cos_a1_before_a1_for_a2 - span_rear_y
+        across_a2 = quotient_in_along_a2_left * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -123,19 +113,19 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_left_right = (across_a2_left_times_cos_swing_a2 + product_in_sin_a2) / divisor_a2
         # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if effective_a2 > link_length_5_times_shortest_link and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
-            pivot_upper_x = -link_length_1 * sin_a1_before_a1_for_a2  # rod upper: centre about which it swings
-            product_in_scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y_left_left * sin_a1_before_a1_for_a2
+            pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
+            product_in_scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y_left_left * sin_a1
             # rod rear: centre about which it swings
             scaled_pivot_rear_x_left = (
                 product_in_scaled_pivot_rear_x - quotient_in_scaled_pivot_rear_y_2 * cos_a2_left_left
             )
-            product_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y_left_left * cos_a1_before_a1_for_a2
+            product_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y_left_left * cos_a1
             # rod rear: centre about which it swings
             scaled_pivot_rear_x_right = (
                 product_in_scaled_pivot_rear_x - quotient_in_scaled_pivot_rear_y_2 * cos_a2_left_right
             )
             if swap_xy:
-                centre_1_x = -link_length_1 * cos_a1_before_a1_for_a2
+                centre_1_x = -link_length_1 * cos_a1
                 centre_1_y = pivot_upper_x
                 centre_2_x_left = -(
                     product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_left_left
@@ -147,7 +137,7 @@ def unrolled(k: Constants) -> Unrolled:
                 centre_2_y_right = -scaled_pivot_rear_x_right
             else:
                 centre_1_x = pivot_upper_x
-                centre_1_y = -link_length_1 * cos_a1_before_a1_for_a2
+                centre_1_y = -link_length_1 * cos_a1
                 centre_2_x_left = -scaled_pivot_rear_x_left
                 centre_2_y_left = -(
                     product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_left_left
@@ -169,12 +159,12 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_left_left = 3
             refusal_left_right = 3
-        axis_a1_left = offset_a1 + arctan2(sin_a1_before_a1_for_a2, cos_a1_before_a1_for_a2) * RADIAN
-        sin_a1_before_a1_for_a2 = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y) / divisor_a1
-        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1_before_a1_for_a2
+        axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
+        sin_a1 = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y) / divisor_a1
+        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1_before_a1_for_a2 = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x) / divisor_a1
-        across_a2 = quotient_in_along_a2_left * cos_a1_before_a1_for_a2 - span_rear_y
+        cos_a1 = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x) / divisor_a1
+        across_a2 = quotient_in_along_a2_left * cos_a1 - span_rear_y
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -204,19 +194,19 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_right_right = (across_a2_right_times_cos_swing_a2 + product_in_sin_a2) / divisor_a2
         # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if effective_a2 > link_length_5_times_shortest_link and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
-            pivot_upper_x = -link_length_1 * sin_a1_before_a1_for_a2  # rod upper: centre about which it swings
-            product_in_scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y_left_left * sin_a1_before_a1_for_a2
+            pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
+            product_in_scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y_left_left * sin_a1
             # rod rear: centre about which it swings
             scaled_pivot_rear_x_left = (
                 product_in_scaled_pivot_rear_x - quotient_in_scaled_pivot_rear_y_2 * cos_a2_right_left
             )
-            product_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y_left_left * cos_a1_before_a1_for_a2
+            product_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y_left_left * cos_a1
             # rod rear: centre about which it swings
             scaled_pivot_rear_x_right = (
                 product_in_scaled_pivot_rear_x - quotient_in_scaled_pivot_rear_y_2 * cos_a2_right_right
             )
             if swap_xy:
-                centre_1_x = -link_length_1 * cos_a1_before_a1_for_a2
+                centre_1_x = -link_length_1 * cos_a1
                 centre_1_y = pivot_upper_x
                 centre_2_x_left = -(
                     product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_right_left
@@ -228,7 +218,7 @@ def unrolled(k: Constants) -> Unrolled:
                 centre_2_y_right = -scaled_pivot_rear_x_right
             else:
                 centre_1_x = pivot_upper_x
-                centre_1_y = -link_length_1 * cos_a1_before_a1_for_a2
+                centre_1_y = -link_length_1 * cos_a1
                 centre_2_x_left = -scaled_pivot_rear_x_left
                 centre_2_y_left = -(
                     product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_right_left
@@ -250,7 +240,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_right_left = 3
             refusal_right_right = 3
-        axis_a1_right = offset_a1 + arctan2(sin_a1_before_a1_for_a2, cos_a1_before_a1_for_a2) * RADIAN
+        axis_a1_right = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         return (
             (axis_a1_left, offset_a2 + arctan2(sin_a2_left_left, cos_a2_left_left) * RADIAN)
             if refusal_left_left == 0
@@ -302,27 +292,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
-        root_of_sine_square_a1 = sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0
-        root_of_sine_square_a1_by_sum_a1 = root_of_sine_square_a1 / divisor_of_cos_a1
-        # the triangle of the swing, as long as the machine
-        ahead_squared_a1 = (
-            machine_scale_squared_times_4
-            * root_of_sine_square_a1
-            * root_of_sine_square_a1_by_sum_a1
-            / divisor_of_cos_a1
-        )
-        # near a fold
-        if not (ahead_squared_a1 > machine_scale_squared_times_plane):
-            return ()
+        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
+        sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        sin_swing_a1 = -2.0 * sigma_t * root_of_sine_square_a1_by_sum_a1
-        sin_a1_before_a1_for_a2 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
-        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1_before_a1_for_a2
+        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a1_before_a1_for_a2 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
-        across_a2 = quotient_in_along_a2_left * cos_a1_before_a1_for_a2 - (
-            -link_length_3_by_link_length_2 * span_upper_y
-        )
+        cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
+        across_a2 = quotient_in_along_a2_left * cos_a1 - (-link_length_3_by_link_length_2 * span_upper_y)
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
@@ -344,32 +320,29 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
-        pivot_upper_x = -link_length_1 * sin_a1_before_a1_for_a2  # rod upper: centre about which it swings
+        pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_w / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
         scaled_pivot_rear_x = (
-            quotient_in_scaled_pivot_rear_y_left_left * sin_a1_before_a1_for_a2
-            - quotient_in_scaled_pivot_rear_y_2 * cos_a2
+            quotient_in_scaled_pivot_rear_y_left_left * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
         )
         sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
         if swap_xy:
-            centre_1_x = -link_length_1 * cos_a1_before_a1_for_a2
+            centre_1_x = -link_length_1 * cos_a1
             centre_1_y = pivot_upper_x
             centre_2_x = -(
-                quotient_in_scaled_pivot_rear_y_left_left * cos_a1_before_a1_for_a2
-                + quotient_in_scaled_pivot_rear_y_2 * sin_a2
+                quotient_in_scaled_pivot_rear_y_left_left * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
             )
             centre_2_y = -scaled_pivot_rear_x
         else:
             centre_1_x = pivot_upper_x
-            centre_1_y = -link_length_1 * cos_a1_before_a1_for_a2
+            centre_1_y = -link_length_1 * cos_a1
             centre_2_x = -scaled_pivot_rear_x
             centre_2_y = -(
-                quotient_in_scaled_pivot_rear_y_left_left * cos_a1_before_a1_for_a2
-                + quotient_in_scaled_pivot_rear_y_2 * sin_a2
+                quotient_in_scaled_pivot_rear_y_left_left * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
             )
         type2_arms_aligned = (
             (x - centre_1_x) * (y - centre_2_y) - (y - centre_1_y) * (x - centre_2_x)
@@ -378,14 +351,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not (type2_arms_aligned >= min_type2_margin):
             return None
         if no_offsets:
-            return (
-                arctan2(sin_a1_before_a1_for_a2, cos_a1_before_a1_for_a2) * RADIAN,
-                arctan2(sin_a2, cos_a2) * RADIAN,
-            )
-        return (
-            offset_a1 + arctan2(sin_a1_before_a1_for_a2, cos_a1_before_a1_for_a2) * RADIAN,
-            offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN,
-        )
+            return (arctan2(sin_a1, cos_a1) * RADIAN, arctan2(sin_a2, cos_a2) * RADIAN)
+        return (offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN, offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN)
 
     def finish(found: tuple[Reals | int, ...], reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot of `branches` with the axes on their turns, or the number of its status; limits are tested."""
