@@ -85,6 +85,8 @@ def _templates() -> Environment:
     templates = environment(name).overlay(variable_start_string="@{", variable_end_string="}@")
     shared = c.files([])
     header, source = (_LINES.sub("", shared[f"softkin.{end}"]) for end in ("h", "c"))
+    # All branches together are not asked here, and a frame of the stack has no room for them.
+    header = re.sub(r"(#define SOFTKIN_MOST_TOGETHER) \d+", r"\1 1", header)
     calls, begin, search = source.partition(_SEARCH)
     templates.globals |= {
         "generated": GENERATED,
@@ -101,9 +103,7 @@ def _templates() -> Environment:
 
 
 def _inner(source: str, module: str) -> str:
-    """A source or header without what it includes; all branches together are not asked, and need no room."""
-    alone = _LINES.sub("", source).replace(f'#include "{module}.h"\n', "")
-    return re.sub(r"(#define SOFTKIN_MOST_TOGETHER) \d+", r"\1 1", alone)
+    return _LINES.sub("", source).replace(f'#include "{module}.h"\n', "")
 
 
 def _macros(source: str) -> list[str]:
