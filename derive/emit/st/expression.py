@@ -83,7 +83,7 @@ class StructuredText(ExpressionPrinter):
         return super().print(expression)
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
-        if isinstance(node, Root) and node.args[0].is_number:
+        if isinstance(node, Root) and node.args[0].is_Number:
             return literal(math.sqrt(float(node.args[0]))), ATOM
         if isinstance(node, Root) and is_sum_of_squares(node.args[0]):
             return f"SQRT({self.print(node.args[0])})", ATOM
