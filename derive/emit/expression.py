@@ -42,6 +42,13 @@ FUNCTION_KEYS: dict[type[sp.Basic], str] = {
 """The neutral name of every primitive, by which a language looks up its own."""
 
 
+def is_never_negative(radicand: sp.Expr) -> bool:
+    """Whether a root needs no check of its radicand: a number, or a sum of squares, never a negative zero."""
+    if radicand.is_Number:
+        return bool(radicand >= 0)
+    return bool(radicand.is_Add) and all(term.is_Pow and term.exp == 2 for term in radicand.args)
+
+
 class ExpressionPrinter(ABC):
     """Writes an expression in a language. Subclasses spell names, numbers, calls and logical words."""
 

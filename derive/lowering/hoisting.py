@@ -13,6 +13,7 @@ import sympy as sp
 from derive.ir.constants import DEGREE
 from derive.ir.graph import PRODUCT, SUM, Graph, Node, Value, reached
 from derive.ir.names import Names
+from derive.ir.primitives import Root
 from derive.ir.program import Let, Output, Program
 from derive.lowering.draft import Draft, Named, Rewriting, values_of
 from derive.lowering.wording import said
@@ -117,10 +118,11 @@ def hoisted(
 
 
 def _constants_read(draft: Draft, constant: Constant) -> Iterator[Node]:
-    """The largest constants that a draft reads: those that something else reads, or a statement."""
+    """The largest constants and roots of numbers that something else in a draft reads, or a statement."""
 
     def is_largest(node: Node) -> bool:
-        return constant(node) and not node.is_leaf and not is_condition(node)
+        is_root_of_number = node.head is Root and constant.allows(node)
+        return (constant(node) or is_root_of_number) and not node.is_leaf and not is_condition(node)
 
     return filter(is_largest, reached((value.node for value in values_of(draft)), is_largest))
 

@@ -197,9 +197,7 @@ def _counted(program: Program, of_sides: _OfSides, repeats: Repeats | None) -> C
 
 @cache
 def expression_cost(node: sp.Basic) -> Cost:
-    """The cost of an expression as every language writes it; the root of a number is a number."""
-    if isinstance(node, Root) and node.args[0].is_Number:
-        return _NOTHING
+    """The cost of an expression as every language writes it."""
     if isinstance(node, sp.Mul | sp.Pow):
         return _product(node)
     own = _PRIMITIVES.get(type(node), _NOTHING)

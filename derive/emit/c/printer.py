@@ -13,7 +13,7 @@ from textwrap import wrap
 
 import sympy as sp
 
-from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter
+from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter, is_never_negative
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Root
 from derive.ir.program import Status
@@ -112,7 +112,7 @@ class C(ExpressionPrinter):
             return f"!{self._text(node.args[0], ATOM)}", ATOM
         if node.is_Mul and 1 / DEGREE in node.args:
             return f"{self._text(node * DEGREE, PRODUCT)}*SOFTKIN_RADIAN", PRODUCT
-        if isinstance(node, Root) and _is_sum_of_squares(node.args[0]):
+        if isinstance(node, Root) and is_never_negative(node.args[0]):
             return f"sqrt({self.print(node.args[0])})", ATOM
         return super()._spell(node)
 
@@ -132,8 +132,3 @@ class C(ExpressionPrinter):
 
     def logic(self, word: str) -> str:
         return {"and": "&&", "or": "||", "not": "!"}.get(word, word)
-
-
-def _is_sum_of_squares(value: sp.Expr) -> bool:
-    """Whether a value cannot be negative."""
-    return bool(value.is_Add) and all(term.is_Pow and term.exp == 2 for term in value.args)

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 
 import sympy as sp
 
-from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter
+from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter, is_never_negative
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Root
 from derive.ir.program import Status
@@ -73,7 +73,7 @@ class JavaScript(ExpressionPrinter):
             return f"!{self._text(node.args[0], ATOM)}", ATOM
         if node.is_Mul and 1 / DEGREE in node.args:
             return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT
-        if isinstance(node, Root) and _is_sum_of_squares(node.args[0]):
+        if isinstance(node, Root) and is_never_negative(node.args[0]):
             return f"Math.sqrt({self.print(node.args[0])})", ATOM
         return super()._spell(node)
 
@@ -95,11 +95,6 @@ class JavaScript(ExpressionPrinter):
 
     def comparison(self, operator: str) -> str:
         return {"==": "===", "!=": "!=="}.get(operator, operator)
-
-
-def _is_sum_of_squares(value: sp.Expr) -> bool:
-    """Whether a value cannot be negative."""
-    return bool(value.is_Add) and all(term.is_Pow and term.exp == 2 for term in value.args)
 
 
 PRINTER = JavaScript()

@@ -8,7 +8,7 @@ from keyword import iskeyword
 
 import sympy as sp
 
-from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, PRODUCT, ExpressionPrinter
+from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, PRODUCT, ExpressionPrinter, is_never_negative
 from derive.ir.constants import (
     DEGREE,
     LARGEST,
@@ -62,11 +62,6 @@ def words(lines: Iterable[str]) -> set[str]:
     }
 
 
-def is_sum_of_squares(value: sp.Expr) -> bool:
-    """Whether a value cannot be negative, and not even a negative zero."""
-    return value.is_Add and all(term.is_Pow and term.exp == 2 for term in value.args)
-
-
 def _numbers_checked(node: sp.Basic) -> list[sp.Basic]:
     """The values, if a condition asks only whether they are numbers of reasonable size; else none."""
     parts = list(sp.ordered(node.args)) if isinstance(node, sp.And) else [node]
@@ -114,7 +109,7 @@ class ScalarPrinter(ExpressionPrinter):
         if isinstance(node, Root):
             (radicand,) = node.args
             text = self.print(radicand)
-            if is_sum_of_squares(radicand):
+            if is_never_negative(radicand):
                 return f"sqrt({text})", ATOM
             if radicand.is_Symbol:
                 return f"(sqrt({text}) if {text} > 0.0 else 0.0)", ATOM
@@ -159,7 +154,7 @@ class ArrayPrinter(ScalarPrinter):
             return f"opposite({self.print(node.args[0])})", ATOM
         if checked := _numbers_checked(node):
             return f"reasonable({', '.join(map(self.print, checked))})", ATOM
-        if isinstance(node, Root) and is_sum_of_squares(node.args[0]):
+        if isinstance(node, Root) and is_never_negative(node.args[0]):
             return f"sqrt({self.print(node.args[0])})", ATOM
         if self.modulo_turns and node.is_Mul and len(node.args) == 2 and 1 / DEGREE in node.args:
             (angle,) = (factor for factor in node.args if factor != 1 / DEGREE)

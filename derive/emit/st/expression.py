@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 
 import sympy as sp
 
-from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter
+from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter, is_never_negative
 from derive.ir.constants import (
     DEGREE,
     LARGEST,
@@ -47,11 +46,6 @@ def is_size_test(condition: sp.Basic) -> bool:
     return bool(condition.lhs.args[0].is_Symbol)
 
 
-def is_sum_of_squares(value: sp.Expr) -> bool:
-    """Whether a value cannot be negative."""
-    return value.is_Add and all(term.is_Pow and term.exp == 2 for term in value.args)
-
-
 def is_larger(expression: sp.Basic) -> bool:
     """Whether a choice takes the larger of two values."""
     return isinstance(expression, Select) and expression.args[0] == sp.Gt(*expression.args[1:])
@@ -83,9 +77,7 @@ class StructuredText(ExpressionPrinter):
         return super().print(expression)
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
-        if isinstance(node, Root) and node.args[0].is_Number:
-            return literal(math.sqrt(float(node.args[0]))), ATOM
-        if isinstance(node, Root) and is_sum_of_squares(node.args[0]):
+        if isinstance(node, Root) and is_never_negative(node.args[0]):
             return f"SQRT({self.print(node.args[0])})", ATOM
         if node.is_Mul and 1 / DEGREE in node.args:
             return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
 import sympy as sp
 
-from derive.emit.st.expression import StructuredText, is_size_test, limits_of, literal
+from derive.emit.st.expression import StructuredText, is_size_test, limits_of
 from derive.emit.st.layout import INSIDE, WIDTH, commented, indented, wrapped
 from derive.emit.st.loops import LOCALS, declarations, kept, loop_lines, solve_lines
 from derive.emit.st.names import respelled, spellings, type_name
@@ -69,10 +68,8 @@ def printed(
     given: the spellings of the values that it reads; stored: those of the values that it binds to instance variables.
     All other values are bound to temporary variables, whose names are not in `taken`.
     """
-    roots = dict(_roots_of_numbers(program))
-    program = replace(program, body=tuple(s for s in program.body if not (isinstance(s, Let) and s.name.name in roots)))
     items = structured(program)
-    stored = {**stored, **kept(program.body), **roots}
+    stored = {**stored, **kept(program.body)}
     own = {name.name: name for name in bound_in(items) if name.name not in stored}
     temporaries = spellings(own, (*taken, *LOCALS, OUTCOME, *((SIDE,) if is_branch else ())))
     printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})
@@ -87,13 +84,6 @@ def printed(
         body="\n".join(body),
         outputs={o.name: printer.print(o.value) for o in decided(program).outputs},
     )
-
-
-def _roots_of_numbers(program: Program) -> Iterator[tuple[str, str]]:
-    """The literals of the values that are roots of numbers, by the names of the values."""
-    for let in program.lets():
-        if isinstance(let.value, Root) and let.value.args[0].is_Number:
-            yield let.name.name, literal(math.sqrt(float(let.value.args[0])))
 
 
 def _outcome(program: Program, refusal: Refusal) -> Iterator[str]:

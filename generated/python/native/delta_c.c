@@ -187,11 +187,10 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   /* rod 2: known part of its vector */
   const double span_2_x = x - k->half_plate_radius_minus_half_base_radius;
   const double span_2_y = y - k->sum_in_pivot_2_y;
-  const double root_of_3_2 = softkin_root(3.0);
-  const double branch_knee_2 = ((span_2_x - root_of_3_2*span_2_y)*sin_a2 - 2.0*z*cos_a2)
+  const double branch_knee_2 = ((span_2_x - k->root_of_3*span_2_y)*sin_a2 - 2.0*z*cos_a2)
       *k->half_by_rod_length;
   const double span_3_y = k->sum_in_pivot_2_y + y;
-  const double branch_knee_3 = ((span_2_x + root_of_3_2*span_3_y)*sin_a3 - 2.0*z*cos_a3)
+  const double branch_knee_3 = ((span_2_x + k->root_of_3*span_3_y)*sin_a3 - 2.0*z*cos_a3)
       *k->half_by_rod_length;
   frame->position[0] = x;
   frame->position[1] = y;
@@ -262,8 +261,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* rod 2: known part of its vector */
   const double span_2_x = x - k->half_plate_radius_minus_half_base_radius;
   const double span_2_y = y - k->sum_in_pivot_2_y;
-  const double root_of_3_2 = softkin_root(3.0);
-  const double along_a2 = span_2_x - root_of_3_2*span_2_y;
+  const double along_a2 = span_2_x - k->root_of_3*span_2_y;
   const double across_a2 = 2.0*z;
   const double across_a2_squared = across_a2*across_a2;
   /* effective length of the arm that a2 turns */
@@ -272,8 +270,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!(effective_a2 > k->product_in_divisor_a2)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: its effective length is too short", "", 0.0, 0);
   }
-  const double span_2_x_times_root_of_3_2 = root_of_3_2*span_2_x;
-  const double product_in_third_square_a2 = 0.5*(span_2_x_times_root_of_3_2 + span_2_y);
+  const double span_2_x_times_root_of_3 = k->root_of_3*span_2_x;
+  const double product_in_third_square_a2 = 0.5*(span_2_x_times_root_of_3 + span_2_y);
   /* square of the third side of the triangle */
   const double third_square_a2 = (k->rod_length - product_in_third_square_a2)
       *(product_in_third_square_a2 + k->rod_length);
@@ -299,14 +297,14 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         - third_square_a2)), 0);
   }
   const double span_3_y = k->sum_in_pivot_2_y + y;
-  const double along_a3 = span_2_x + root_of_3_2*span_3_y;
+  const double along_a3 = span_2_x + k->root_of_3*span_3_y;
   /* effective length of the arm that a3 turns */
   const double effective_a3 = softkin_root(across_a2_squared + along_a3*along_a3);
   /* a3: its effective length is too short */
   if (!(effective_a3 > k->product_in_divisor_a2)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: its effective length is too short", "", 0.0, 0);
   }
-  const double product_in_third_square_a3 = 0.5*(span_3_y - span_2_x_times_root_of_3_2);
+  const double product_in_third_square_a3 = 0.5*(span_3_y - span_2_x_times_root_of_3);
   /* square of the third side of the triangle */
   const double third_square_a3 = (k->rod_length - product_in_third_square_a3)
       *(product_in_third_square_a3 + k->rod_length);
@@ -578,11 +576,10 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double span_2_x = x - k->half_plate_radius_minus_half_base_radius;
   const double y = foot_y + height_by_normal*normal_y;
   const double span_2_y = y - k->sum_in_pivot_2_y;
-  const double root_of_3_2 = softkin_root(3.0);
-  const double margin_stretched_2 = ((span_2_x - root_of_3_2*span_2_y)*sin_a2 - 2.0*z*cos_a2)
+  const double margin_stretched_2 = ((span_2_x - k->root_of_3*span_2_y)*sin_a2 - 2.0*z*cos_a2)
       *k->half_by_rod_length;
   const double span_3_y = k->sum_in_pivot_2_y + y;
-  const double margin_stretched_3 = ((span_2_x + root_of_3_2*span_3_y)*sin_a3 - 2.0*z*cos_a3)
+  const double margin_stretched_3 = ((span_2_x + k->root_of_3*span_3_y)*sin_a3 - 2.0*z*cos_a3)
       *k->half_by_rod_length;
   const double rod_1_x = x - pivot_1_x;
   const double rod_1_z = z - pivot_1_z;
@@ -679,14 +676,13 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double twice_z = 2.0*z;
   const double slope_1_by_z = twice_z + k->twice_arm_length*sin_a1;
   const double arm_length_times_cos_a2 = k->arm_length*cos_a2;
-  const double root_of_3_2 = softkin_root(3.0);
   const double product_in_slope_2_by_y = (k->plate_radius - arm_length_times_cos_a2 - k->base_radius)
-      *root_of_3_2;
+      *k->root_of_3;
   const double slope_2_by_y = product_in_slope_2_by_y + slope_1_by_y;
   const double slope_2_by_z = twice_z + k->twice_arm_length*sin_a2;
   const double arm_length_times_cos_a3 = k->arm_length*cos_a3;
   const double product_in_slope_3_by_y = (k->plate_radius - arm_length_times_cos_a3 - k->base_radius)
-      *root_of_3_2;
+      *k->root_of_3;
   const double slope_3_by_y = slope_1_by_y - product_in_slope_3_by_y;
   const double slope_3_by_z = twice_z + k->twice_arm_length*sin_a3;
   const double sum_in_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y;
@@ -741,9 +737,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       r11 = frame->rotation[0][0], r12 = frame->rotation[0][1], r21 = frame->rotation[1][0],
       r22 = frame->rotation[1][1], ref_a1 = reference[0], ref_a2 = reference[1], ref_a3 = reference[2],
       ref_a4 = reference[3];
-  const double root_of_3 = softkin_root(3.0);
-  const double sum_in_span_2_y = 0.5*k->plate_radius*root_of_3 - 0.5*k->base_radius*root_of_3;
-  const double arm_length_times_root_of_3_times_half_2 = 0.5*k->arm_length*root_of_3;
+  const double sum_in_span_2_y = 0.5*k->plate_radius*k->root_of_3 - 0.5*k->base_radius*k->root_of_3;
+  const double arm_length_times_root_of_3_times_half_2 = 0.5*k->arm_length*k->root_of_3;
   /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
@@ -775,8 +770,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* rod 2: known part of its vector */
   const double span_2_x = x - k->half_plate_radius_minus_half_base_radius;
   const double span_2_y = sum_in_span_2_y + y;
-  const double root_of_3_2 = softkin_root(3.0);
-  const double along_a2 = span_2_x - root_of_3_2*span_2_y;
+  const double along_a2 = span_2_x - k->root_of_3*span_2_y;
   const double across_a2 = 2.0*z;
   const double across_a2_squared = across_a2*across_a2;
   /* effective length of the arm that a2 turns */
@@ -784,8 +778,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(effective_a2 > k->product_in_divisor_a2)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
   }
-  const double span_2_x_times_root_of_3_2 = root_of_3_2*span_2_x;
-  const double product_in_third_square_a2 = 0.5*(span_2_x_times_root_of_3_2 + span_2_y);
+  const double span_2_x_times_root_of_3 = k->root_of_3*span_2_x;
+  const double product_in_third_square_a2 = 0.5*(span_2_x_times_root_of_3 + span_2_y);
   /* square of the third side of the triangle */
   const double third_square_a2 = (k->rod_length - product_in_third_square_a2)
       *(product_in_third_square_a2 + k->rod_length);
@@ -806,13 +800,13 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
   }
   const double span_3_y = y - sum_in_span_2_y;
-  const double along_a3 = span_2_x + root_of_3_2*span_3_y;
+  const double along_a3 = span_2_x + k->root_of_3*span_3_y;
   /* effective length of the arm that a3 turns */
   const double effective_a3 = softkin_root(across_a2_squared + along_a3*along_a3);
   if (!(effective_a3 > k->product_in_divisor_a2)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
   }
-  const double product_in_third_square_a3 = 0.5*(span_3_y - span_2_x_times_root_of_3_2);
+  const double product_in_third_square_a3 = 0.5*(span_3_y - span_2_x_times_root_of_3);
   /* square of the third side of the triangle */
   const double third_square_a3 = (k->rod_length - product_in_third_square_a3)
       *(product_in_third_square_a3 + k->rod_length);
@@ -1070,13 +1064,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale = p->arm_length + p->base_radius + p->plate_radius + p->rod_length;
   /* assembly mode of this machine: the sign of the determinant of its rods */
   const double assembly_sign = (p->tcp_above != 0.0) ? 1.0 : -1.0;
+  const double root_of_3 = sqrt(3.0);
   const double product_in_normal_divisor = 1e-22*p->rod_length*p->rod_length*p->rod_length*p->rod_length;
   const double rod_length_squared = p->rod_length*p->rod_length;
   const double rod_length_squared_times_rounding = 1e-12*p->rod_length*p->rod_length;
   const double arm_length_times_shortest_link = 1e-9*p->arm_length;
   const double product_in_divisor_a2 = 5e-10*p->arm_length;
   const double product_in_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale;
-  const double root_of_3 = softkin_root(3.0);
   const double arm_length_times_root_of_3_times_half = 0.5*p->arm_length*root_of_3;
   const double sum_in_pivot_2_y = 0.5*p->base_radius*root_of_3 - 0.5*p->plate_radius*root_of_3;
   const double base_radius_minus_plate_radius = p->base_radius - p->plate_radius;
@@ -1115,6 +1109,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a4 = p->offset_a4;
   made.min_type2_margin = p->min_type2_margin;
   made.assembly_sign = assembly_sign;
+  made.root_of_3 = root_of_3;
   made.product_in_normal_divisor = product_in_normal_divisor;
   made.rod_length_squared = rod_length_squared;
   made.rod_length_squared_times_rounding = rod_length_squared_times_rounding;

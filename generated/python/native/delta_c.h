@@ -94,12 +94,13 @@ typedef struct {
   softkin_ends ends[DELTA_C_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_a4, highest_a4, mid_a4, base_radius, arm_length, rod_length, plate_radius, offset_a1, offset_a2,
-      offset_a3, offset_a4, min_type2_margin, assembly_sign, product_in_normal_divisor, rod_length_squared,
-      rod_length_squared_times_rounding, arm_length_times_shortest_link, product_in_divisor_a2,
-      product_in_determinant_divisor, arm_length_times_root_of_3_times_half, sum_in_pivot_2_y,
-      base_radius_minus_plate_radius, half_arm_length, half_plate_radius_minus_half_base_radius,
-      one_by_rod_length, half_by_rod_length, quotient_in_type2_rods_coplanar,
-      quotient_in_margin_rods_coplanar, twice_arm_length, sum_in_slope_1_by_x, arm_length_times_root_of_3;
+      offset_a3, offset_a4, min_type2_margin, assembly_sign, root_of_3, product_in_normal_divisor,
+      rod_length_squared, rod_length_squared_times_rounding, arm_length_times_shortest_link,
+      product_in_divisor_a2, product_in_determinant_divisor, arm_length_times_root_of_3_times_half,
+      sum_in_pivot_2_y, base_radius_minus_plate_radius, half_arm_length,
+      half_plate_radius_minus_half_base_radius, one_by_rod_length, half_by_rod_length,
+      quotient_in_type2_rods_coplanar, quotient_in_margin_rods_coplanar, twice_arm_length,
+      sum_in_slope_1_by_x, arm_length_times_root_of_3;
   bool single_a1, single_a2, single_a3, single_a4;
 } delta_c_machine;
 

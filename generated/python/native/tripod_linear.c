@@ -516,14 +516,13 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double twice_z = 2.0*z;
   const double slope_1_by_z = twice_z + a1*k->twice_cos_rail_angle;
   const double a2_times_sin_rail_angle = a2*k->sin_rail_angle;
-  const double root_of_3_2 = softkin_root(3.0);
   const double product_in_slope_2_by_y = (k->inner_radius - a2_times_sin_rail_angle - k->outer_radius)
-      *root_of_3_2;
+      *k->root_of_3;
   const double slope_2_by_y = slope_1_by_y - product_in_slope_2_by_y;
   const double slope_2_by_z = twice_z + a2*k->twice_cos_rail_angle;
   const double a3_times_sin_rail_angle = a3*k->sin_rail_angle;
   const double product_in_slope_3_by_y = (k->inner_radius - a3_times_sin_rail_angle - k->outer_radius)
-      *root_of_3_2;
+      *k->root_of_3;
   const double slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y;
   const double slope_3_by_z = twice_z + a3*k->twice_cos_rail_angle;
   const double sum_in_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y;
@@ -569,12 +568,11 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   (void)reference;
   const tripod_linear_machine *k = machine;
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2];
-  const double root_of_3 = softkin_root(3.0);
-  const double sum_in_span_2_y = 0.5*k->outer_radius*root_of_3 - 0.5*k->inner_radius*root_of_3;
-  const double product_in_radicand_a2_3 = root_of_3*k->cos_rail_angle*k->sin_rail_angle;
-  const double product_in_radicand_a2_4 = 0.5*root_of_3*k->sin_rail_angle*k->sin_rail_angle;
-  const double product_in_middle_a2 = 0.5*root_of_3*k->sin_rail_angle;
-  const double root_of_3_times_half_by_arm_length_2 = 0.5*root_of_3/k->arm_length;
+  const double sum_in_span_2_y = 0.5*k->outer_radius*k->root_of_3 - 0.5*k->inner_radius*k->root_of_3;
+  const double product_in_radicand_a2_3 = k->root_of_3*k->cos_rail_angle*k->sin_rail_angle;
+  const double product_in_radicand_a2_4 = 0.5*k->root_of_3*k->sin_rail_angle*k->sin_rail_angle;
+  const double product_in_middle_a2 = 0.5*k->root_of_3*k->sin_rail_angle;
+  const double root_of_3_times_half_by_arm_length_2 = 0.5*k->root_of_3/k->arm_length;
   const double one_minus_cos_rail_angle_squared = 1.0 - k->cos_rail_angle_squared;
   const double sum_in_radicand_a2_2 = 1.0 - k->sin_rail_angle_squared_times_1_by_4;
   /* rod 1: known part of its vector */
@@ -801,11 +799,11 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* assembly mode of this machine: the sign of the determinant of its rods */
   const double assembly_sign = (p->tcp_below != 0.0) ? -1.0 : 1.0;
   const double sin_max_angle_ball_joint = sin(SOFTKIN_DEGREE*p->max_angle_ball_joint);
+  const double root_of_3 = sqrt(3.0);
   const double product_in_normal_divisor = 1e-22*p->arm_length*p->arm_length*p->arm_length*p->arm_length;
   const double arm_length_squared = p->arm_length*p->arm_length;
   const double arm_length_squared_times_rounding = 1e-12*p->arm_length*p->arm_length;
   const double product_in_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale;
-  const double root_of_3 = softkin_root(3.0);
   const double product_in_pivot_2_y = 0.5*root_of_3*sin_rail_angle;
   const double sum_in_pivot_2_y = 0.5*p->inner_radius*root_of_3 - 0.5*p->outer_radius*root_of_3;
   const double inner_radius_minus_outer_radius = p->inner_radius - p->outer_radius;
@@ -849,6 +847,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.cos_rail_angle = cos_rail_angle;
   made.assembly_sign = assembly_sign;
   made.sin_max_angle_ball_joint = sin_max_angle_ball_joint;
+  made.root_of_3 = root_of_3;
   made.product_in_normal_divisor = product_in_normal_divisor;
   made.arm_length_squared = arm_length_squared;
   made.arm_length_squared_times_rounding = arm_length_squared_times_rounding;

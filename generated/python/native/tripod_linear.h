@@ -84,7 +84,7 @@ typedef struct {
   softkin_ends ends[TRIPOD_LINEAR_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, lowest_a3, highest_a3, outer_radius, inner_radius,
       arm_length, offset_a1, offset_a2, offset_a3, min_type2_margin, tie, sin_rail_angle, cos_rail_angle,
-      assembly_sign, sin_max_angle_ball_joint, product_in_normal_divisor, arm_length_squared,
+      assembly_sign, sin_max_angle_ball_joint, root_of_3, product_in_normal_divisor, arm_length_squared,
       arm_length_squared_times_rounding, product_in_determinant_divisor, product_in_pivot_2_y,
       sum_in_pivot_2_y, inner_radius_minus_outer_radius, half_sin_rail_angle, sum_in_pivot_2_x,
       one_by_arm_length, sin_rail_angle_times_root_of_3, twice_cos_rail_angle, half_by_arm_length,

@@ -181,11 +181,10 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)*k->one_by_arm_length_2;
   const double span_2_x = x - k->sum_in_pivot_2_x; /* rod 2: known part of its vector */
   const double span_2_y = y - k->sum_in_pivot_2_y;
-  const double root_of_3_2 = softkin_root(3.0);
-  const double branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)
+  const double branch_knee_2 = ((k->root_of_3*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)
       *k->half_by_arm_length_2;
   const double span_3_y = k->sum_in_pivot_2_y + y;
-  const double branch_knee_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)
+  const double branch_knee_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + k->root_of_3*span_3_y)*sin_a3)
       *k->half_by_arm_length_2;
   frame->position[0] = x;
   frame->position[1] = y;
@@ -252,8 +251,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   }
   const double span_2_x = x - k->sum_in_pivot_2_x; /* rod 2: known part of its vector */
   const double span_2_y = y - k->sum_in_pivot_2_y;
-  const double root_of_3_2 = softkin_root(3.0);
-  const double along_a2 = span_2_x - root_of_3_2*span_2_y;
+  const double along_a2 = span_2_x - k->root_of_3*span_2_y;
   const double across_a2 = 2.0*span_1_z;
   const double across_a2_squared = across_a2*across_a2;
   /* effective length of the arm that a2 turns */
@@ -279,18 +277,18 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "u",
         fabs(k->arm_length_2 - softkin_root(k->arm_length_2_squared
         + 0.5*fabs((k->arm_length_1 - 0.5*effective_a2)*(k->arm_length_1 - 0.5*effective_a2)
-        + (0.5*(span_2_y + root_of_3_2*span_2_x) - k->arm_length_2)
-        *(k->arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x)))
+        + (0.5*(span_2_y + k->root_of_3*span_2_x) - k->arm_length_2)
+        *(k->arm_length_2 + 0.5*(span_2_y + k->root_of_3*span_2_x)))
         + 0.5*(k->arm_length_1 - 0.5*effective_a2)*(k->arm_length_1 - 0.5*effective_a2)
         + 0.5*(k->arm_length_1 + 0.5*effective_a2)*(k->arm_length_1 + 0.5*effective_a2)
-        + (0.5*(span_2_y + root_of_3_2*span_2_x) - k->arm_length_2)
-        *(k->arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
+        + (0.5*(span_2_y + k->root_of_3*span_2_x) - k->arm_length_2)
+        *(k->arm_length_2 + 0.5*(span_2_y + k->root_of_3*span_2_x))
         - 0.5*fabs((k->arm_length_1 + 0.5*effective_a2)*(k->arm_length_1 + 0.5*effective_a2)
-        + (0.5*(span_2_y + root_of_3_2*span_2_x) - k->arm_length_2)
-        *(k->arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))))), 0);
+        + (0.5*(span_2_y + k->root_of_3*span_2_x) - k->arm_length_2)
+        *(k->arm_length_2 + 0.5*(span_2_y + k->root_of_3*span_2_x))))), 0);
   }
   const double span_3_y = k->sum_in_pivot_2_y + y;
-  const double along_a3 = span_2_x + root_of_3_2*span_3_y;
+  const double along_a3 = span_2_x + k->root_of_3*span_3_y;
   /* effective length of the arm that a3 turns */
   const double effective_a3 = softkin_root(across_a2_squared + along_a3*along_a3);
   /* a3: its effective length is too short */
@@ -313,15 +311,15 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         fabs(k->arm_length_2 - softkin_root(k->arm_length_2_squared
         + 0.5*fabs((k->arm_length_1 - 0.5*effective_a3)*(k->arm_length_1 - 0.5*effective_a3)
-        + (0.5*(root_of_3_2*span_2_x - span_3_y) - k->arm_length_2)
-        *(k->arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y)))
+        + (0.5*(k->root_of_3*span_2_x - span_3_y) - k->arm_length_2)
+        *(k->arm_length_2 + 0.5*(k->root_of_3*span_2_x - span_3_y)))
         + 0.5*(k->arm_length_1 - 0.5*effective_a3)*(k->arm_length_1 - 0.5*effective_a3)
         + 0.5*(k->arm_length_1 + 0.5*effective_a3)*(k->arm_length_1 + 0.5*effective_a3)
-        + (0.5*(root_of_3_2*span_2_x - span_3_y) - k->arm_length_2)
-        *(k->arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
+        + (0.5*(k->root_of_3*span_2_x - span_3_y) - k->arm_length_2)
+        *(k->arm_length_2 + 0.5*(k->root_of_3*span_2_x - span_3_y))
         - 0.5*fabs((k->arm_length_1 + 0.5*effective_a3)*(k->arm_length_1 + 0.5*effective_a3)
-        + (0.5*(root_of_3_2*span_2_x - span_3_y) - k->arm_length_2)
-        *(k->arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))))), 0);
+        + (0.5*(k->root_of_3*span_2_x - span_3_y) - k->arm_length_2)
+        *(k->arm_length_2 + 0.5*(k->root_of_3*span_2_x - span_3_y))))), 0);
   }
   const double sign_knee_1 = sigma_knee_1; /* knee_1: +1 outward, -1 inward */
   /* sine squared, times the squared scale */
@@ -565,11 +563,10 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double span_2_x = x - k->sum_in_pivot_2_x; /* rod 2: known part of its vector */
   const double y = foot_y + height_by_normal*normal_y;
   const double span_2_y = y - k->sum_in_pivot_2_y;
-  const double root_of_3_2 = softkin_root(3.0);
-  const double margin_stretched_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)
+  const double margin_stretched_2 = ((k->root_of_3*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)
       *k->half_by_arm_length_2;
   const double span_3_y = k->sum_in_pivot_2_y + y;
-  const double margin_stretched_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)
+  const double margin_stretched_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + k->root_of_3*span_3_y)*sin_a3)
       *k->half_by_arm_length_2;
   const double rod_1_x = x - pivot_1_x;
   const double rod_1_z = z - pivot_1_z;
@@ -670,14 +667,13 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double twice_z_minus_fixed_length_2 = 2.0*z_minus_fixed_length_2;
   const double slope_1_by_z = twice_z_minus_fixed_length_2 + k->twice_arm_length_1*sin_a1;
   const double arm_length_1_times_cos_a2 = k->arm_length_1*cos_a2;
-  const double root_of_3_2 = softkin_root(3.0);
   const double product_in_slope_2_by_y = (k->fixed_length_1 - k->arm_1_radius - arm_length_1_times_cos_a2)
-      *root_of_3_2;
+      *k->root_of_3;
   const double slope_2_by_y = slope_1_by_y - product_in_slope_2_by_y;
   const double slope_2_by_z = twice_z_minus_fixed_length_2 + k->twice_arm_length_1*sin_a2;
   const double arm_length_1_times_cos_a3 = k->arm_length_1*cos_a3;
   const double product_in_slope_3_by_y = (k->fixed_length_1 - k->arm_1_radius - arm_length_1_times_cos_a3)
-      *root_of_3_2;
+      *k->root_of_3;
   const double slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y;
   const double slope_3_by_z = twice_z_minus_fixed_length_2 + k->twice_arm_length_1*sin_a3;
   const double sum_in_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y;
@@ -725,10 +721,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2], ref_a1 = reference[0],
       ref_a2 = reference[1], ref_a3 = reference[2];
   const double product_in_scaled_cosine_a1_2 = -2.0*k->arm_length_1*k->fixed_length_1_minus_arm_1_radius;
-  const double root_of_3 = softkin_root(3.0);
-  const double sum_in_span_2_y = 0.5*k->arm_1_radius*root_of_3 - 0.5*k->fixed_length_1*root_of_3;
-  const double arm_length_1_times_root_of_3_times_half_2 = 0.5*k->arm_length_1*root_of_3;
-  const double root_of_3_times_half_by_arm_length_2_2 = 0.5*root_of_3/k->arm_length_2;
+  const double sum_in_span_2_y = 0.5*k->arm_1_radius*k->root_of_3 - 0.5*k->fixed_length_1*k->root_of_3;
+  const double arm_length_1_times_root_of_3_times_half_2 = 0.5*k->arm_length_1*k->root_of_3;
+  const double root_of_3_times_half_by_arm_length_2_2 = 0.5*k->root_of_3/k->arm_length_2;
   /* rod 1: known part of its vector */
   const double span_1_x = x - k->fixed_length_1_minus_arm_1_radius;
   const double span_1_z = z - k->fixed_length_2;
@@ -755,8 +750,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double span_2_x = x - k->sum_in_pivot_2_x; /* rod 2: known part of its vector */
   const double span_2_y = sum_in_span_2_y + y;
-  const double root_of_3_2 = softkin_root(3.0);
-  const double along_a2 = span_2_x - root_of_3_2*span_2_y;
+  const double along_a2 = span_2_x - k->root_of_3*span_2_y;
   const double across_a2 = 2.0*span_1_z;
   const double across_a2_squared = across_a2*across_a2;
   /* effective length of the arm that a2 turns */
@@ -780,7 +774,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
   }
   const double span_3_y = y - sum_in_span_2_y;
-  const double along_a3 = span_2_x + root_of_3_2*span_3_y;
+  const double along_a3 = span_2_x + k->root_of_3*span_3_y;
   /* effective length of the arm that a3 turns */
   const double effective_a3 = softkin_root(across_a2_squared + along_a3*along_a3);
   if (!(effective_a3 > k->product_in_divisor_a2)) {
@@ -1046,6 +1040,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* assembly mode of this machine: the sign of the determinant of its rods */
   const double assembly_sign = (p->tcp_above != 0.0) ? 1.0 : -1.0;
   const double sin_max_angle_ball_joint = sin(SOFTKIN_DEGREE*p->max_angle_ball_joint);
+  const double root_of_3 = sqrt(3.0);
   const double product_in_normal_divisor = 1e-22*p->arm_length_2*p->arm_length_2*p->arm_length_2
       *p->arm_length_2;
   const double arm_length_2_squared = p->arm_length_2*p->arm_length_2;
@@ -1055,7 +1050,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double product_in_scaled_cosine_a1 = 2.0*p->arm_length_1*fixed_length_1_minus_arm_1_radius;
   const double product_in_divisor_a2 = 5e-10*p->arm_length_1;
   const double product_in_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale;
-  const double root_of_3 = softkin_root(3.0);
   const double arm_length_1_times_root_of_3_times_half = 0.5*p->arm_length_1*root_of_3;
   const double sum_in_pivot_2_y = 0.5*fixed_length_1*root_of_3 - 0.5*p->arm_1_radius*root_of_3;
   const double half_arm_length_1 = 0.5*p->arm_length_1;
@@ -1092,6 +1086,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.fixed_length_2 = fixed_length_2;
   made.assembly_sign = assembly_sign;
   made.sin_max_angle_ball_joint = sin_max_angle_ball_joint;
+  made.root_of_3 = root_of_3;
   made.product_in_normal_divisor = product_in_normal_divisor;
   made.arm_length_2_squared = arm_length_2_squared;
   made.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding;

@@ -81,13 +81,13 @@ class Constants:
         machine_scale = arm_length + base_radius + plate_radius + rod_length  # characteristic length of the machine
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = 1.0 if tcp_above else -1.0
+        root_of_3 = sqrt(3.0)
         product_in_normal_divisor = 1e-22 * rod_length * rod_length * rod_length * rod_length
         rod_length_squared = rod_length * rod_length
         rod_length_squared_times_rounding = 1e-12 * rod_length * rod_length
         arm_length_times_shortest_link = 1e-9 * arm_length
         product_in_divisor_a2 = 5e-10 * arm_length
         product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
-        root_of_3 = root(3.0)
         arm_length_times_root_of_3_times_half = 0.5 * arm_length * root_of_3
         sum_in_pivot_2_y = 0.5 * base_radius * root_of_3 - 0.5 * plate_radius * root_of_3
         base_radius_minus_plate_radius = base_radius - plate_radius
@@ -103,8 +103,8 @@ class Constants:
         self.base_radius, self.arm_length, self.rod_length = base_radius, arm_length, rod_length
         self.plate_radius, self.offset_a1, self.offset_a2 = plate_radius, offset_a1, offset_a2
         self.offset_a3, self.offset_a4, self.min_type2_margin = offset_a3, offset_a4, min_type2_margin
-        self.assembly_sign, self.product_in_normal_divisor = assembly_sign, product_in_normal_divisor
-        self.rod_length_squared = rod_length_squared
+        self.assembly_sign, self.root_of_3 = assembly_sign, root_of_3
+        self.product_in_normal_divisor, self.rod_length_squared = product_in_normal_divisor, rod_length_squared
         self.rod_length_squared_times_rounding = rod_length_squared_times_rounding
         self.arm_length_times_shortest_link = arm_length_times_shortest_link
         self.product_in_divisor_a2 = product_in_divisor_a2
@@ -129,7 +129,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Delta_C"
-    KEY = "delta_c 86e7d36baa2c7a5b"
+    KEY = "delta_c 23c4cb07e2d483c6"
     AXES = (
         Axis(
             name="A1",
@@ -297,7 +297,8 @@ class DeltaC(OffsetKinematics, TwistChoice):
         half_plate_radius_minus_half_base_radius, offset_a1 = k.half_plate_radius_minus_half_base_radius, k.offset_a1
         offset_a2, offset_a3, offset_a4, one_by_rod_length = k.offset_a2, k.offset_a3, k.offset_a4, k.one_by_rod_length
         product_in_normal_divisor, rod_length_squared = k.product_in_normal_divisor, k.rod_length_squared
-        rod_length_squared_times_rounding, sum_in_pivot_2_y = k.rod_length_squared_times_rounding, k.sum_in_pivot_2_y
+        rod_length_squared_times_rounding, root_of_3 = k.rod_length_squared_times_rounding, k.root_of_3
+        sum_in_pivot_2_y = k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -370,10 +371,9 @@ class DeltaC(OffsetKinematics, TwistChoice):
         branch_knee_1 = -one_by_rod_length * (z * cos_a1 + span_1_x * sin_a1)
         span_2_x = x - half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         span_2_y = y - sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        branch_knee_2 = ((span_2_x - root_of_3_2 * span_2_y) * sin_a2 - 2.0 * z * cos_a2) * half_by_rod_length
+        branch_knee_2 = ((span_2_x - root_of_3 * span_2_y) * sin_a2 - 2.0 * z * cos_a2) * half_by_rod_length
         span_3_y = sum_in_pivot_2_y + y
-        branch_knee_3 = ((span_2_x + root_of_3_2 * span_3_y) * sin_a3 - 2.0 * z * cos_a3) * half_by_rod_length
+        branch_knee_3 = ((span_2_x + root_of_3 * span_3_y) * sin_a3 - 2.0 * z * cos_a3) * half_by_rod_length
         return (
             (x, y, z),
             ((cos_a4, -sin_a4, 0.0), (sin_a4, cos_a4, 0.0), (0.0, 0.0, 1.0)),
@@ -473,8 +473,8 @@ class DeltaC(OffsetKinematics, TwistChoice):
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
         product_in_divisor_a2 = k.product_in_divisor_a2
         quotient_in_type2_rods_coplanar, rod_length = k.quotient_in_type2_rods_coplanar, k.rod_length
-        rod_length_squared, single_a1, single_a2 = k.rod_length_squared, k.single_a1, k.single_a2
-        single_a3, single_a4, sum_in_pivot_2_y = k.single_a3, k.single_a4, k.sum_in_pivot_2_y
+        rod_length_squared, root_of_3, single_a1 = k.rod_length_squared, k.root_of_3, k.single_a1
+        single_a2, single_a3, single_a4, sum_in_pivot_2_y = k.single_a2, k.single_a3, k.single_a4, k.sum_in_pivot_2_y
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
@@ -518,16 +518,15 @@ class DeltaC(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = x - half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         span_2_y = y - sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        along_a2 = span_2_x - root_of_3 * span_2_y
         across_a2 = 2.0 * z
         across_a2_squared = across_a2 * across_a2
         effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > product_in_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        span_2_x_times_root_of_3_2 = root_of_3_2 * span_2_x
-        product_in_third_square_a2 = 0.5 * (span_2_x_times_root_of_3_2 + span_2_y)
+        span_2_x_times_root_of_3 = root_of_3 * span_2_x
+        product_in_third_square_a2 = 0.5 * (span_2_x_times_root_of_3 + span_2_y)
         # square of the third side of the triangle
         third_square_a2 = (rod_length - product_in_third_square_a2) * (product_in_third_square_a2 + rod_length)
         half_effective_a2 = 0.5 * effective_a2
@@ -559,12 +558,12 @@ class DeltaC(OffsetKinematics, TwistChoice):
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_y = sum_in_pivot_2_y + y
-        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        along_a3 = span_2_x + root_of_3 * span_3_y
         effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > product_in_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        product_in_third_square_a3 = 0.5 * (span_3_y - span_2_x_times_root_of_3_2)
+        product_in_third_square_a3 = 0.5 * (span_3_y - span_2_x_times_root_of_3)
         # square of the third side of the triangle
         third_square_a3 = (rod_length - product_in_third_square_a3) * (product_in_third_square_a3 + rod_length)
         half_effective_a3 = 0.5 * effective_a3
@@ -683,7 +682,8 @@ class DeltaC(OffsetKinematics, TwistChoice):
         offset_a2, offset_a3, one_by_rod_length = k.offset_a2, k.offset_a3, k.one_by_rod_length
         product_in_normal_divisor = k.product_in_normal_divisor
         quotient_in_margin_rods_coplanar, rod_length_squared = k.quotient_in_margin_rods_coplanar, k.rod_length_squared
-        rod_length_squared_times_rounding, sum_in_pivot_2_y = k.rod_length_squared_times_rounding, k.sum_in_pivot_2_y
+        rod_length_squared_times_rounding, root_of_3 = k.rod_length_squared_times_rounding, k.root_of_3
+        sum_in_pivot_2_y = k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -753,10 +753,9 @@ class DeltaC(OffsetKinematics, TwistChoice):
         span_2_x = x - half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         y = foot_y + height_by_normal * normal_y
         span_2_y = y - sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        margin_stretched_2 = ((span_2_x - root_of_3_2 * span_2_y) * sin_a2 - 2.0 * z * cos_a2) * half_by_rod_length
+        margin_stretched_2 = ((span_2_x - root_of_3 * span_2_y) * sin_a2 - 2.0 * z * cos_a2) * half_by_rod_length
         span_3_y = sum_in_pivot_2_y + y
-        margin_stretched_3 = ((span_2_x + root_of_3_2 * span_3_y) * sin_a3 - 2.0 * z * cos_a3) * half_by_rod_length
+        margin_stretched_3 = ((span_2_x + root_of_3 * span_3_y) * sin_a3 - 2.0 * z * cos_a3) * half_by_rod_length
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
         rod_2_x = x - pivot_2_x
@@ -784,8 +783,9 @@ class DeltaC(OffsetKinematics, TwistChoice):
         offset_a2, offset_a3, plate_radius = k.offset_a2, k.offset_a3, k.plate_radius
         product_in_determinant_divisor = k.product_in_determinant_divisor
         product_in_normal_divisor, rod_length_squared = k.product_in_normal_divisor, k.rod_length_squared
-        rod_length_squared_times_rounding, sum_in_pivot_2_y = k.rod_length_squared_times_rounding, k.sum_in_pivot_2_y
-        sum_in_slope_1_by_x, twice_arm_length = k.sum_in_slope_1_by_x, k.twice_arm_length
+        rod_length_squared_times_rounding, root_of_3 = k.rod_length_squared_times_rounding, k.root_of_3
+        sum_in_pivot_2_y, sum_in_slope_1_by_x = k.sum_in_pivot_2_y, k.sum_in_slope_1_by_x
+        twice_arm_length = k.twice_arm_length
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -857,12 +857,11 @@ class DeltaC(OffsetKinematics, TwistChoice):
         twice_z = 2.0 * z
         slope_1_by_z = twice_z + twice_arm_length * sin_a1
         arm_length_times_cos_a2 = arm_length * cos_a2
-        root_of_3_2 = root(3.0)
-        product_in_slope_2_by_y = (plate_radius - arm_length_times_cos_a2 - base_radius) * root_of_3_2
+        product_in_slope_2_by_y = (plate_radius - arm_length_times_cos_a2 - base_radius) * root_of_3
         slope_2_by_y = product_in_slope_2_by_y + slope_1_by_y
         slope_2_by_z = twice_z + twice_arm_length * sin_a2
         arm_length_times_cos_a3 = arm_length * cos_a3
-        product_in_slope_3_by_y = (plate_radius - arm_length_times_cos_a3 - base_radius) * root_of_3_2
+        product_in_slope_3_by_y = (plate_radius - arm_length_times_cos_a3 - base_radius) * root_of_3
         slope_3_by_y = slope_1_by_y - product_in_slope_3_by_y
         slope_3_by_z = twice_z + twice_arm_length * sin_a3
         sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
@@ -925,8 +924,9 @@ class DeltaC(OffsetKinematics, TwistChoice):
         offset_a2, offset_a3, plate_radius = k.offset_a2, k.offset_a3, k.plate_radius
         product_in_determinant_divisor = k.product_in_determinant_divisor
         product_in_normal_divisor, rod_length_squared = k.product_in_normal_divisor, k.rod_length_squared
-        rod_length_squared_times_rounding, sum_in_pivot_2_y = k.rod_length_squared_times_rounding, k.sum_in_pivot_2_y
-        sum_in_slope_1_by_x, twice_arm_length = k.sum_in_slope_1_by_x, k.twice_arm_length
+        rod_length_squared_times_rounding, root_of_3 = k.rod_length_squared_times_rounding, k.root_of_3
+        sum_in_pivot_2_y, sum_in_slope_1_by_x = k.sum_in_pivot_2_y, k.sum_in_slope_1_by_x
+        twice_arm_length = k.twice_arm_length
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -998,12 +998,11 @@ class DeltaC(OffsetKinematics, TwistChoice):
         twice_z = 2.0 * z
         slope_1_by_z = twice_z + twice_arm_length * sin_a1
         arm_length_times_cos_a2 = arm_length * cos_a2
-        root_of_3_2 = root(3.0)
-        product_in_slope_2_by_y = (plate_radius - arm_length_times_cos_a2 - base_radius) * root_of_3_2
+        product_in_slope_2_by_y = (plate_radius - arm_length_times_cos_a2 - base_radius) * root_of_3
         slope_2_by_y = product_in_slope_2_by_y + slope_1_by_y
         slope_2_by_z = twice_z + twice_arm_length * sin_a2
         arm_length_times_cos_a3 = arm_length * cos_a3
-        product_in_slope_3_by_y = (plate_radius - arm_length_times_cos_a3 - base_radius) * root_of_3_2
+        product_in_slope_3_by_y = (plate_radius - arm_length_times_cos_a3 - base_radius) * root_of_3
         slope_3_by_y = slope_1_by_y - product_in_slope_3_by_y
         slope_3_by_z = twice_z + twice_arm_length * sin_a3
         sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
@@ -1092,8 +1091,8 @@ class DeltaC(OffsetKinematics, TwistChoice):
         offset_a2, offset_a3, offset_a4 = k.offset_a2, k.offset_a3, k.offset_a4
         product_in_divisor_a2 = k.product_in_divisor_a2
         quotient_in_type2_rods_coplanar, rod_length = k.quotient_in_type2_rods_coplanar, k.rod_length
-        rod_length_squared, single_a1, single_a2 = k.rod_length_squared, k.single_a1, k.single_a2
-        single_a3, sum_in_pivot_2_y = k.single_a3, k.sum_in_pivot_2_y
+        rod_length_squared, root_of_3, single_a1 = k.rod_length_squared, k.root_of_3, k.single_a1
+        single_a2, single_a3, sum_in_pivot_2_y = k.single_a2, k.single_a3, k.sum_in_pivot_2_y
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_z = z - point_z  # position of the flange: the point less its offset
@@ -1138,16 +1137,15 @@ class DeltaC(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = flange_x - half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         span_2_y = flange_y - sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        along_a2 = span_2_x - root_of_3 * span_2_y
         across_a2 = 2.0 * flange_z
         across_a2_squared = across_a2 * across_a2
         effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > product_in_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        span_2_x_times_root_of_3_2 = root_of_3_2 * span_2_x
-        product_in_third_square_a2 = 0.5 * (span_2_x_times_root_of_3_2 + span_2_y)
+        span_2_x_times_root_of_3 = root_of_3 * span_2_x
+        product_in_third_square_a2 = 0.5 * (span_2_x_times_root_of_3 + span_2_y)
         # square of the third side of the triangle
         third_square_a2 = (rod_length - product_in_third_square_a2) * (product_in_third_square_a2 + rod_length)
         half_effective_a2 = 0.5 * effective_a2
@@ -1179,12 +1177,12 @@ class DeltaC(OffsetKinematics, TwistChoice):
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_y = flange_y + sum_in_pivot_2_y
-        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        along_a3 = span_2_x + root_of_3 * span_3_y
         effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > product_in_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        product_in_third_square_a3 = 0.5 * (span_3_y - span_2_x_times_root_of_3_2)
+        product_in_third_square_a3 = 0.5 * (span_3_y - span_2_x_times_root_of_3)
         # square of the third side of the triangle
         third_square_a3 = (rod_length - product_in_third_square_a3) * (product_in_third_square_a3 + rod_length)
         half_effective_a3 = 0.5 * effective_a3
@@ -1284,7 +1282,8 @@ class DeltaC(OffsetKinematics, TwistChoice):
         half_plate_radius_minus_half_base_radius, offset_a1 = k.half_plate_radius_minus_half_base_radius, k.offset_a1
         offset_a2, offset_a3, one_by_rod_length = k.offset_a2, k.offset_a3, k.one_by_rod_length
         product_in_normal_divisor, rod_length_squared = k.product_in_normal_divisor, k.rod_length_squared
-        rod_length_squared_times_rounding, sum_in_pivot_2_y = k.rod_length_squared_times_rounding, k.sum_in_pivot_2_y
+        rod_length_squared_times_rounding, root_of_3 = k.rod_length_squared_times_rounding, k.root_of_3
+        sum_in_pivot_2_y = k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -1354,10 +1353,9 @@ class DeltaC(OffsetKinematics, TwistChoice):
         span_2_x = flange_x - half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         flange_y = foot_y + height_by_normal * normal_y
         span_2_y = flange_y - sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        branch_knee_2 = ((span_2_x - root_of_3_2 * span_2_y) * sin_a2 - 2.0 * flange_z * cos_a2) * half_by_rod_length
+        branch_knee_2 = ((span_2_x - root_of_3 * span_2_y) * sin_a2 - 2.0 * flange_z * cos_a2) * half_by_rod_length
         span_3_y = flange_y + sum_in_pivot_2_y
-        branch_knee_3 = ((span_2_x + root_of_3_2 * span_3_y) * sin_a3 - 2.0 * flange_z * cos_a3) * half_by_rod_length
+        branch_knee_3 = ((span_2_x + root_of_3 * span_3_y) * sin_a3 - 2.0 * flange_z * cos_a3) * half_by_rod_length
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

@@ -73,11 +73,11 @@ class Constants:
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = -1.0 if tcp_below else 1.0
         sin_max_angle_ball_joint = sin(DEGREE * max_angle_ball_joint)
+        root_of_3 = sqrt(3.0)
         product_in_normal_divisor = 1e-22 * arm_length * arm_length * arm_length * arm_length
         arm_length_squared = arm_length * arm_length
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
         product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
-        root_of_3 = root(3.0)
         product_in_pivot_2_y = 0.5 * root_of_3 * sin_rail_angle
         sum_in_pivot_2_y = 0.5 * inner_radius * root_of_3 - 0.5 * outer_radius * root_of_3
         inner_radius_minus_outer_radius = inner_radius - outer_radius
@@ -107,7 +107,7 @@ class Constants:
         self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
         self.min_type2_margin, self.tie, self.sin_rail_angle = min_type2_margin, tie, sin_rail_angle
         self.cos_rail_angle, self.assembly_sign = cos_rail_angle, assembly_sign
-        self.sin_max_angle_ball_joint = sin_max_angle_ball_joint
+        self.sin_max_angle_ball_joint, self.root_of_3 = sin_max_angle_ball_joint, root_of_3
         self.product_in_normal_divisor, self.arm_length_squared = product_in_normal_divisor, arm_length_squared
         self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
         self.product_in_determinant_divisor = product_in_determinant_divisor
@@ -140,7 +140,7 @@ class TripodLinear(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Linear"
-    KEY = "tripod_linear 82b92b649a2507c5"
+    KEY = "tripod_linear a6a127c658eb0d11"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1; positive goes down its rail", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2; positive goes down its rail", multi_turn=False),
@@ -656,10 +656,10 @@ class TripodLinear(OffsetKinematics):
         offset_a2, offset_a3, outer_radius = k.offset_a2, k.offset_a3, k.outer_radius
         product_in_determinant_divisor = k.product_in_determinant_divisor
         product_in_normal_divisor, product_in_pivot_2_y = k.product_in_normal_divisor, k.product_in_pivot_2_y
-        sin_rail_angle, sin_rail_angle_times_root_of_3 = k.sin_rail_angle, k.sin_rail_angle_times_root_of_3
-        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
-        sum_in_slope_1_by_x, twice_cos_rail_angle = k.sum_in_slope_1_by_x, k.twice_cos_rail_angle
-        twice_sin_rail_angle = k.twice_sin_rail_angle
+        root_of_3, sin_rail_angle = k.root_of_3, k.sin_rail_angle
+        sin_rail_angle_times_root_of_3, sum_in_pivot_2_x = k.sin_rail_angle_times_root_of_3, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y, sum_in_slope_1_by_x = k.sum_in_pivot_2_y, k.sum_in_slope_1_by_x
+        twice_cos_rail_angle, twice_sin_rail_angle = k.twice_cos_rail_angle, k.twice_sin_rail_angle
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
@@ -723,12 +723,11 @@ class TripodLinear(OffsetKinematics):
         twice_z = 2.0 * z
         slope_1_by_z = twice_z + a1 * twice_cos_rail_angle
         a2_times_sin_rail_angle = a2 * sin_rail_angle
-        root_of_3_2 = root(3.0)
-        product_in_slope_2_by_y = (inner_radius - a2_times_sin_rail_angle - outer_radius) * root_of_3_2
+        product_in_slope_2_by_y = (inner_radius - a2_times_sin_rail_angle - outer_radius) * root_of_3
         slope_2_by_y = slope_1_by_y - product_in_slope_2_by_y
         slope_2_by_z = twice_z + a2 * twice_cos_rail_angle
         a3_times_sin_rail_angle = a3 * sin_rail_angle
-        product_in_slope_3_by_y = (inner_radius - a3_times_sin_rail_angle - outer_radius) * root_of_3_2
+        product_in_slope_3_by_y = (inner_radius - a3_times_sin_rail_angle - outer_radius) * root_of_3
         slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y
         slope_3_by_z = twice_z + a3 * twice_cos_rail_angle
         sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y

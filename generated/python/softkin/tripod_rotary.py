@@ -90,6 +90,7 @@ class Constants:
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = 1.0 if tcp_above else -1.0
         sin_max_angle_ball_joint = sin(DEGREE * max_angle_ball_joint)
+        root_of_3 = sqrt(3.0)
         product_in_normal_divisor = 1e-22 * arm_length_2 * arm_length_2 * arm_length_2 * arm_length_2
         arm_length_2_squared = arm_length_2 * arm_length_2
         arm_length_2_squared_times_rounding = 1e-12 * arm_length_2 * arm_length_2
@@ -98,7 +99,6 @@ class Constants:
         product_in_scaled_cosine_a1 = 2.0 * arm_length_1 * fixed_length_1_minus_arm_1_radius
         product_in_divisor_a2 = 5e-10 * arm_length_1
         product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
-        root_of_3 = root(3.0)
         arm_length_1_times_root_of_3_times_half = 0.5 * arm_length_1 * root_of_3
         sum_in_pivot_2_y = 0.5 * fixed_length_1 * root_of_3 - 0.5 * arm_1_radius * root_of_3
         half_arm_length_1 = 0.5 * arm_length_1
@@ -115,7 +115,7 @@ class Constants:
         self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
         self.min_type2_margin, self.fixed_length_1 = min_type2_margin, fixed_length_1
         self.fixed_length_2, self.assembly_sign = fixed_length_2, assembly_sign
-        self.sin_max_angle_ball_joint = sin_max_angle_ball_joint
+        self.sin_max_angle_ball_joint, self.root_of_3 = sin_max_angle_ball_joint, root_of_3
         self.product_in_normal_divisor, self.arm_length_2_squared = product_in_normal_divisor, arm_length_2_squared
         self.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding
         self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
@@ -142,7 +142,7 @@ class TripodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
-    KEY = "tripod_rotary fb577d74b68b8bbd"
+    KEY = "tripod_rotary 122afa373ac3441f"
     AXES = (
         Axis(
             name="A1",
@@ -306,8 +306,8 @@ class TripodRotary(OffsetKinematics):
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
         offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
-        product_in_normal_divisor, sum_in_pivot_2_x = k.product_in_normal_divisor, k.sum_in_pivot_2_x
-        sum_in_pivot_2_y = k.sum_in_pivot_2_y
+        product_in_normal_divisor, root_of_3 = k.product_in_normal_divisor, k.root_of_3
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -376,10 +376,9 @@ class TripodRotary(OffsetKinematics):
         branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) * one_by_arm_length_2
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        branch_knee_2 = ((root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2) * half_by_arm_length_2
+        branch_knee_2 = ((root_of_3 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2) * half_by_arm_length_2
         span_3_y = sum_in_pivot_2_y + y
-        branch_knee_3 = -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * half_by_arm_length_2
+        branch_knee_3 = -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3 * span_3_y) * sin_a3) * half_by_arm_length_2
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -411,7 +410,7 @@ class TripodRotary(OffsetKinematics):
         mid_a2, mid_a3, min_type2_margin, offset_a1 = k.mid_a2, k.mid_a3, k.min_type2_margin, k.offset_a1
         offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
         product_in_divisor_a2, product_in_scaled_cosine_a1 = k.product_in_divisor_a2, k.product_in_scaled_cosine_a1
-        quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
+        quotient_in_type2_rods_coplanar, root_of_3 = k.quotient_in_type2_rods_coplanar, k.root_of_3
         root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
         sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
         single_a3, sum_in_pivot_2_x, sum_in_pivot_2_y = k.single_a3, k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
@@ -459,8 +458,7 @@ class TripodRotary(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        along_a2 = span_2_x - root_of_3 * span_2_y
         across_a2 = 2.0 * span_1_z
         across_a2_squared = across_a2 * across_a2
         effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
@@ -487,24 +485,24 @@ class TripodRotary(OffsetKinematics):
                     + 0.5
                     * abs(
                         (arm_length_1 - 0.5 * effective_a2) * (arm_length_1 - 0.5 * effective_a2)
-                        + (0.5 * (span_2_y + root_of_3_2 * span_2_x) - arm_length_2)
-                        * (arm_length_2 + 0.5 * (span_2_y + root_of_3_2 * span_2_x))
+                        + (0.5 * (span_2_y + root_of_3 * span_2_x) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (span_2_y + root_of_3 * span_2_x))
                     )
                     + 0.5 * (arm_length_1 - 0.5 * effective_a2) * (arm_length_1 - 0.5 * effective_a2)
                     + 0.5 * (arm_length_1 + 0.5 * effective_a2) * (arm_length_1 + 0.5 * effective_a2)
-                    + (0.5 * (span_2_y + root_of_3_2 * span_2_x) - arm_length_2)
-                    * (arm_length_2 + 0.5 * (span_2_y + root_of_3_2 * span_2_x))
+                    + (0.5 * (span_2_y + root_of_3 * span_2_x) - arm_length_2)
+                    * (arm_length_2 + 0.5 * (span_2_y + root_of_3 * span_2_x))
                     - 0.5
                     * abs(
                         (arm_length_1 + 0.5 * effective_a2) * (arm_length_1 + 0.5 * effective_a2)
-                        + (0.5 * (span_2_y + root_of_3_2 * span_2_x) - arm_length_2)
-                        * (arm_length_2 + 0.5 * (span_2_y + root_of_3_2 * span_2_x))
+                        + (0.5 * (span_2_y + root_of_3 * span_2_x) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (span_2_y + root_of_3 * span_2_x))
                     )
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_y = sum_in_pivot_2_y + y
-        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        along_a3 = span_2_x + root_of_3 * span_3_y
         effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > product_in_divisor_a2):
@@ -528,18 +526,18 @@ class TripodRotary(OffsetKinematics):
                     + 0.5
                     * abs(
                         (arm_length_1 - 0.5 * effective_a3) * (arm_length_1 - 0.5 * effective_a3)
-                        + (0.5 * (root_of_3_2 * span_2_x - span_3_y) - arm_length_2)
-                        * (arm_length_2 + 0.5 * (root_of_3_2 * span_2_x - span_3_y))
+                        + (0.5 * (root_of_3 * span_2_x - span_3_y) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (root_of_3 * span_2_x - span_3_y))
                     )
                     + 0.5 * (arm_length_1 - 0.5 * effective_a3) * (arm_length_1 - 0.5 * effective_a3)
                     + 0.5 * (arm_length_1 + 0.5 * effective_a3) * (arm_length_1 + 0.5 * effective_a3)
-                    + (0.5 * (root_of_3_2 * span_2_x - span_3_y) - arm_length_2)
-                    * (arm_length_2 + 0.5 * (root_of_3_2 * span_2_x - span_3_y))
+                    + (0.5 * (root_of_3 * span_2_x - span_3_y) - arm_length_2)
+                    * (arm_length_2 + 0.5 * (root_of_3 * span_2_x - span_3_y))
                     - 0.5
                     * abs(
                         (arm_length_1 + 0.5 * effective_a3) * (arm_length_1 + 0.5 * effective_a3)
-                        + (0.5 * (root_of_3_2 * span_2_x - span_3_y) - arm_length_2)
-                        * (arm_length_2 + 0.5 * (root_of_3_2 * span_2_x - span_3_y))
+                        + (0.5 * (root_of_3 * span_2_x - span_3_y) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (root_of_3 * span_2_x - span_3_y))
                     )
                 )
             )
@@ -671,8 +669,8 @@ class TripodRotary(OffsetKinematics):
         half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
         offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
         product_in_normal_divisor = k.product_in_normal_divisor
-        quotient_in_margin_rods_coplanar, sum_in_pivot_2_x = k.quotient_in_margin_rods_coplanar, k.sum_in_pivot_2_x
-        sum_in_pivot_2_y = k.sum_in_pivot_2_y
+        quotient_in_margin_rods_coplanar, root_of_3 = k.quotient_in_margin_rods_coplanar, k.root_of_3
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -741,13 +739,12 @@ class TripodRotary(OffsetKinematics):
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
         y = foot_y + height_by_normal * normal_y
         span_2_y = y - sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
         margin_stretched_2 = (
-            (root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2
+            (root_of_3 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2
         ) * half_by_arm_length_2
         span_3_y = sum_in_pivot_2_y + y
         margin_stretched_3 = (
-            -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * half_by_arm_length_2
+            -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3 * span_3_y) * sin_a3) * half_by_arm_length_2
         )
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
@@ -777,9 +774,9 @@ class TripodRotary(OffsetKinematics):
         fixed_length_2, half_arm_length_1, offset_a1 = k.fixed_length_2, k.half_arm_length_1, k.offset_a1
         offset_a2, offset_a3 = k.offset_a2, k.offset_a3
         product_in_determinant_divisor = k.product_in_determinant_divisor
-        product_in_normal_divisor, sum_in_pivot_2_x = k.product_in_normal_divisor, k.sum_in_pivot_2_x
-        sum_in_pivot_2_y, sum_in_slope_1_by_x = k.sum_in_pivot_2_y, k.sum_in_slope_1_by_x
-        twice_arm_length_1 = k.twice_arm_length_1
+        product_in_normal_divisor, root_of_3 = k.product_in_normal_divisor, k.root_of_3
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        sum_in_slope_1_by_x, twice_arm_length_1 = k.sum_in_slope_1_by_x, k.twice_arm_length_1
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -853,12 +850,11 @@ class TripodRotary(OffsetKinematics):
         twice_z_minus_fixed_length_2 = 2.0 * z_minus_fixed_length_2
         slope_1_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a1
         arm_length_1_times_cos_a2 = arm_length_1 * cos_a2
-        root_of_3_2 = root(3.0)
-        product_in_slope_2_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a2) * root_of_3_2
+        product_in_slope_2_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a2) * root_of_3
         slope_2_by_y = slope_1_by_y - product_in_slope_2_by_y
         slope_2_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a2
         arm_length_1_times_cos_a3 = arm_length_1 * cos_a3
-        product_in_slope_3_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a3) * root_of_3_2
+        product_in_slope_3_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a3) * root_of_3
         slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y
         slope_3_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a3
         sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
@@ -930,7 +926,7 @@ class TripodRotary(OffsetKinematics):
         mid_a2, mid_a3, min_type2_margin, offset_a1 = k.mid_a2, k.mid_a3, k.min_type2_margin, k.offset_a1
         offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
         product_in_divisor_a2, product_in_scaled_cosine_a1 = k.product_in_divisor_a2, k.product_in_scaled_cosine_a1
-        quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
+        quotient_in_type2_rods_coplanar, root_of_3 = k.quotient_in_type2_rods_coplanar, k.root_of_3
         root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
         sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
         single_a3, sum_in_pivot_2_x, sum_in_pivot_2_y = k.single_a3, k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
@@ -983,8 +979,7 @@ class TripodRotary(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = flange_x - sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = flange_y - sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        along_a2 = span_2_x - root_of_3 * span_2_y
         across_a2 = 2.0 * span_1_z
         across_a2_squared = across_a2 * across_a2
         effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
@@ -1011,24 +1006,24 @@ class TripodRotary(OffsetKinematics):
                     + 0.5
                     * abs(
                         (arm_length_1 - 0.5 * effective_a2) * (arm_length_1 - 0.5 * effective_a2)
-                        + (0.5 * (span_2_y + root_of_3_2 * span_2_x) - arm_length_2)
-                        * (arm_length_2 + 0.5 * (span_2_y + root_of_3_2 * span_2_x))
+                        + (0.5 * (span_2_y + root_of_3 * span_2_x) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (span_2_y + root_of_3 * span_2_x))
                     )
                     + 0.5 * (arm_length_1 - 0.5 * effective_a2) * (arm_length_1 - 0.5 * effective_a2)
                     + 0.5 * (arm_length_1 + 0.5 * effective_a2) * (arm_length_1 + 0.5 * effective_a2)
-                    + (0.5 * (span_2_y + root_of_3_2 * span_2_x) - arm_length_2)
-                    * (arm_length_2 + 0.5 * (span_2_y + root_of_3_2 * span_2_x))
+                    + (0.5 * (span_2_y + root_of_3 * span_2_x) - arm_length_2)
+                    * (arm_length_2 + 0.5 * (span_2_y + root_of_3 * span_2_x))
                     - 0.5
                     * abs(
                         (arm_length_1 + 0.5 * effective_a2) * (arm_length_1 + 0.5 * effective_a2)
-                        + (0.5 * (span_2_y + root_of_3_2 * span_2_x) - arm_length_2)
-                        * (arm_length_2 + 0.5 * (span_2_y + root_of_3_2 * span_2_x))
+                        + (0.5 * (span_2_y + root_of_3 * span_2_x) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (span_2_y + root_of_3 * span_2_x))
                     )
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_y = flange_y + sum_in_pivot_2_y
-        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        along_a3 = span_2_x + root_of_3 * span_3_y
         effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > product_in_divisor_a2):
@@ -1052,18 +1047,18 @@ class TripodRotary(OffsetKinematics):
                     + 0.5
                     * abs(
                         (arm_length_1 - 0.5 * effective_a3) * (arm_length_1 - 0.5 * effective_a3)
-                        + (0.5 * (root_of_3_2 * span_2_x - span_3_y) - arm_length_2)
-                        * (arm_length_2 + 0.5 * (root_of_3_2 * span_2_x - span_3_y))
+                        + (0.5 * (root_of_3 * span_2_x - span_3_y) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (root_of_3 * span_2_x - span_3_y))
                     )
                     + 0.5 * (arm_length_1 - 0.5 * effective_a3) * (arm_length_1 - 0.5 * effective_a3)
                     + 0.5 * (arm_length_1 + 0.5 * effective_a3) * (arm_length_1 + 0.5 * effective_a3)
-                    + (0.5 * (root_of_3_2 * span_2_x - span_3_y) - arm_length_2)
-                    * (arm_length_2 + 0.5 * (root_of_3_2 * span_2_x - span_3_y))
+                    + (0.5 * (root_of_3 * span_2_x - span_3_y) - arm_length_2)
+                    * (arm_length_2 + 0.5 * (root_of_3 * span_2_x - span_3_y))
                     - 0.5
                     * abs(
                         (arm_length_1 + 0.5 * effective_a3) * (arm_length_1 + 0.5 * effective_a3)
-                        + (0.5 * (root_of_3_2 * span_2_x - span_3_y) - arm_length_2)
-                        * (arm_length_2 + 0.5 * (root_of_3_2 * span_2_x - span_3_y))
+                        + (0.5 * (root_of_3 * span_2_x - span_3_y) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (root_of_3 * span_2_x - span_3_y))
                     )
                 )
             )
@@ -1183,8 +1178,8 @@ class TripodRotary(OffsetKinematics):
         fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
         offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
-        product_in_normal_divisor, sum_in_pivot_2_x = k.product_in_normal_divisor, k.sum_in_pivot_2_x
-        sum_in_pivot_2_y = k.sum_in_pivot_2_y
+        product_in_normal_divisor, root_of_3 = k.product_in_normal_divisor, k.root_of_3
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
@@ -1253,10 +1248,9 @@ class TripodRotary(OffsetKinematics):
         span_2_x = flange_x - sum_in_pivot_2_x  # rod 2: known part of its vector
         flange_y = foot_y + height_by_normal * normal_y
         span_2_y = flange_y - sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        branch_knee_2 = ((root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2) * half_by_arm_length_2
+        branch_knee_2 = ((root_of_3 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2) * half_by_arm_length_2
         span_3_y = flange_y + sum_in_pivot_2_y
-        branch_knee_3 = -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * half_by_arm_length_2
+        branch_knee_3 = -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3 * span_3_y) * sin_a3) * half_by_arm_length_2
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

@@ -105,10 +105,9 @@ class ArrayPrograms(Programs):
         branch_knee_1 = -k.one_by_rod_length * (z * cos_a1 + span_1_x * sin_a1)
         span_2_x = x - k.half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         span_2_y = y - k.sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        branch_knee_2 = ((span_2_x - root_of_3_2 * span_2_y) * sin_a2 - 2.0 * z * cos_a2) * k.half_by_rod_length
+        branch_knee_2 = ((span_2_x - k.root_of_3 * span_2_y) * sin_a2 - 2.0 * z * cos_a2) * k.half_by_rod_length
         span_3_y = k.sum_in_pivot_2_y + y
-        branch_knee_3 = ((span_2_x + root_of_3_2 * span_3_y) * sin_a3 - 2.0 * z * cos_a3) * k.half_by_rod_length
+        branch_knee_3 = ((span_2_x + k.root_of_3 * span_3_y) * sin_a3 - 2.0 * z * cos_a3) * k.half_by_rod_length
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
@@ -154,13 +153,12 @@ class ArrayPrograms(Programs):
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         span_2_x = x - k.half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         span_2_y = y - k.sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        along_a2 = span_2_x - k.root_of_3 * span_2_y
         across_a2 = 2.0 * z
         across_a2_squared = across_a2 * across_a2
         effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
-        span_2_x_times_root_of_3_2 = root_of_3_2 * span_2_x
-        product_in_third_square_a2 = 0.5 * (span_2_x_times_root_of_3_2 + span_2_y)
+        span_2_x_times_root_of_3 = k.root_of_3 * span_2_x
+        product_in_third_square_a2 = 0.5 * (span_2_x_times_root_of_3 + span_2_y)
         # square of the third side of the triangle
         third_square_a2 = (k.rod_length - product_in_third_square_a2) * (product_in_third_square_a2 + k.rod_length)
         divisor_a2 = select(effective_a2 > k.product_in_divisor_a2, effective_a2, 1.0)
@@ -176,9 +174,9 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         span_3_y = k.sum_in_pivot_2_y + y
-        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        along_a3 = span_2_x + k.root_of_3 * span_3_y
         effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
-        product_in_third_square_a3 = 0.5 * (span_3_y - span_2_x_times_root_of_3_2)
+        product_in_third_square_a3 = 0.5 * (span_3_y - span_2_x_times_root_of_3)
         # square of the third side of the triangle
         third_square_a3 = (k.rod_length - product_in_third_square_a3) * (product_in_third_square_a3 + k.rod_length)
         divisor_a3 = select(effective_a3 > k.product_in_divisor_a2, effective_a3, 1.0)
@@ -348,10 +346,9 @@ class ArrayPrograms(Programs):
         span_2_x = x - k.half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         y = foot_y + height_by_normal * normal_y
         span_2_y = y - k.sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        margin_stretched_2 = ((span_2_x - root_of_3_2 * span_2_y) * sin_a2 - 2.0 * z * cos_a2) * k.half_by_rod_length
+        margin_stretched_2 = ((span_2_x - k.root_of_3 * span_2_y) * sin_a2 - 2.0 * z * cos_a2) * k.half_by_rod_length
         span_3_y = k.sum_in_pivot_2_y + y
-        margin_stretched_3 = ((span_2_x + root_of_3_2 * span_3_y) * sin_a3 - 2.0 * z * cos_a3) * k.half_by_rod_length
+        margin_stretched_3 = ((span_2_x + k.root_of_3 * span_3_y) * sin_a3 - 2.0 * z * cos_a3) * k.half_by_rod_length
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
         rod_2_x = x - pivot_2_x
@@ -445,12 +442,11 @@ class ArrayPrograms(Programs):
         twice_z = 2.0 * z
         slope_1_by_z = twice_z + k.twice_arm_length * sin_a1
         arm_length_times_cos_a2 = k.arm_length * cos_a2
-        root_of_3_2 = root(3.0)
-        product_in_slope_2_by_y = (k.plate_radius - arm_length_times_cos_a2 - k.base_radius) * root_of_3_2
+        product_in_slope_2_by_y = (k.plate_radius - arm_length_times_cos_a2 - k.base_radius) * k.root_of_3
         slope_2_by_y = product_in_slope_2_by_y + slope_1_by_y
         slope_2_by_z = twice_z + k.twice_arm_length * sin_a2
         arm_length_times_cos_a3 = k.arm_length * cos_a3
-        product_in_slope_3_by_y = (k.plate_radius - arm_length_times_cos_a3 - k.base_radius) * root_of_3_2
+        product_in_slope_3_by_y = (k.plate_radius - arm_length_times_cos_a3 - k.base_radius) * k.root_of_3
         slope_3_by_y = slope_1_by_y - product_in_slope_3_by_y
         slope_3_by_z = twice_z + k.twice_arm_length * sin_a3
         sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
@@ -580,12 +576,11 @@ class ArrayPrograms(Programs):
         twice_z = 2.0 * z
         slope_1_by_z = twice_z + k.twice_arm_length * sin_a1
         arm_length_times_cos_a2 = k.arm_length * cos_a2
-        root_of_3_2 = root(3.0)
-        product_in_slope_2_by_y = (k.plate_radius - arm_length_times_cos_a2 - k.base_radius) * root_of_3_2
+        product_in_slope_2_by_y = (k.plate_radius - arm_length_times_cos_a2 - k.base_radius) * k.root_of_3
         slope_2_by_y = product_in_slope_2_by_y + slope_1_by_y
         slope_2_by_z = twice_z + k.twice_arm_length * sin_a2
         arm_length_times_cos_a3 = k.arm_length * cos_a3
-        product_in_slope_3_by_y = (k.plate_radius - arm_length_times_cos_a3 - k.base_radius) * root_of_3_2
+        product_in_slope_3_by_y = (k.plate_radius - arm_length_times_cos_a3 - k.base_radius) * k.root_of_3
         slope_3_by_y = slope_1_by_y - product_in_slope_3_by_y
         slope_3_by_z = twice_z + k.twice_arm_length * sin_a3
         sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y

@@ -359,12 +359,11 @@ class ArrayPrograms(Programs):
         twice_z = 2.0 * z
         slope_1_by_z = twice_z + a1 * k.twice_cos_rail_angle
         a2_times_sin_rail_angle = a2 * k.sin_rail_angle
-        root_of_3_2 = root(3.0)
-        product_in_slope_2_by_y = (k.inner_radius - a2_times_sin_rail_angle - k.outer_radius) * root_of_3_2
+        product_in_slope_2_by_y = (k.inner_radius - a2_times_sin_rail_angle - k.outer_radius) * k.root_of_3
         slope_2_by_y = slope_1_by_y - product_in_slope_2_by_y
         slope_2_by_z = twice_z + a2 * k.twice_cos_rail_angle
         a3_times_sin_rail_angle = a3 * k.sin_rail_angle
-        product_in_slope_3_by_y = (k.inner_radius - a3_times_sin_rail_angle - k.outer_radius) * root_of_3_2
+        product_in_slope_3_by_y = (k.inner_radius - a3_times_sin_rail_angle - k.outer_radius) * k.root_of_3
         slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y
         slope_3_by_z = twice_z + a3 * k.twice_cos_rail_angle
         sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y

@@ -102,13 +102,12 @@ class ArrayPrograms(Programs):
         branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) * k.one_by_arm_length_2
         span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - k.sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
         branch_knee_2 = (
-            (root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2
+            (k.root_of_3 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2
         ) * k.half_by_arm_length_2
         span_3_y = k.sum_in_pivot_2_y + y
         branch_knee_3 = (
-            -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * k.half_by_arm_length_2
+            -(2.0 * span_1_z * cos_a3 + (span_2_x + k.root_of_3 * span_3_y) * sin_a3) * k.half_by_arm_length_2
         )
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
@@ -152,8 +151,7 @@ class ArrayPrograms(Programs):
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - k.sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        along_a2 = span_2_x - k.root_of_3 * span_2_y
         across_a2 = 2.0 * span_1_z
         across_a2_squared = across_a2 * across_a2
         effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
@@ -170,7 +168,7 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         span_3_y = k.sum_in_pivot_2_y + y
-        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        along_a3 = span_2_x + k.root_of_3 * span_3_y
         effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # cosine, times the scale, without cancellation
         scaled_cosine_a3 = (span_3_y + k.sum_in_pivot_2_y) * y - sum_in_scaled_cosine_a2
@@ -343,13 +341,12 @@ class ArrayPrograms(Programs):
         span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
         y = foot_y + height_by_normal * normal_y
         span_2_y = y - k.sum_in_pivot_2_y
-        root_of_3_2 = root(3.0)
         margin_stretched_2 = (
-            (root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2
+            (k.root_of_3 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2
         ) * k.half_by_arm_length_2
         span_3_y = k.sum_in_pivot_2_y + y
         margin_stretched_3 = (
-            -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * k.half_by_arm_length_2
+            -(2.0 * span_1_z * cos_a3 + (span_2_x + k.root_of_3 * span_3_y) * sin_a3) * k.half_by_arm_length_2
         )
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
@@ -447,12 +444,11 @@ class ArrayPrograms(Programs):
         twice_z_minus_fixed_length_2 = 2.0 * z_minus_fixed_length_2
         slope_1_by_z = twice_z_minus_fixed_length_2 + k.twice_arm_length_1 * sin_a1
         arm_length_1_times_cos_a2 = k.arm_length_1 * cos_a2
-        root_of_3_2 = root(3.0)
-        product_in_slope_2_by_y = (k.fixed_length_1 - k.arm_1_radius - arm_length_1_times_cos_a2) * root_of_3_2
+        product_in_slope_2_by_y = (k.fixed_length_1 - k.arm_1_radius - arm_length_1_times_cos_a2) * k.root_of_3
         slope_2_by_y = slope_1_by_y - product_in_slope_2_by_y
         slope_2_by_z = twice_z_minus_fixed_length_2 + k.twice_arm_length_1 * sin_a2
         arm_length_1_times_cos_a3 = k.arm_length_1 * cos_a3
-        product_in_slope_3_by_y = (k.fixed_length_1 - k.arm_1_radius - arm_length_1_times_cos_a3) * root_of_3_2
+        product_in_slope_3_by_y = (k.fixed_length_1 - k.arm_1_radius - arm_length_1_times_cos_a3) * k.root_of_3
         slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y
         slope_3_by_z = twice_z_minus_fixed_length_2 + k.twice_arm_length_1 * sin_a3
         sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y

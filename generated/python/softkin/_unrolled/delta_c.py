@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from softkin._configuration import FIRST_TURN, SECOND_TURN, UNREACHABLE
 from softkin._core import NOTHING, Unrolled
-from softkin._scalar import RADIAN, arctan2, nearest_period, root, sqrt
+from softkin._scalar import RADIAN, arctan2, nearest_period, sqrt
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -28,8 +28,8 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a2, offset_a3, offset_a4, plate_radius = k.offset_a2, k.offset_a3, k.offset_a4, k.plate_radius
     product_in_divisor_a2 = k.product_in_divisor_a2
     quotient_in_type2_rods_coplanar, rod_length = k.quotient_in_type2_rods_coplanar, k.rod_length
-    single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
-    root_of_3 = root(3.0)
+    root_of_3, single_a1, single_a2, single_a3 = k.root_of_3, k.single_a1, k.single_a2, k.single_a3
+    single_a4 = k.single_a4
     sum_in_span_2_y = 0.5 * plate_radius * root_of_3 - 0.5 * base_radius * root_of_3
     arm_length_times_root_of_3_times_half_2 = 0.5 * arm_length * root_of_3
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4))
@@ -67,16 +67,15 @@ def unrolled(k: Constants) -> Unrolled:
             return 8 * (refused[Status.UNREACHABLE],)
         span_2_x = x - half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         span_2_y = sum_in_span_2_y + y
-        root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        along_a2 = span_2_x - root_of_3 * span_2_y
         across_a2 = 2.0 * z
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
         if not (effective_a2 > product_in_divisor_a2):
             return 8 * (refused[Status.UNREACHABLE],)
-        span_2_x_times_root_of_3_2 = root_of_3_2 * span_2_x
-        product_in_third_square_a2 = 0.5 * span_2_x_times_root_of_3_2 + 0.5 * span_2_y
+        span_2_x_times_root_of_3 = root_of_3 * span_2_x
+        product_in_third_square_a2 = 0.5 * span_2_x_times_root_of_3 + 0.5 * span_2_y
         # square of the third side of the triangle
         third_square_a2 = (rod_length - product_in_third_square_a2) * (product_in_third_square_a2 + rod_length)
         divisor_a2 = effective_a2 if effective_a2 > product_in_divisor_a2 else 1.0
@@ -95,13 +94,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 8 * (refused[Status.UNREACHABLE],)
         span_3_y = y - sum_in_span_2_y
-        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        along_a3 = span_2_x + root_of_3 * span_3_y
         # effective length of the arm that a3 turns
         effective_a3 = sqrt(across_a2 * across_a2 + along_a3 * along_a3)
         # a3: its effective length is too short
         if not (effective_a3 > product_in_divisor_a2):
             return 8 * (refused[Status.UNREACHABLE],)
-        product_in_third_square_a3 = 0.5 * span_3_y - 0.5 * span_2_x_times_root_of_3_2
+        product_in_third_square_a3 = 0.5 * span_3_y - 0.5 * span_2_x_times_root_of_3
         # square of the third side of the triangle
         third_square_a3 = (rod_length - product_in_third_square_a3) * (product_in_third_square_a3 + rod_length)
         divisor_a3 = effective_a3 if effective_a3 > product_in_divisor_a2 else 1.0
@@ -305,16 +304,15 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         span_2_x = x - half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
         span_2_y = sum_in_span_2_y + y
-        root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        along_a2 = span_2_x - root_of_3 * span_2_y
         across_a2 = 2.0 * z
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
         if not (effective_a2 > product_in_divisor_a2):
             return None
-        span_2_x_times_root_of_3_2 = root_of_3_2 * span_2_x
-        product_in_third_square_a2 = 0.5 * (span_2_x_times_root_of_3_2 + span_2_y)
+        span_2_x_times_root_of_3 = root_of_3 * span_2_x
+        product_in_third_square_a2 = 0.5 * (span_2_x_times_root_of_3 + span_2_y)
         # square of the third side of the triangle
         third_square_a2 = (rod_length - product_in_third_square_a2) * (product_in_third_square_a2 + rod_length)
         divisor_a2 = effective_a2 if effective_a2 > product_in_divisor_a2 else 1.0
@@ -333,13 +331,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
         span_3_y = y - sum_in_span_2_y
-        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        along_a3 = span_2_x + root_of_3 * span_3_y
         # effective length of the arm that a3 turns
         effective_a3 = sqrt(across_a2 * across_a2 + along_a3 * along_a3)
         # a3: its effective length is too short
         if not (effective_a3 > product_in_divisor_a2):
             return None
-        product_in_third_square_a3 = 0.5 * (span_3_y - span_2_x_times_root_of_3_2)
+        product_in_third_square_a3 = 0.5 * (span_3_y - span_2_x_times_root_of_3)
         # square of the third side of the triangle
         third_square_a3 = (rod_length - product_in_third_square_a3) * (product_in_third_square_a3 + rod_length)
         divisor_a3 = effective_a3 if effective_a3 > product_in_divisor_a2 else 1.0

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from softkin._configuration import UNREACHABLE
 from softkin._core import NOTHING, Unrolled
-from softkin._scalar import root, sqrt
+from softkin._scalar import sqrt
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -29,11 +29,10 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a2, offset_a3, one_by_arm_length = k.offset_a2, k.offset_a3, k.one_by_arm_length
     one_minus_sin_rail_angle_squared, outer_radius = k.one_minus_sin_rail_angle_squared, k.outer_radius
     product_in_radicand_a1 = k.product_in_radicand_a1
-    quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
+    quotient_in_type2_rods_coplanar, root_of_3 = k.quotient_in_type2_rods_coplanar, k.root_of_3
     sin_max_angle_ball_joint, sin_rail_angle = k.sin_max_angle_ball_joint, k.sin_rail_angle
     sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
     sum_in_pivot_2_x, sum_in_radicand_a2 = k.sum_in_pivot_2_x, k.sum_in_radicand_a2
-    root_of_3 = root(3.0)
     sum_in_span_2_y = 0.5 * outer_radius * root_of_3 - 0.5 * inner_radius * root_of_3
     product_in_radicand_a2_3 = root_of_3 * cos_rail_angle * sin_rail_angle
     product_in_radicand_a2_4 = 0.5 * root_of_3 * sin_rail_angle * sin_rail_angle

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from softkin._configuration import FIRST_TURN, SECOND_TURN, UNREACHABLE
 from softkin._core import NOTHING, Unrolled
-from softkin._scalar import RADIAN, arctan2, nearest_period, root, sqrt
+from softkin._scalar import RADIAN, arctan2, nearest_period, sqrt
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -27,11 +27,10 @@ def unrolled(k: Constants) -> Unrolled:
     mid_a1, mid_a2, mid_a3, min_type2_margin = k.mid_a1, k.mid_a2, k.mid_a3, k.min_type2_margin
     offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
     one_by_arm_length_2, product_in_divisor_a2 = k.one_by_arm_length_2, k.product_in_divisor_a2
-    quotient_in_type2_rods_coplanar = k.quotient_in_type2_rods_coplanar
+    quotient_in_type2_rods_coplanar, root_of_3 = k.quotient_in_type2_rods_coplanar, k.root_of_3
     sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
     single_a3, sum_in_pivot_2_x, twice_arm_length_1 = k.single_a3, k.sum_in_pivot_2_x, k.twice_arm_length_1
     product_in_scaled_cosine_a1_2 = -2.0 * arm_length_1 * fixed_length_1_minus_arm_1_radius
-    root_of_3 = root(3.0)
     sum_in_span_2_y = 0.5 * arm_1_radius * root_of_3 - 0.5 * fixed_length_1 * root_of_3
     arm_length_1_times_root_of_3_times_half_2 = 0.5 * arm_length_1 * root_of_3
     root_of_3_times_half_by_arm_length_2_2 = 0.5 * root_of_3 / arm_length_2
@@ -65,8 +64,7 @@ def unrolled(k: Constants) -> Unrolled:
             return 8 * (refused[Status.UNREACHABLE],)
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = sum_in_span_2_y + y
-        root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        along_a2 = span_2_x - root_of_3 * span_2_y
         across_a2 = 2.0 * span_1_z
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
@@ -89,7 +87,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 8 * (refused[Status.UNREACHABLE],)
         span_3_y = y - sum_in_span_2_y
-        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        along_a3 = span_2_x + root_of_3 * span_3_y
         # effective length of the arm that a3 turns
         effective_a3 = sqrt(across_a2 * across_a2 + along_a3 * along_a3)
         # a3: its effective length is too short
@@ -300,8 +298,7 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = sum_in_span_2_y + y
-        root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        along_a2 = span_2_x - root_of_3 * span_2_y
         across_a2 = 2.0 * span_1_z
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
@@ -324,7 +321,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
         span_3_y = y - sum_in_span_2_y
-        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        along_a3 = span_2_x + root_of_3 * span_3_y
         # effective length of the arm that a3 turns
         effective_a3 = sqrt(across_a2 * across_a2 + along_a3 * along_a3)
         # a3: its effective length is too short
