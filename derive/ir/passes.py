@@ -8,7 +8,7 @@ hoist   Let(scale_a2, 2*link_length_1*link_length_2)         →  computed once,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
 
@@ -172,6 +172,26 @@ def needed_for(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[S
     for value in wanted:
         need(symbols_of(value))
     return tuple(done)
+
+
+def depending_on(statements: Iterable[Statement], names: Collection[sp.Symbol]) -> dict[sp.Symbol, Let]:
+    """The bindings whose values depend on names, by what they bind; bindings of these names are not among them."""
+    found: dict[sp.Symbol, Let] = {}
+    for s in statements:
+        if isinstance(s, Let) and s.name not in names and not s.value.free_symbols.isdisjoint((*found, *names)):
+            found[s.name] = s
+    return found
+
+
+def needed_lets(lets: Iterable[Let], values: Iterable[sp.Expr]) -> tuple[Let, ...]:
+    """Those bindings that values need, in the order in which they stand."""
+    wanted = {name for value in values for name in value.free_symbols}
+    found: list[Let] = []
+    for let in reversed(tuple(lets)):
+        if let.name in wanted:
+            wanted |= let.value.free_symbols
+            found.append(let)
+    return tuple(reversed(found))
 
 
 def written_out(body: Sequence[Statement], known: Iterable[Statement]) -> tuple[Statement, ...]:

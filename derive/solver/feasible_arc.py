@@ -24,6 +24,7 @@ from derive.ir.constants import (
     OUT_OF_REACH,
     ROUNDING,
 )
+from derive.ir.passes import needed_lets
 from derive.ir.primitives import (
     Atan2,
     NearestOnArc,
@@ -140,7 +141,7 @@ def _condition(
     gone = _vanishing(statements, conditioning)
     if all(p.along.xreplace(gone) == 0 and p.across.xreplace(gone) == 0 for p in parts):
         return None  # where the angle is free these values do not depend on it
-    chain = tuple(_chain(statements, [*moved, *turned], dependent))
+    chain = needed_lets((s for s in statements if isinstance(s, Let) and s.name in dependent), [*moved, *turned])
     return _Condition(determinant.step, word, size, value, parts, chain)
 
 
@@ -164,18 +165,6 @@ def _least_size(
     if linear is None or not any(linear[0]):
         return None
     return _Condition(determinant.step, word, value, size, (), (), is_least=True)
-
-
-def _chain(
-    statements: Sequence[Statement], names: Sequence[sp.Symbol], dependent: Mapping[sp.Symbol, sp.Expr]
-) -> list[Let]:
-    """The statements by which names depend on the angle."""
-    needed, found = set(names), list[Let]()
-    for s in reversed(statements):
-        if isinstance(s, Let) and s.name in needed & dependent.keys():
-            needed |= s.value.free_symbols
-            found.insert(0, s)
-    return found
 
 
 def _vanishing(statements: Sequence[Statement], conditioning: Conditioning) -> dict[sp.Symbol, sp.Expr]:

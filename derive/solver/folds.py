@@ -26,7 +26,7 @@ from derive.ir.constants import (
     FREE_ANGLE,
     ROUNDING,
 )
-from derive.ir.passes import normalise
+from derive.ir.passes import depending_on, needed_lets, normalise
 from derive.ir.primitives import (
     Root,
     Select,
@@ -126,24 +126,15 @@ def _later(
         return None
     angle = determinant.step
     own = {determinant.legs.root, cosine(angle), sine(angle)}
-    dependent: dict[sp.Symbol, Let] = {}
-    for s in statements:
-        if isinstance(s, Let) and s.name not in own and s.value.free_symbols & (dependent.keys() | own):
-            dependent[s.name] = s
+    dependent = depending_on(statements, own)
     size, value = step.reach
     if not value.free_symbols & dependent.keys() or size.free_symbols & dependent.keys():
         return None
     value = value.xreplace({n**2: s.value.args[0] for n, s in dependent.items() if isinstance(s.value, Root)})
-    wanted, chain = set(value.free_symbols), list[Let]()
-    for let in reversed(dependent.values()):
-        if let.name in wanted:
-            wanted |= let.value.free_symbols
-            chain.insert(0, let)
+    chain = needed_lets(dependent.values(), [value])
     if determinant.legs.beside == 0 and not any(let.value.free_symbols & {cosine(angle), sine(angle)} for let in chain):
         return None  # the distance ahead is the whole distance, whatever the angle
-    return Later(
-        step.step, f"{angle.name}_for_{step.step.name}", angle, determinant.legs, size, value, tuple(chain), scale
-    )
+    return Later(step.step, f"{angle.name}_for_{step.step.name}", angle, determinant.legs, size, value, chain, scale)
 
 
 def with_motion(statements: Sequence[Statement], later: Later, motion: Sequence[Let]) -> list[Statement]:

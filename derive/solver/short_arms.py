@@ -8,7 +8,7 @@ later step is at its own boundary, the pose would be refused. So v turns by the 
 |e + e' t|, a quadratic equation, if the residual of v's own equation stays within rounding. Where the arm is long
 enough, or the roots are far apart, v stays.
 
-`folds` does the same where v changes e, and not the arm.
+`folds` does the same for steps with a lateral offset, whose triangle is known by both legs, where v changes e alone.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import sympy as sp
 
 from derive.equations.problem import Legs, StepDeterminant, Swing
 from derive.ir.constants import BOUNDARY
+from derive.ir.passes import depending_on, needed_lets
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let, Statement, rewritten
 from derive.ir.symbols import cosine, real, sine
@@ -56,18 +57,10 @@ def _chain(statements: Sequence[Statement], angle: sp.Symbol, values: Sequence[s
     not turn the arm.
     """
     own = {cosine(angle), sine(angle)}
-    dependent: dict[sp.Symbol, Let] = {}
-    for s in statements:
-        if isinstance(s, Let) and s.name not in own and s.value.free_symbols & (dependent.keys() | own):
-            dependent[s.name] = s
-    wanted, chain = {s for value in values for s in value.free_symbols}, list[Let]()
-    if not wanted & (dependent.keys() | own):
+    dependent = depending_on(statements, own)
+    if not any(value.free_symbols & (dependent.keys() | own) for value in values):
         return None
-    for let in reversed(dependent.values()):
-        if let.name in wanted:
-            wanted |= let.value.free_symbols
-            chain.insert(0, let)
-    return tuple(chain)
+    return needed_lets(dependent.values(), values)
 
 
 def _with_legs(

@@ -167,6 +167,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     if not problem.is_overdetermined:
         held = within_legs(statements, record.determinants)
         unfolded = beyond_folds(held, record.determinants, record.conditionings, problem.scale)
+        # In a loop the arm of a later step vanishes at a type 2 singularity, which its margin refuses: no pose is lost.
         reaching = with_arms_long_enough(unfolded, record.determinants, problem.scale) if problem.links else unfolded
         moved = within_reach(reaching, record.determinants, record.conditionings)
         statements = with_lost_arms_free(moved, record.determinants)

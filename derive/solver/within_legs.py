@@ -15,6 +15,7 @@ import sympy as sp
 
 from derive.equations.problem import StepDeterminant
 from derive.ir.constants import ROUNDING
+from derive.ir.passes import needed_lets
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let, Statement, binds
 from derive.ir.symbols import real, sine
@@ -43,7 +44,7 @@ def _limited(
     place = statements.index(own)
     earlier = {name for s in statements[:place] for name in binds(s)}
     rate = sp.diff(_written_out(value, lets, {*earlier, root}), root)
-    needed = _needed(size, lets, earlier)
+    needed = needed_lets((let for let in lets.values() if let.name not in earlier), [size])
     read = set().union(*(let.value.free_symbols for let in needed), rate.free_symbols)
     if rate == 0 or read & (lets.keys() - earlier - {let.name for let in needed}):
         return statements
@@ -56,17 +57,6 @@ def _written_out(value: sp.Expr, lets: dict[sp.Symbol, Let], kept: set[sp.Symbol
     while names := (value.free_symbols & lets.keys()) - kept:
         value = value.xreplace({name: lets[name].value for name in names})
     return value
-
-
-def _needed(value: sp.Expr, lets: dict[sp.Symbol, Let], earlier: set[sp.Symbol]) -> list[Let]:
-    """The statements that the value needs and that stand later, in their order."""
-    wanted = {*value.free_symbols}
-    found: list[Let] = []
-    for let in reversed(lets.values()):
-        if let.name in wanted and let.name not in earlier:
-            wanted |= let.value.free_symbols
-            found.insert(0, let)
-    return found
 
 
 def _limit(own: Let, later: sp.Symbol, size: sp.Expr, rate: sp.Expr) -> tuple[Let, ...]:
