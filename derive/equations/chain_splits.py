@@ -124,17 +124,34 @@ def _behind_the_wrist(
     chain: Chain, point: sp.Matrix, commanded: Commanded, unknowns: Unknowns
 ) -> tuple[tuple[Factor, ...], Target]:
     """The chain up to the wrist centre: the point that the commanded pose determines and the fewest joints move."""
-    best, target = chain.factors, Target(tuple(point))
+    factors = chain.factors if len(commanded.columns) == 3 else _with_shifts_in_front(chain.factors, commanded.columns)
+    best, target = factors, Target(tuple(point))
     fewest = len(_movers(chain, unknowns))
-    for cut in reversed([i for i, f in enumerate(chain.factors) if f.motion is Motion.TURN]):
-        rest = pose_of(Chain(chain.factors[cut:]))
+    for cut in reversed([i for i, f in enumerate(factors) if f.motion is Motion.TURN]):
+        rest = pose_of(Chain(factors[cut:]))
         seen = [unknowns.form(v) for v in -(rest.rotation.T * rest.position)]
         if any(unknowns.of(v) for v in seen) or any(v != 0 for i, v in enumerate(seen) if i not in commanded.columns):
             break  # the commanded columns of the flange no longer determine the point
-        front = Chain(chain.factors[:cut])
+        front = Chain(factors[:cut])
         if len(_movers(front, unknowns)) < fewest:
             best, target, fewest = front.factors, _wrist(point, commanded.rotation, seen), len(_movers(front, unknowns))
     return best, target
+
+
+def _with_shifts_in_front(factors: Sequence[Factor], columns: Sequence[int]) -> tuple[Factor, ...]:
+    """The same chain, with every shift across the commanded columns in front of the turns about its own direction."""
+    found: list[Factor] = []
+    for factor in factors:
+        place = len(found)
+        if factor.motion is Motion.SHIFT and factor.axis not in columns:
+            while place and (found[place - 1].motion is Motion.SHIFT or _turns_about(found[place - 1], factor.axis)):
+                place -= 1
+        found.insert(place, factor)
+    return tuple(found)
+
+
+def _turns_about(factor: Factor, axis: int) -> bool:
+    return factor.motion is Motion.TURN and factor.axis == axis
 
 
 def _before_the_shoulder(

@@ -67,6 +67,8 @@ def _more(problem: Problem, unknowns: Sequence[sp.Symbol], free: int) -> str:
 
 def _help(problem: Problem) -> str:
     """What would make it solvable."""
+    if problem.turns and len(problem.columns) < 3:  # the twist is free: only a point of that line is known before
+        return "it would help if the line of the tool, through its point, met the axis of the last joint" + _ONE_KNOWN
     if problem.turns:
         return "it would help if the axes of three neighbouring joints met in one point or were parallel" + _ONE_KNOWN
     return (

@@ -202,6 +202,17 @@ SHORT_ARMS = {
 }
 """The elbow, nearly straight, folds the arm that the roll turns: its length is the root of the law of cosines."""
 
+TOOL_ON_AXIS = {
+    "arm whose tool points across its last axis": _chain(
+        "AcrossLast",
+        (A1, A2, A3, A4, A5),
+        Ry(A1) * Tx(L1) * Rx(A2) * Tz(L2) * Rx(-A3) * Ty(L3) * Rx(A4) * Ry(A5) * Tz(L4) * Ty(L5),
+        (L1, L2, L3, L4, L5),
+        Task("xyz", Turning.DIRECTION),
+    ),
+}
+"""The last shift is along the last axis: where this axis meets the line of the tool, the last joint moves nothing."""
+
 _ELBOW = 1.3849179
 ANGLES_AS_NUMBERS = _chain(
     "AnglesByTable",
@@ -231,8 +242,10 @@ CHAINS = {
     **LONG_LINKS,
     **MEETING_AXES,
     **SHORT_ARMS,
+    **TOOL_ON_AXIS,
 }
 CHAIN_SOLUTIONS = {
+    "arm whose tool points across its last axis": 8,
     "arm that rolls and bends where its shoulder is": 4,
     "arm that rolls beside its elbow about an axis that leans": 4,
     "arm with an elbow that is held, whose shoulder is beside its base": 8,

@@ -36,7 +36,8 @@ TWISTS = (pi / 3, pi / 4, pi / 6, pi / 3, pi / 4, pi / 6)
 
 _SHOULDER_AND_ARM = Rz(A1) * Tz(L[0]) * Ry(A2) * Tz(L[1]) * Ry(A3) * Txyz(L[3], 0, L[2])
 _HELP = "it would help if the axes of three neighbouring joints met in one point or were parallel"
-_KNOWN = f"{_HELP}, or if one of these joints were known"
+_LINE = "it would help if the line of the tool, through its point, met the axis of the last joint"
+_KNOWN = f"{_LINE}, or if one of these joints were known"
 _SEARCHED = f"{_HELP}; with any one of these joints known the others are not solved either"
 _TOO_MANY = (
     "one joint too many: the task commands 6 quantities (x, y, z, turn x, turn y, turn z), and 7 joints are to be "
@@ -69,7 +70,7 @@ REFUSED = {
         f"6 unknowns in 3 equations (x, y, z) and the commanded rotation; {_SEARCHED}; equations left:\n"
         "    x: 109 terms in",
     ),
-    "five axes with offsets everywhere": (
+    "five axes with a tool beside the last": (
         arm(_SHOULDER_AND_ARM * Rx(A4) * Ty(L[4]) * Ry(A5) * Tx(L[5]), JOINTS[:5], Turning.DIRECTION),
         f"5 unknowns in 3 equations (x, y, z) and the commanded direction; {_KNOWN}",
     ),
