@@ -15,7 +15,7 @@ from tests.machines.made import Array, Made, made
 from tests.machines.test_machines import is_own
 
 _POSES, _EVERY = 240, 6
-_CLOSED = 1e-8
+_CLOSED = 1e-9
 """An angle that only an entry of a rotation near one tells is known to half of the digits."""
 
 

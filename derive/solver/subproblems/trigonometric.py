@@ -143,10 +143,8 @@ def _amplitude(
         size = sp.sqrt(along**2 + across**2)
         length = common * size
         return _Amplitude(naming, length, (), along / size, across / size, e, determinant, length, is_fixed=is_fixed)
-    if across == 0 and problem.is_never_zero(along):  # of either sign: sigma is then the sign of the sine
-        length, one = common * along, sp.Integer(1)
-        is_signed, nothing = not length.is_positive, sp.Integer(0)
-        return _Amplitude(naming, length, (), one, nothing, e, sine(angle), one, is_signed=is_signed, is_fixed=is_fixed)
+    if across == 0 and (problem.is_never_zero(along) or along.free_symbols <= {*problem.parameters}):
+        return _along_the_coordinate(problem, naming, angle, (common, along), e)
     square = along**2 + across**2
     along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
     note = f"effective length of the arm that {angle.name} turns"
@@ -166,6 +164,29 @@ def _amplitude(
     size, left = common * divisor, right.xreplace({divisor: effective})
     return _Amplitude(
         naming, size, guard, *units, right, determinant, scale, factors, told=told, aimable=aimable, left=left
+    )
+
+
+def _along_the_coordinate(
+    problem: Problem, naming: Naming, angle: sp.Symbol, arm: tuple[sp.Expr, sp.Expr], e: sp.Expr
+) -> _Amplitude:
+    """Where b is zero: h is a, of either sign, and sigma is the sign of the sine."""
+    common, along = arm
+    length, one, guard = common * along, sp.Integer(1), tuple[Statement, ...]()
+    if not problem.is_never_zero(along):
+        is_long = sp.Gt(sp.Abs(along), SHORTEST_LINK / 2)
+        guard = (Require(is_long, Status.UNREACHABLE, reason=about_joint(angle, Why.TOO_SHORT)),)
+    return _Amplitude(
+        naming,
+        length,
+        guard,
+        one,
+        sp.Integer(0),
+        e,
+        sine(angle),
+        one,
+        is_signed=not length.is_positive,
+        is_fixed=not guard and (common.is_number or problem.is_never_zero(common)),
     )
 
 
