@@ -65,6 +65,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
+from derive.kinematics.scan.guards import without_wrist
 from derive.kinematics.scan.machine_checks import MachineCheck, apart
 from derive.optimize.simplify import shorter
 from derive.plate.passive import commanded, passive_statements, spelled
@@ -116,7 +117,7 @@ def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:
     kept = tuple(s for j in held for s in frozen_lets(j))
     naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *closure.lets)
     derivation = _solve(mechanism, closure, moving, is_overdetermined=True)
-    statements, checks = apart(derivation.statements, fixed_names(mechanism))
+    statements, checks = apart(without_wrist(derivation), fixed_names(mechanism))
     return Inverse(closure, replace(derivation, statements=statements), naming, moving, held, checks)
 
 

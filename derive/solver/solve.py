@@ -126,6 +126,8 @@ class Derivation:
     sums: tuple[Sum, ...] = ()
     residuals: tuple[sp.Expr, ...] = ()
     """With an equation too many: the expressions that vanish if the equations agree with each other."""
+    wrist: tuple[sp.Symbol, ...] = ()
+    """With an equation too many in the positions: the joints behind them, which take any rotation."""
     conditions: tuple[sp.Expr, ...] = ()
     """Values of parameters that must not vanish."""
     plain: tuple[Statement, ...] = ()
@@ -143,15 +145,19 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     """
     if (reason := undetermined(problem)) is not None:
         raise Undetermined(reason)
-    record = DerivationRecord()
+    record, is_trial = DerivationRecord(), problem.is_overdetermined
     sums: tuple[Sum, ...] = ()
     rules: list[str] = []
     steps: list[Step] = []
     left: list[sp.Expr] = []
+    wrist: tuple[sp.Symbol, ...] = ()
     not_zero: list[sp.Expr] = []
     while problem.angles or problem.lengths or problem.pending:
         if problem.is_overdetermined and not problem.equations and not left:
             left += _residuals(problem, record)
+            if not left:  # the joints of a wrist take any rotation: the positions have the equation too many
+                left, wrist = _of_positions(problem, record), problem.angles
+                problem = replace(problem, is_overdetermined=False)
         problem, binding, sums = _next_after(steps, problem, sums, arguments)
         begin, found, binding = len(record.statements), binding, record.commit(binding)
         names = tuple(record.renamed.items())
@@ -161,10 +167,10 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
             record.append(resolve_angle(angle))
         steps.append(Step(problem, found, binding, (begin, len(record.statements)), names))
         problem = _without(problem, binding, record)
-    if problem.is_overdetermined and not problem.turns:
-        left = [residual / problem.scale**2 for residual in record.residuals[:1]]  # it implies those that follow
+    if is_trial and not problem.turns:
+        left = _of_positions(problem, record)
     statements = record.statements
-    if not problem.is_overdetermined:
+    if not is_trial:
         held = within_legs(statements, record.determinants)
         unfolded = beyond_folds(held, record.determinants, record.conditionings, problem.scale)
         # In a loop the arm of a later step vanishes at a type 2 singularity, which its margin refuses: no pose is lost.
@@ -179,6 +185,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         tuple(rules),
         sums,
         tuple(left),
+        wrist,
         tuple(not_zero),
         with_known_signs(record.statements, signs),
         tuple(steps),
@@ -190,6 +197,11 @@ def _residuals(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
     bindings = (Binding("rotation", (), c.lets, residual=c.expression) for c in conditions(problem))
     found = [record.commit(binding).residual for binding in bindings]
     return [residual for residual in found if residual is not None]
+
+
+def _of_positions(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
+    """What is left of the positions where they have an equation too many; it implies those that follow."""
+    return [residual / problem.scale**2 for residual in record.residuals[:1]]
 
 
 def _read_plainly(problem: Problem, unknowns: Sequence[sp.Symbol]) -> list[sp.Symbol]:
@@ -237,8 +249,11 @@ def _next(
 
 
 def _of_a_trial(problem: Problem) -> Binding | None:
-    """The step of a trial for a point alone that leaves a residual without any two-root step."""
-    if not problem.is_overdetermined or problem.turns:
+    """The step of a trial that leaves a residual of the positions without any two-root step: for a point alone, or
+    where the joints of a wrist take any rotation.
+    """
+    unknowns = {u for e in problem.equations for u in problem.unknowns_of(e.expression)}
+    if not problem.is_overdetermined or (problem.turns and len(unknowns) >= len(problem.equations)):
         return None
     return _best([list(scaled_pair(problem, positions_and_distance(problem)))])
 

@@ -162,6 +162,17 @@ OF_DEGREE_FOUR = {
 }
 """With one joint known a pair gives the next; the residual is a quartic of the tangent of its half angle."""
 
+WRIST_BEYOND_QUARTIC = {
+    "arm whose elbow rolls, with a wrist": _chain(
+        "RollingElbow",
+        (A1, A2, A3, A4, A5, A6),
+        Ry(A1) * Tx(L1) * Rz(A2) * Ty(L2) * Rx(A3) * Tz(L3) * Rz(A4) * Rx(A5) * Rz(A6) * Tz(L4),
+        (L1, L2, L3, L4),
+        Task("xyz", Turning.FULL),
+    ),
+}
+"""The position alone is searched as above: its wrist takes any rotation, and does not say which trial is a solution."""
+
 MEETING_AXES = {
     "arm that rolls and bends where its shoulder is": _chain(
         "Rolling", (A1, A2, A3), Rz(A1) * Tx(L1) * Ry(A2) * Rz(A3) * Tx(L4) * Tz(L3), (L1, L3, L4), Task("xyz")
@@ -237,6 +248,7 @@ CHAINS = {
     **WITHOUT_ARM,
     **FROM_FLANGE,
     **OF_DEGREE_FOUR,
+    **WRIST_BEYOND_QUARTIC,
     **BY_TABLE,
     **BENT_WRISTS,
     **LONG_LINKS,
@@ -260,6 +272,7 @@ CHAIN_SOLUTIONS = {
     "slide that a head points, beside its axis": 4,
     "three axes with offsets everywhere": 4,
     "three axes that lean by 60 degrees": 4,
+    "arm whose elbow rolls, with a wrist": 8,
     "six axes by a table with angles as numbers": 10,
     "arm with a wrist that is bent by 60 degrees": 8,
     "telescope between long links, with a wrist": 8,

@@ -155,9 +155,12 @@ def trial_on_branch(both: Scanned) -> Trial:
 
 
 def _turning_fast(derivation: Derivation) -> list[sp.Symbol]:
-    """The angles that may be free, or turn fast: also those of steps beside a point, which may be near its axis."""
+    """The angles that may be free, or turn fast: also those of steps beside a point, which may be near its axis. The
+    angles of a wrist that follows the positions move no residual: one that is free keeps its reference.
+    """
     angles = [m.angle for m in derivation.conditionings]
-    return angles + [d.step for d in derivation.determinants if d.legs is not None and d.step not in angles]
+    angles += [d.step for d in derivation.determinants if d.legs is not None and d.step not in angles]
+    return [angle for angle in angles if angle not in derivation.wrist]
 
 
 def _sides(

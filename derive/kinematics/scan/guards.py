@@ -43,6 +43,12 @@ def guards_of(derivation: Derivation) -> tuple[Guard, ...] | None:
     return tuple(found)
 
 
+def without_wrist(derivation: Derivation) -> tuple[Statement, ...]:
+    """The statements without the conditions of a wrist: it has no part in whether a trial is a root."""
+    steps = [step for step in derivation.determinants if step.step in derivation.wrist]
+    return tuple(s for s in derivation.statements if not isinstance(s, Require) or _step_of(s, steps) is None)
+
+
 def _step_of(check: Require, steps: Sequence[StepDeterminant]) -> sp.Symbol | None:
     """The unknown of the step that a check belongs to."""
     name = "" if check.reason is None else check.reason.subject.name
