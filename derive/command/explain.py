@@ -17,10 +17,10 @@ from derive.description.catalogue import load
 from derive.description.mechanism import Mechanism
 from derive.equations.problem import Equation
 from derive.faults import error
-from derive.kinematics.assembly import assembled, with_derived_assembly
-from derive.kinematics.branch_assignment import Assignment, assign
+from derive.kinematics.branches.assembly import assembled, with_derived_assembly
+from derive.kinematics.branches.assignment import Assignment, assign
+from derive.kinematics.branches.derived import in_words, with_derived_branches
 from derive.kinematics.build import prepared
-from derive.kinematics.derived_branches import in_words, with_derived_branches
 from derive.kinematics.forward import pose_at_axes, solve_for_position
 from derive.kinematics.inverse import Inverse, solve_at, solve_pose
 from derive.kinematics.scan.choice import with_search

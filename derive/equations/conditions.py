@@ -8,7 +8,7 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.description.mechanism import Constraint, Mechanism
-from derive.equations.closure import fixed_lets
+from derive.equations.closures.fixed_names import fixed_lets
 from derive.ir.constants import DEGREE, SHORTEST_LINK
 
 

@@ -16,7 +16,7 @@ from derive.algebra.normal_form import is_compound
 from derive.description.mechanism import (
     Mechanism,
 )
-from derive.equations.closure import angles_of
+from derive.equations.closures.fixed_names import angles_of
 from derive.equations.trigonometry import named_trigonometry
 from derive.geometry.frames import Factor, Motion
 from derive.geometry.pose import Screw

@@ -9,7 +9,7 @@ import sympy as sp
 from derive.algebra.angle_sums import name_of, terms_of
 from derive.algebra.normal_form import polynomial
 from derive.description.mechanism import Mechanism
-from derive.equations.closure import angles_of, fixed_angles, signs_of
+from derive.equations.closures.fixed_names import angles_of, fixed_angles, signs_of
 from derive.ir.constants import DEGREE
 from derive.ir.program import (
     Let,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import sympy as sp
@@ -12,23 +12,17 @@ from numpy.typing import NDArray
 from derive.description.chains.gears import with_gears
 from derive.description.chains.numbers import almost_right_angles, with_named_numbers
 from derive.description.inner_names import with_inner_names
-from derive.description.mechanism import DescriptionError, Mechanism, Parameter, Turning
+from derive.description.mechanism import DescriptionError, Mechanism, Turning
 from derive.equations.axes import finite
-from derive.equations.choices import with_choices
-from derive.equations.closure import heading_of
 from derive.equations.conditions import with_conditions
 from derive.equations.limits import limits_program
 from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import Conditioning
-from derive.equations.windows import windows
-from derive.geometry.pose import pose_of
 from derive.ir.interpret import run
-from derive.ir.passes import hoist, normalise
-from derive.ir.program import Let, Output, Program, Statement, shared
-from derive.ir.symbols import BASE_AXIS, FLANGE_AXIS, OFFSET, ROTATION_ENTRIES, START_POSITION, START_ROTATION, real
-from derive.ir.types import Type, output_types
-from derive.ir.verify import BrokenProgram
-from derive.kinematics.assembly import (
+from derive.ir.passes import normalise
+from derive.ir.program import Let, Output, Program, Statement
+from derive.ir.symbols import OFFSET, real
+from derive.kinematics.branches.assembly import (
     Assembled,
     assembled,
     assembly_checks,
@@ -36,25 +30,15 @@ from derive.kinematics.assembly import (
     mirror_checks,
     with_derived_assembly,
 )
-from derive.kinematics.branch_assignment import Assignment, assign, margin_lets, with_branch_signs
+from derive.kinematics.branches.assignment import Assignment, assign, margin_lets, with_branch_signs
+from derive.kinematics.branches.derived import with_derived_branches
+from derive.kinematics.bundle import bundle_of
 from derive.kinematics.coupling import coupling_programs
-from derive.kinematics.derived_branches import with_derived_branches
-from derive.kinematics.differential import (
-    TWIST_ROWS,
-    jacobian_program,
-    jacobian_rows,
-    twist_program,
-)
+from derive.kinematics.differential import jacobian_program, twist_program
+from derive.kinematics.flange_rotation import image_program, needs_twist, projection_program
 from derive.kinematics.forward import at_point, derivation_at_axes, forward_program, orientation_program, pose_at_axes
-from derive.kinematics.inverse import (
-    Inverse,
-    heading_lets,
-    inverse_program,
-    rotation_behind,
-    solve_offset,
-    solve_pose,
-)
-from derive.kinematics.kinematics import Freedom, Kinematics, Margin
+from derive.kinematics.inverse import Inverse, inverse_program, solve_offset, solve_pose
+from derive.kinematics.kinematics import Kinematics, Margin
 from derive.kinematics.margins.candidates import Factor, factor_of
 from derive.kinematics.margins.determinant import samples_anywhere, singularity_program
 from derive.kinematics.no_pose import near_home
@@ -73,7 +57,6 @@ from derive.kinematics.shared_names import (
     refuse_shared_names,
     with_free_names,
 )
-from derive.lowering.lower import lowered
 from derive.plate.fixed_point import with_fixed_point
 from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
@@ -134,10 +117,10 @@ def _built(mechanism: Mechanism) -> Kinematics:
         limits_program(mechanism),
         singularity,
         jacobian,
-        _image_program(mechanism),
+        image_program(mechanism),
     ]
     programs += _further_programs(mechanism, closed, inverse, margins)
-    return _finished(mechanism, programs, kept, at_home)
+    return bundle_of(mechanism, programs, kept, at_home)
 
 
 def _factors(
@@ -157,10 +140,10 @@ def _further_programs(
     """The programs that only some mechanisms have."""
     programs = []
     if mechanism.task.turning is not Turning.NONE:
-        programs.append(_projection_program(mechanism))
+        programs.append(projection_program(mechanism))
     if mechanism.is_platform:
         programs.append(_forward_from(mechanism, inverse, margins))
-    if _needs_twist(mechanism):
+    if needs_twist(mechanism):
         programs.append(twist_program(mechanism, closed.forward))
     if mechanism.is_orientation:
         programs += coupling_programs(mechanism)
@@ -207,102 +190,12 @@ def _scanned(mechanism: Mechanism) -> Kinematics:
             "singularity", (*both.forward.statements, *determinant, margin), [Output(DETERMINANT.name, margin.name)]
         ),
         jacobian_program(mechanism, both.forward),
-        _image_program(mechanism),
-        _projection_program(mechanism),
-        *([twist_program(mechanism, both.forward)] if _needs_twist(mechanism) else []),
+        image_program(mechanism),
+        projection_program(mechanism),
+        *([twist_program(mechanism, both.forward)] if needs_twist(mechanism) else []),
     ]
-    finished = _finished(mechanism, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
+    finished = bundle_of(mechanism, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
     return replace(finished, tried_branches=len(both.trial_branches))
-
-
-@dataclass(frozen=True)
-class _Hoisted:
-    """All programs, with the values that depend on parameters alone moved into the setup."""
-
-    setup: Program
-    setup_less_windows: Program
-    derived_branch: Program
-    """The branch before the lowering."""
-    programs: tuple[Program, ...]
-
-
-def _hoisted(
-    mechanism: Mechanism, parameters: tuple[Parameter, ...], programs: Sequence[Program], at_home: Sequence[Statement]
-) -> _Hoisted:
-    """The programs as they are lowered; refuses what none of them may read or answer."""
-    constants = [o.name for o in setup_program(mechanism, parameters, at_home=at_home).outputs]
-    unsettled = {o.name for window in windows(mechanism) for o in window.outputs}  # drives may change these later
-    settled = [name for name in constants if name not in unsettled]
-    whole, first = hoist([with_choices(p, parameters) for p in (*shared(programs), *programs)], settled)
-    shorter, second = lowered(whole, [*settled, *(let.name.name for let in first)])
-    hoisted = (*first, *second)
-    derived = next(program for program in whole if program.name == "branch")
-    read = frozenset(s for program in (*shorter, derived) for s in program.inputs)
-    setup = setup_program(mechanism, parameters, hoisted, read, at_home=at_home)
-    settable = setup_program(mechanism, parameters, hoisted, read, has_settings=True, at_home=at_home)
-    called = {program.name for program in shared(shorter)}
-    for program in (p for p in shorter if p.name not in called):  # a caller gives what those read
-        _check_inputs(mechanism, program, {o.name for o in setup.outputs})
-        _check_outputs(program)
-    return _Hoisted(setup, settable, derived, tuple(shorter))
-
-
-def _finished(
-    mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...], at_home: Sequence[Statement] = ()
-) -> Kinematics:
-    """The bundle of all programs."""
-    refuse_names(mechanism, (name for program in (*shared(programs), *programs) for name in program.bound()))
-    parameters = machine_parameters(mechanism)
-    moved = _hoisted(mechanism, parameters, programs, at_home)
-    finished = {program.name: program for program in moved.programs}
-    return Kinematics(
-        mechanism=mechanism,
-        parameters=parameters,
-        setup=moved.setup,
-        forward=finished["forward"],
-        orientation=finished["orientation"],
-        branch=finished["branch"],
-        derived_branch=moved.derived_branch,
-        limits=finished["limits"],
-        singularity=finished["singularity"],
-        jacobian=finished["jacobian"],
-        image=finished["image"],
-        projection=finished.get("projection"),
-        offset_branch=finished.get("offset_branch"),
-        offset_configuration=finished.get("offset_configuration"),
-        rows=jacobian_rows(mechanism),
-        margins=margins,
-        freedom=_freedom(mechanism),
-        reads_rotation=mechanism.task.turning is not Turning.NONE,
-        setup_less_windows=moved.setup_less_windows,
-        forward_from=finished.get("forward_from"),
-        search_given=finished.get("search_given"),
-        from_joints=finished.get("from_joints"),
-        twist=finished.get("twist"),
-        compatible=finished.get("compatible"),
-        end_point_shift=finished.get("end_point_shift"),
-        total_image=finished.get("total_image"),
-    )
-
-
-def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -> None:
-    """Refuse a name that is read and is no input: a mistake of the derivation, found here and not
-    in a generated file.
-    """
-    allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
-    allowed |= {f"sigma_{b.name}" for b in mechanism.branches}
-    allowed |= {j.symbol.name for j in mechanism.joints} if program.name == "from_joints" else set()
-    allowed |= {s.name for j in mechanism.joints for s in (j.axis, j.reference, j.turn)}
-    allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS)}
-    strangers = [s.name for s in program.inputs if s.name not in allowed]
-    if strangers:
-        raise BrokenProgram(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
-
-
-def _check_outputs(program: Program) -> None:
-    """Refuse an output that is an angle without its turns: a call answers numbers."""
-    if angles := [name for name, kind in output_types(program).items() if kind in (Type.ANGLE, Type.HEADING)]:
-        raise BrokenProgram(f"{program.name}: nothing has chosen a turn of {', '.join(angles)}")
 
 
 def _last(
@@ -350,67 +243,3 @@ def _offset_configuration(
     draft = normalise("offset_configuration", (*known, *margins), outputs)
     points = [s for s in draft.inputs if s in OFFSET]
     return normalise("offset_configuration", (*finite(points), *draft.body), draft.outputs)
-
-
-def _projection_program(mechanism: Mechanism) -> Program:
-    """The rotation nearest to the commanded one that the flange can take; of a direction, with any twist about it.
-
-    Of a pitch it depends on the position, too: nothing is projected before that is known.
-    """
-    if mechanism.task.turning is Turning.ABOUT_Z:
-        return projection_about_z(rotation_behind(mechanism))
-    return normalise("projection", (), [Output(r.name, r) for r in ROTATION_ENTRIES])
-
-
-def projection_about_z(behind: sp.Matrix) -> Program:
-    """The rotation nearest to the commanded one that is a turn about z, with the rotation of the flange behind it."""
-    cos_heading, sin_heading = real("cos_heading"), real("sin_heading")
-    turned = sp.Matrix([[cos_heading, -sin_heading, 0], [sin_heading, cos_heading, 0], [0, 0, 1]])
-    outputs = [Output(r.name, v) for r, v in zip(ROTATION_ENTRIES, turned * behind, strict=True)]
-    return normalise("projection", heading_lets(behind), outputs)
-
-
-def _needs_twist(mechanism: Mechanism) -> bool:
-    """Whether its Jacobian lacks rows of the twist that are not zero: a coupling and a turned base need them."""
-    return _freedom(mechanism) is not Freedom.ZERO and not set(TWIST_ROWS) <= set(jacobian_rows(mechanism))
-
-
-def _freedom(mechanism: Mechanism) -> Freedom:
-    """How the flange turns."""
-    if mechanism.motion.turning is Turning.FULL or mechanism.followed_turns:
-        return Freedom.THREE
-    if mechanism.chain is None:
-        return Freedom.ONE if mechanism.is_turning_loop else Freedom.ZERO
-    joints = {j.symbol for j in mechanism.joints}
-    turns = [t for t in pose_of(mechanism.chain).turns if t.amount.free_symbols & joints]  # opposite ones have merged
-    return Freedom.THREE if len(turns) > 1 else Freedom.ONE if turns else Freedom.ZERO
-
-
-def _one_turn(mechanism: Mechanism) -> tuple[sp.Matrix, sp.Matrix]:
-    """The axis about which the flange turns, in the frame of the machine, and its rotation where the turn is zero."""
-    assert mechanism.chain is not None
-    if mechanism.task.turning is Turning.ABOUT_Z:
-        heading_of(mechanism.chain)  # refuses a chain whose rotation is not one turn about z
-    joints = {j.symbol for j in mechanism.joints}
-    axis, zero = sp.Matrix([0, 0, 1]), sp.eye(3)
-    for turn in pose_of(mechanism.chain).turns:
-        if turn.amount.free_symbols & joints:
-            axis = zero[:, turn.axis]
-        else:
-            zero = zero * turn.matrix()[:3, :3]
-    return axis, zero
-
-
-def _image_program(mechanism: Mechanism) -> Program:
-    """The orientations that the flange can take: one of them, and the axis of its rotation in both frames."""
-    zero = sp.eye(3)
-    axis = sp.Matrix([0, 0, 1])
-    if mechanism.chain is not None and _freedom(mechanism) is not Freedom.THREE:
-        zero = sp.Matrix(pose_of(mechanism.chain).rotation)
-        if _freedom(mechanism) is Freedom.ONE:
-            axis, zero = _one_turn(mechanism)
-    moving = zero.T * axis
-    outputs = [Output(f"zero_{r.name}", v) for r, v in zip(ROTATION_ENTRIES, zero, strict=True)]
-    outputs += [Output(f"rot_{c}", v) for c, v in zip("xyz", axis, strict=True)]
-    outputs += [Output(f"u_{c}", v) for c, v in zip("xyz", moving, strict=True)]
-    return normalise("image", (), outputs)

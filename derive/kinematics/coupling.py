@@ -19,7 +19,7 @@ from derive.description.mechanism import (
     Turning,
 )
 from derive.equations.axes import finite
-from derive.equations.closure import flange_rotation
+from derive.equations.closures.commanded import flange_rotation
 from derive.geometry.frames import Factor, Motion
 from derive.geometry.pose import pose_of
 from derive.ir.constants import (

@@ -12,7 +12,7 @@ from derive.description.mechanism import (
     Turning,
 )
 from derive.equations.chain_splits import is_spatial
-from derive.equations.closure import with_fixed_names
+from derive.equations.closures.fixed_names import with_fixed_names
 from derive.equations.named_pose import named_pose
 from derive.equations.pitch.chain import followed_factors
 from derive.equations.pose_at_axes import (

@@ -17,17 +17,13 @@ from derive.description.mechanism import (
     Turning,
 )
 from derive.equations.axes import axis_lets, finite, frozen_lets, plain_angle, reference_lets, reference_value
-from derive.equations.closure import (
-    FLANGE,
-    Closure,
+from derive.equations.closures.closure import FLANGE, Closure
+from derive.equations.closures.commanded import closure_at, flange_rotation, offset_closure, pose_closure
+from derive.equations.closures.fixed_names import (
     all_angles,
-    closure_at,
     fixed_lets,
     fixed_names,
     fixed_squares,
-    flange_rotation,
-    offset_closure,
-    pose_closure,
     signs_of,
     with_fixed_names,
 )

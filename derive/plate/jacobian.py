@@ -9,7 +9,7 @@ from derive.description.mechanism import (
     Plane,
     Turning,
 )
-from derive.equations.closure import fixed_lets, with_fixed_names
+from derive.equations.closures.fixed_names import fixed_lets, with_fixed_names
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.constants import (
     FREE_ANGLE,

@@ -21,7 +21,7 @@ from derive.description.mechanism import (
     Turning,
     on_plate,
 )
-from derive.equations.closure import with_fixed_names
+from derive.equations.closures.fixed_names import with_fixed_names
 from derive.ir.constants import (
     SHORTEST_LINK,
 )

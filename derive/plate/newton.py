@@ -19,7 +19,7 @@ from derive.description.mechanism import (
     Turning,
 )
 from derive.equations.axes import finite, joint_lets
-from derive.equations.closure import fixed_lets, with_fixed_names
+from derive.equations.closures.fixed_names import fixed_lets, with_fixed_names
 from derive.equations.pose_at_axes import (
     Forward,
 )

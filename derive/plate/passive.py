@@ -16,7 +16,7 @@ import sympy as sp
 
 from derive.algebra.normal_form import polynomial
 from derive.description.mechanism import DescriptionError, Mechanism
-from derive.equations.closure import all_angles, fixed_lets, fixed_names, signs_of, with_fixed_names
+from derive.equations.closures.fixed_names import all_angles, fixed_lets, fixed_names, signs_of, with_fixed_names
 from derive.equations.problem import Equation, Problem, StepDeterminant
 from derive.ir.passes import renamed
 from derive.ir.primitives import Select

@@ -18,7 +18,7 @@ from derive.description.mechanism import (
     Rod,
     Turning,
 )
-from derive.equations.closure import all_angles, fixed_angles, signs_of, with_fixed_names
+from derive.equations.closures.fixed_names import all_angles, fixed_angles, signs_of, with_fixed_names
 from derive.ir.constants import (
     DEGREE,
     SHORTEST_LINK,

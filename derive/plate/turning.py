@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from derive.description.mechanism import DescriptionError, Mechanism, Turning
 from derive.equations.axes import axis_lets, joint_lets, reference_value
-from derive.equations.closure import fixed_lets
+from derive.equations.closures.fixed_names import fixed_lets
 from derive.equations.pose_at_axes import Forward
 from derive.ir.interpret import evaluate, run
 from derive.ir.passes import normalise, renamed

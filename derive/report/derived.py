@@ -14,15 +14,15 @@ import sympy as sp
 
 from derive.algebra.normal_form import cancelled, reduce_units
 from derive.description.mechanism import Joint, Mechanism, Parameter
-from derive.equations.closure import fixed_lets
+from derive.equations.closures.fixed_names import fixed_lets
 from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Statement, rewritten
 from derive.ir.symbols import ASSEMBLY_SIGN, cosine, sine
-from derive.kinematics.assembly import Assembled, assembled, with_derived_assembly
-from derive.kinematics.branch_assignment import Assignment, assign, with_branch_signs
+from derive.kinematics.branches.assembly import Assembled, assembled, with_derived_assembly
+from derive.kinematics.branches.assignment import Assignment, assign, with_branch_signs
+from derive.kinematics.branches.derived import with_derived_branches
 from derive.kinematics.build import prepared
-from derive.kinematics.derived_branches import with_derived_branches
 from derive.kinematics.forward import pose_at_axes, solve_for_position
 from derive.kinematics.inverse import Inverse, solve_pose
 from derive.kinematics.margins.candidates import Factor, factor_of

@@ -9,7 +9,7 @@ from itertools import combinations
 from derive.equations.problem import Equation, Problem
 from derive.solver.solve import RULES, TIERS, Rule, Step
 from derive.solver.subproblems.affine_system import affine_triple
-from derive.solver.subproblems.trigonometric import lateral
+from derive.solver.subproblems.one_equation.trigonometric import lateral
 
 _MOST = {1: 80, 2: 24, 3: 9}
 """How many equations are combined at most: alone, in pairs, by three."""

@@ -18,33 +18,11 @@ import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
 from derive.equations.problem import Conditioning, StepDeterminant
-from derive.ir.constants import (
-    FREE_ANGLE,
-    KNOWN_ANGLE,
-    OUT_OF_REACH,
-    ROUNDING,
-)
+from derive.ir.constants import FREE_ANGLE, KNOWN_ANGLE, OUT_OF_REACH, ROUNDING
 from derive.ir.passes import needed_lets
-from derive.ir.primitives import (
-    Atan2,
-    NearestOnArc,
-    Root,
-    Select,
-    Wrap,
-)
-from derive.ir.program import (
-    Let,
-    Statement,
-    binds,
-    reads,
-    rewritten,
-)
-from derive.ir.symbols import (
-    cosine,
-    flag,
-    real,
-    sine,
-)
+from derive.ir.primitives import Atan2, NearestOnArc, Root, Select, Wrap
+from derive.ir.program import Let, Statement, binds, reads, rewritten
+from derive.ir.symbols import cosine, flag, real, sine
 from derive.solver.where_free import square_where_free
 
 WITHIN_ITS_BOUND = "{} has solutions where this is within its bound"

@@ -39,11 +39,11 @@ from derive.solver.subproblems.affine_system import (
     affine_pair,
     affine_triple,
 )
+from derive.solver.subproblems.one_equation.trigonometric import lateral, trigonometric
 from derive.solver.subproblems.pair import pair, scaled_pair
 from derive.solver.subproblems.polar import polar
 from derive.solver.subproblems.quadratic import quadratic
 from derive.solver.subproblems.spheres import spheres
-from derive.solver.subproblems.trigonometric import lateral, trigonometric
 from derive.solver.unsolved import undetermined, unsolved
 from derive.solver.within_legs import within_legs
 

@@ -31,7 +31,7 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     SCALE,
 )
-from derive.kinematics.assembly import assembled
+from derive.kinematics.branches.assembly import assembled
 from derive.kinematics.forward import derivation_at_axes, pose_at_axes
 from derive.kinematics.inverse import solve_pose
 from derive.kinematics.parameters import (

@@ -11,7 +11,7 @@ import pytest
 from derive.emit.page.names import has_block
 from derive.ir.interpret import run as interpreted
 from derive.ir.program import Call, FindRoot, Iterate, Program, Require, Solve, Status, shared
-from derive.kinematics.assembly import with_derived_assembly
+from derive.kinematics.branches.assembly import with_derived_assembly
 from derive.kinematics.build import prepared
 from derive.kinematics.inverse import solve_pose
 from derive.kinematics.kinematics import Kinematics

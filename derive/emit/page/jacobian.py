@@ -12,7 +12,7 @@ from derive.description.mechanism import Mechanism
 from derive.emit.page.lines import Line, Lines, matrix
 from derive.emit.page.mathml import element, operator, word
 from derive.emit.page.steps import Stated
-from derive.equations.closure import with_fixed_names
+from derive.equations.closures.fixed_names import with_fixed_names
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.program import Output
 from derive.ir.symbols import HEADING, cosine, real, sine

@@ -14,7 +14,7 @@ from derive.equations.problem import Equation
 from derive.geometry.frames import LETTERS, Factor, Motion
 from derive.ir.program import Let, Statement, reads
 from derive.ir.symbols import names_in
-from derive.kinematics.branch_assignment import Assignment
+from derive.kinematics.branches.assignment import Assignment
 from derive.report.derived import Derived, Route, ToldStep
 
 FORMS = {

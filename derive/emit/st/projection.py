@@ -10,7 +10,7 @@ from derive.emit.st.refusal import Refusal
 from derive.ir.passes import normalise
 from derive.ir.program import Output, Program
 from derive.ir.symbols import ROTATION_ENTRIES
-from derive.kinematics.build import projection_about_z
+from derive.kinematics.flange_rotation import projection_about_z
 
 _GIVEN = {r.name: f"rot[{r.name[1]}, {r.name[2]}]" for r in ROTATION_ENTRIES}
 

@@ -23,7 +23,7 @@ from derive.ir.symbols import (
     SCALE,
     real,
 )
-from derive.kinematics.branch_assignment import Assignment
+from derive.kinematics.branches.assignment import Assignment
 from derive.kinematics.parameters import (
     has_length,
 )

@@ -15,11 +15,12 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, Search, Turning, crossing
-from derive.equations.closure import closure_at, fixed_lets
+from derive.equations.closures.commanded import closure_at
+from derive.equations.closures.fixed_names import fixed_lets
 from derive.equations.conditions import with_conditions
 from derive.ir.program import Let
 from derive.ir.symbols import cosine, names_in, sine
-from derive.kinematics.derived_branches import with_named_steps
+from derive.kinematics.branches.derived import with_named_steps
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, solve_at, solve_pose
 from derive.kinematics.scan.guards import guards_of

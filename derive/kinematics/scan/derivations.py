@@ -18,7 +18,7 @@ from derive.description.mechanism import (
     Mechanism,
 )
 from derive.equations.axes import axis_lets, frozen_lets, held_lets, reference_lets, reference_value
-from derive.equations.closure import fixed_lets
+from derive.equations.closures.fixed_names import fixed_lets
 from derive.equations.pose_at_axes import (
     Forward,
 )
@@ -45,7 +45,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
-from derive.kinematics.branch_assignment import Assignment, assign, refuse_unnamed, steps_and_rest, with_branch_signs
+from derive.kinematics.branches.assignment import Assignment, assign, refuse_unnamed, steps_and_rest, with_branch_signs
 from derive.kinematics.forward import (
     pose_at_axes,
 )

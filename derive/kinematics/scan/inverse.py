@@ -33,7 +33,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
-from derive.kinematics.branch_assignment import with_branch_signs
+from derive.kinematics.branches.assignment import with_branch_signs
 from derive.kinematics.inverse import Inverse
 from derive.kinematics.scan.derivations import (
     SEARCHED,

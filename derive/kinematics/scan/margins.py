@@ -19,7 +19,7 @@ from derive.description.mechanism import (
     Role,
 )
 from derive.equations.axes import reference_value
-from derive.equations.closure import with_fixed_names
+from derive.equations.closures.fixed_names import with_fixed_names
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
@@ -45,7 +45,7 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.ir.verify import BrokenProgram
-from derive.kinematics.branch_assignment import Assignment
+from derive.kinematics.branches.assignment import Assignment
 from derive.kinematics.differential import scaled_entries, solved_entries
 from derive.kinematics.forward import (
     derivation_at_axes,

@@ -23,6 +23,7 @@ from derive.ir.program import Output
 from derive.ir.symbols import real
 from derive.ir.verify import BrokenProgram
 from derive.kinematics import build as building
+from derive.kinematics import bundle
 from derive.kinematics.differential import jacobian_entries
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.scan import derivations, margins
@@ -75,14 +76,14 @@ def test_margins_that_do_not_multiply(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_name_that_nothing_gives(kinematics: Kinematics) -> None:
     forward = kinematics.forward
     given = {s.name for s in forward.inputs} - {"link_2"}
-    said = refused(lambda: building._check_inputs(kinematics.mechanism, forward, given), BrokenProgram)
+    said = refused(lambda: bundle._check_inputs(kinematics.mechanism, forward, given), BrokenProgram)
     assert said == "the forward program reads link_2, which nothing gives"
 
 
 def test_a_turn_that_is_not_chosen(kinematics: Kinematics) -> None:
     outputs = (Output("axis_a1", Atan2(real("y"), real("x"))),)
     spoiled = replace(kinematics.branch, body=(), outputs=outputs)
-    said = refused(lambda: building._check_outputs(spoiled), BrokenProgram)
+    said = refused(lambda: bundle._check_outputs(spoiled), BrokenProgram)
     assert said.endswith("nothing has chosen a turn of axis_a1")
 
 

@@ -24,7 +24,7 @@ from derive.ir.program import Let, Output, Program, Statement
 from derive.ir.symbols import cosine, real, sine
 from derive.solver.folds import beyond_folds
 from derive.solver.subproblems.direction import direction
-from derive.solver.subproblems.trigonometric import trigonometric
+from derive.solver.subproblems.one_equation.trigonometric import trigonometric
 
 V, U, X, Y, BESIDE = (real(n) for n in ("v", "u", "x", "y", "beside"))
 P, Q, SIZE, LEVEL = (real(n) for n in ("p", "q", "size", "level"))

@@ -18,7 +18,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
-from derive.solver.subproblems.trigonometric import trigonometric
+from derive.solver.subproblems.one_equation.trigonometric import trigonometric
 
 Q, X, Y, BESIDE = real("q"), real("x"), real("y"), real("beside")
 SCALE = sp.Symbol("reach", positive=True)

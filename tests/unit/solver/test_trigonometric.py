@@ -17,7 +17,7 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     real,
 )
-from derive.solver.subproblems.trigonometric import trigonometric
+from derive.solver.subproblems.one_equation.trigonometric import trigonometric
 from tests.unit.solver.execution import (
     ANGLES,
     ANYTHING,

@@ -15,14 +15,14 @@ import sympy as sp
 
 from derive.algebra.normal_form import factored, polynomial
 from derive.description.mechanism import ROTATION, Branch, Mechanism, Role, Turning, branch
-from derive.equations.closure import all_angles, fixed_lets, signs_of
+from derive.equations.closures.fixed_names import all_angles, fixed_lets, signs_of
 from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import StepDeterminant
 from derive.geometry.frames import Motion
 from derive.ir.constants import DEGREE
 from derive.ir.program import Let
 from derive.ir.symbols import HEADING, POSITION, ROTATION_ENTRIES, cosine, names_in, sine
-from derive.kinematics.branch_assignment import steps_and_rest, steps_without_branch
+from derive.kinematics.branches.assignment import steps_and_rest, steps_without_branch
 from derive.kinematics.forward import derivation_at_axes
 from derive.kinematics.inverse import Inverse
 from derive.plate.turning import given_pose

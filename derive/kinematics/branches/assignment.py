@@ -10,7 +10,7 @@ import sympy as sp
 
 from derive.algebra.normal_form import cancelled, reduce_units
 from derive.description.mechanism import Branch, DescriptionError, Mechanism
-from derive.equations.closure import all_angles, with_fixed_names
+from derive.equations.closures.fixed_names import all_angles, with_fixed_names
 from derive.equations.pose_at_axes import (
     Forward,
 )

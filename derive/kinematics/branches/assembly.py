@@ -16,7 +16,7 @@ import sympy as sp
 from derive.algebra.normal_form import polynomial
 from derive.description.branches import assembly
 from derive.description.mechanism import Assembly, Bound, DescriptionError, Mechanism, Rod
-from derive.equations.closure import all_angles, signs_of, with_fixed_names
+from derive.equations.closures.fixed_names import all_angles, signs_of, with_fixed_names
 from derive.equations.pose_at_axes import (
     Forward,
 )

@@ -1,0 +1,111 @@
+"""All programs of a mechanism as one bundle: lowered together, checked, what never changes moved into the setup."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from derive.description.mechanism import Mechanism, Parameter, Turning
+from derive.equations.choices import with_choices
+from derive.equations.windows import windows
+from derive.ir.passes import hoist
+from derive.ir.program import Program, Statement, shared
+from derive.ir.symbols import BASE_AXIS, FLANGE_AXIS, ROTATION_ENTRIES, START_POSITION, START_ROTATION
+from derive.ir.types import Type, output_types
+from derive.ir.verify import BrokenProgram
+from derive.kinematics.differential import jacobian_rows
+from derive.kinematics.flange_rotation import freedom_of
+from derive.kinematics.kinematics import Kinematics, Margin
+from derive.kinematics.parameters import machine_parameters, setup_program
+from derive.kinematics.shared_names import refuse_names
+from derive.lowering.lower import lowered
+
+
+@dataclass(frozen=True)
+class _Hoisted:
+    """All programs, with the values that depend on parameters alone moved into the setup."""
+
+    setup: Program
+    setup_less_windows: Program
+    derived_branch: Program
+    """The branch before the lowering."""
+    programs: tuple[Program, ...]
+
+
+def _hoisted(
+    mechanism: Mechanism, parameters: tuple[Parameter, ...], programs: Sequence[Program], at_home: Sequence[Statement]
+) -> _Hoisted:
+    """The programs as they are lowered; refuses what none of them may read or answer."""
+    constants = [o.name for o in setup_program(mechanism, parameters, at_home=at_home).outputs]
+    unsettled = {o.name for window in windows(mechanism) for o in window.outputs}  # drives may change these later
+    settled = [name for name in constants if name not in unsettled]
+    whole, first = hoist([with_choices(p, parameters) for p in (*shared(programs), *programs)], settled)
+    shorter, second = lowered(whole, [*settled, *(let.name.name for let in first)])
+    hoisted = (*first, *second)
+    derived = next(program for program in whole if program.name == "branch")
+    read = frozenset(s for program in (*shorter, derived) for s in program.inputs)
+    setup = setup_program(mechanism, parameters, hoisted, read, at_home=at_home)
+    settable = setup_program(mechanism, parameters, hoisted, read, has_settings=True, at_home=at_home)
+    called = {program.name for program in shared(shorter)}
+    for program in (p for p in shorter if p.name not in called):  # a caller gives what those read
+        _check_inputs(mechanism, program, {o.name for o in setup.outputs})
+        _check_outputs(program)
+    return _Hoisted(setup, settable, derived, tuple(shorter))
+
+
+def bundle_of(
+    mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...], at_home: Sequence[Statement] = ()
+) -> Kinematics:
+    """The bundle of all programs."""
+    refuse_names(mechanism, (name for program in (*shared(programs), *programs) for name in program.bound()))
+    parameters = machine_parameters(mechanism)
+    moved = _hoisted(mechanism, parameters, programs, at_home)
+    finished = {program.name: program for program in moved.programs}
+    return Kinematics(
+        mechanism=mechanism,
+        parameters=parameters,
+        setup=moved.setup,
+        forward=finished["forward"],
+        orientation=finished["orientation"],
+        branch=finished["branch"],
+        derived_branch=moved.derived_branch,
+        limits=finished["limits"],
+        singularity=finished["singularity"],
+        jacobian=finished["jacobian"],
+        image=finished["image"],
+        projection=finished.get("projection"),
+        offset_branch=finished.get("offset_branch"),
+        offset_configuration=finished.get("offset_configuration"),
+        rows=jacobian_rows(mechanism),
+        margins=margins,
+        freedom=freedom_of(mechanism),
+        reads_rotation=mechanism.task.turning is not Turning.NONE,
+        setup_less_windows=moved.setup_less_windows,
+        forward_from=finished.get("forward_from"),
+        search_given=finished.get("search_given"),
+        from_joints=finished.get("from_joints"),
+        twist=finished.get("twist"),
+        compatible=finished.get("compatible"),
+        end_point_shift=finished.get("end_point_shift"),
+        total_image=finished.get("total_image"),
+    )
+
+
+def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -> None:
+    """Refuse a name that is read and is no input: a mistake of the derivation, found here and not
+    in a generated file.
+    """
+    allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
+    allowed |= {f"sigma_{b.name}" for b in mechanism.branches}
+    allowed |= {j.symbol.name for j in mechanism.joints} if program.name == "from_joints" else set()
+    allowed |= {s.name for j in mechanism.joints for s in (j.axis, j.reference, j.turn)}
+    allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS)}
+    strangers = [s.name for s in program.inputs if s.name not in allowed]
+    if strangers:
+        raise BrokenProgram(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
+
+
+def _check_outputs(program: Program) -> None:
+    """Refuse an output that is an angle without its turns: a call answers numbers."""
+    if angles := [name for name, kind in output_types(program).items() if kind in (Type.ANGLE, Type.HEADING)]:
+        raise BrokenProgram(f"{program.name}: nothing has chosen a turn of {', '.join(angles)}")
