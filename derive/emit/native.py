@@ -11,8 +11,7 @@ from jinja2 import Environment
 
 from derive.emit.c import package as c
 from derive.emit.c.layout import page
-from derive.emit.language import GENERATED, Part, environment
-from derive.kept import kept_by_identity
+from derive.emit.language import GENERATED, environment
 from derive.kinematics.kinematics import Kinematics
 
 FOLDER = "native"
@@ -21,21 +20,15 @@ _SHARED = ("batches.c", "batches.h", "machine.c")
 _DIGITS = 16
 
 
-@kept_by_identity(10)
-def in_c(kin: Kinematics) -> Part | None:
-    """The machine in C; None where C does not hold it."""
-    return c.part(kin)
-
-
 def key(kin: Kinematics) -> str:
     """What a class and its C have in common: the module with a digest of the C. Empty where there is none."""
-    found = in_c(kin)
+    found = c.part(kin)
     return "" if found is None else f"{found['index']['module']} {_digest(found['files'])}"
 
 
 def sources(kin: Kinematics) -> dict[str, str]:
     """Header and source of the machine: path → text."""
-    found = in_c(kin)
+    found = c.part(kin)
     return {} if found is None else {f"{FOLDER}/{path}": text for path, text in found["files"].items()}
 
 

@@ -37,6 +37,7 @@ from derive.ir.constants import (
 )
 from derive.ir.program import Status
 from derive.ir.symbols import symbols_of
+from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import reasons_of, reasons_of_rotation
 
@@ -66,6 +67,7 @@ _MEANINGS = {
 }
 
 
+@kept_by_identity(10)
 def part(kinematics: Kinematics) -> Part | None:
     """Header and source of one mechanism; None where it has more axes, branches or directions than the calls hold."""
     if not _fits(kinematics):
