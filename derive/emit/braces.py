@@ -2,11 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
 _INDENT = "  "
-_BREAKS = (" + ", " - ", " && ", " || ", " ? ", " : ")
 _COMMENTS = ("//", "/*")
+_PARTS = re.compile(
+    r"""
+    (?P<text>     "(?:[^"\\]|\\.)*" )
+  | (?P<comment>  // | /\* )
+  | (?P<opening>  [(\[{] )
+  | (?P<closing>  [)\]}] )
+  | (?P<operator> [ ] (?: [-+?:] | && | \|\| ) [ ] )
+  | (?P<comma>    ,[ ] )
+  | (?P<gap>      (?<=") [ ] (?=") )
+  | (?P<factor>   [*/] )
+    """,
+    re.VERBOSE,
+)
+"""What tells where a statement may be broken; the gap is that between the parts of a text."""
 
 
 def indented(lines: Sequence[str]) -> list[str]:
@@ -45,23 +59,18 @@ def _place(text: str, width: int) -> int | None:
 
 def _places(text: str) -> Iterator[tuple[int, float]]:
     """The places where a line may end, each with its depth: a sum is deeper than a list, and a product than a sum."""
-    depth, is_text, escaped = 0, False, False
-    for at, character in enumerate(text):
-        if is_text:
-            is_text, escaped = escaped or character != '"', character == "\\" and not escaped
-        elif character == '"':
-            is_text = True
-        elif text.startswith(_COMMENTS, at):
+    depth = 0
+    for part in _PARTS.finditer(text):
+        kind = part.lastgroup
+        if kind == "comment":
             return
-        elif character in "([{":
+        if kind == "opening":
             depth += 1
-        elif character in ")]}":
+        elif kind == "closing":
             depth -= 1
-        elif text.startswith(_BREAKS, at):
-            yield at + 1, depth + 0.25
-        elif text.startswith(", ", at):
-            yield at + 2, depth
-        elif character == " " and text[at - 1 : at + 2] == '" "':  # between the parts of a text
-            yield at + 1, depth
-        elif character in "*/":
-            yield at, depth + 0.5
+        elif kind == "operator":
+            yield part.start() + 1, depth + 0.25
+        elif kind in ("comma", "gap"):
+            yield part.end(), depth
+        elif kind == "factor":
+            yield part.start(), depth + 0.5
