@@ -165,7 +165,8 @@ def _before_the_shoulder(
             break
         end = cut
     front, rest = pose_of(Chain(chain.factors[:end])), chain.factors[end:]
-    seen = commanded.rotation.T * (front.position - point)
+    shoulder = sp.Matrix([unknowns.form(v) for v in front.position])
+    seen = commanded.rotation.T * (shoulder - point)
     lets = tuple(Let(real(f"shoulder_{c}"), v) for c, v in zip(COORDINATE_NAMES, seen, strict=True))
     return tuple(f.inverse() for f in reversed(rest)), Target(tuple(let.name for let in lets), lets)
 

@@ -149,16 +149,28 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     sums: tuple[Sum, ...] = ()
     rules: list[str] = []
     steps: list[Step] = []
-    left: list[sp.Expr] = []
+    has_spare = len(_unknowns(problem)) < len(problem.equations)
+    left = _without_unknowns(problem, record) if is_trial else []
+    problem = replace(problem, is_overdetermined=is_trial and not left)
     wrist: tuple[sp.Symbol, ...] = ()
     not_zero: list[sp.Expr] = []
     while problem.angles or problem.lengths or problem.pending:
         if problem.is_overdetermined and not problem.equations and not left:
             left += _residuals(problem, record)
-            if not left:  # the joints of a wrist take any rotation: the positions have the equation too many
+            if (
+                not left and has_spare
+            ):  # the joints of a wrist take any rotation: the positions have the equation too many
                 left, wrist = _of_positions(problem, record), problem.angles
                 problem = replace(problem, is_overdetermined=False)
-        problem, binding, sums = _next_after(steps, problem, sums, arguments)
+        try:
+            problem, binding, sums = _next_after(steps, problem, sums, arguments)
+        except Unsolved:
+            if problem.is_overdetermined and not left:  # parallel axes: the rotation tells their sum before a position
+                left += _residuals(problem, record)
+            if not left or not problem.is_overdetermined:
+                raise
+            problem = replace(problem, is_overdetermined=False)
+            continue
         begin, found, binding = len(record.statements), binding, record.commit(binding)
         names = tuple(record.renamed.items())
         rules.append(binding.rule)
@@ -190,6 +202,18 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         with_known_signs(record.statements, signs),
         tuple(steps),
     )
+
+
+def _unknowns(problem: Problem) -> set[sp.Symbol]:
+    """The unknowns in the equations."""
+    return {u for e in problem.equations for u in problem.unknowns_of(e.expression)}
+
+
+def _without_unknowns(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
+    """What is left of the equations of a trial that hold none of its unknowns."""
+    alone = [e for e in problem.equations if not problem.unknowns_of(e.expression)]
+    bindings = [Binding(e.label, (), e.lets, residual=e.expression / problem.scale_of(e)) for e in alone]
+    return [left for b in bindings if (left := record.commit(b).residual) is not None]
 
 
 def _residuals(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
@@ -252,8 +276,7 @@ def _of_a_trial(problem: Problem) -> Binding | None:
     """The step of a trial that leaves a residual of the positions without any two-root step: for a point alone, or
     where the joints of a wrist take any rotation.
     """
-    unknowns = {u for e in problem.equations for u in problem.unknowns_of(e.expression)}
-    if not problem.is_overdetermined or (problem.turns and len(unknowns) >= len(problem.equations)):
+    if not problem.is_overdetermined or (problem.turns and len(_unknowns(problem)) >= len(problem.equations)):
         return None
     return _best([list(scaled_pair(problem, positions_and_distance(problem)))])
 

@@ -173,6 +173,29 @@ WRIST_BEYOND_QUARTIC = {
 }
 """The position alone is searched as above: its wrist takes any rotation, and does not say which trial is a solution."""
 
+THREE_PARALLEL = {
+    "arm with three parallel axes, the last two beside each other": _chain(
+        "ThreeParallel",
+        (A1, A2, A3, A4, A5, A6),
+        Rz(A1)
+        * Tx(L1)
+        * Rx(A2)
+        * Tz(L2)
+        * Rx(A3)
+        * Tz(L3)
+        * Rx(-A4)
+        * Tz(L1)
+        * Tx(L5)
+        * Ry(A5)
+        * Tx(L4)
+        * Rz(-A6)
+        * Tx(L4),
+        (L1, L2, L3, L4, L5),
+        Task("xyz", Turning.FULL),
+    ),
+}
+"""With one joint known the rotation tells the sum of the parallel ones, before the position tells each."""
+
 MEETING_AXES = {
     "arm that rolls and bends where its shoulder is": _chain(
         "Rolling", (A1, A2, A3), Rz(A1) * Tx(L1) * Ry(A2) * Rz(A3) * Tx(L4) * Tz(L3), (L1, L3, L4), Task("xyz")
@@ -249,6 +272,7 @@ CHAINS = {
     **FROM_FLANGE,
     **OF_DEGREE_FOUR,
     **WRIST_BEYOND_QUARTIC,
+    **THREE_PARALLEL,
     **BY_TABLE,
     **BENT_WRISTS,
     **LONG_LINKS,
@@ -273,6 +297,7 @@ CHAIN_SOLUTIONS = {
     "three axes with offsets everywhere": 4,
     "three axes that lean by 60 degrees": 4,
     "arm whose elbow rolls, with a wrist": 8,
+    "arm with three parallel axes, the last two beside each other": 8,
     "six axes by a table with angles as numbers": 10,
     "arm with a wrist that is bent by 60 degrees": 8,
     "telescope between long links, with a wrist": 8,

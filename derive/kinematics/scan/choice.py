@@ -3,8 +3,9 @@
 With one joint known the others are solved, and one equation is left: the residual of a trial along this joint. Of a
 commanded point the third coordinate is left; joints that are held are known anyway. Every rotary joint is tried in
 turn. The positions are solved before the rotation, so the equations of the positions may hold no more unknown joints
-than there are equations: where they do, nothing is derived. Of several joints that would do, the one is taken whose
-trial has the fewest branches, then the fewest places where it may be out of reach, then the fewest operations.
+than there are equations, but for one more where three axes are parallel: where they do, nothing is derived. Of several
+joints that would do, the one is taken whose trial has the fewest branches, then the fewest places where it may be out
+of reach, then the fewest operations.
 """
 
 from __future__ import annotations
@@ -80,12 +81,14 @@ def _candidates(mechanism: Mechanism) -> Iterator[_Candidate]:
 
 def _may_be_solved(mechanism: Mechanism, known: Joint) -> bool:
     """Whether, with one joint known, the equations of the positions hold no more unknown joints than there are
-    equations.
+    equations; one more of three parallel joints, since the rotation tells their sum.
     """
-    unknown = [j for j in mechanism.solved_joints if j != known]
-    read = [names_in(e.expression) for e in closure_at(mechanism, known).equations]
-    present = [j for j in unknown if any(names & {j.symbol, cosine(j.symbol), sine(j.symbol)} for names in read)]
-    return len(present) <= len(read)
+    closure = closure_at(mechanism, known)
+    unknown = [j.symbol for j in mechanism.solved_joints if j != known]
+    read = [names_in(e.expression) for e in closure.equations]
+    present = [u for u in unknown if any(names & {u, cosine(u), sine(u)} for names in read)]
+    are_parallel = any(len(turn.amount.free_symbols & set(unknown)) > 2 for turn in closure.turns)
+    return len(present) <= len(read) + are_parallel
 
 
 def _searched(mechanism: Mechanism, found: _Candidate) -> Mechanism:

@@ -41,6 +41,7 @@ START = real("start")
 LOOKED_FOR = flag("looked_for")
 GOAL = {real(c): real(f"goal_{c}") for c in COORDINATE_NAMES} | {r: real(f"goal_{r.name}") for r in ROTATION_ENTRIES}
 """The names of the commanded pose in these programs."""
+AGREEMENT = real("agreement")
 FITS = "fits"
 FOUND = flag("found")
 """Whether there is a root on the wanted branch."""
@@ -137,12 +138,15 @@ def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tu
     steps = tuple(real(f"step_{j.name}") for j in joints)
     pairs = list(zip(joints, steps, strict=True))
     error, passes, taken = real("error"), count("passes"), flag("taken")
+    agreement = _agreement(mechanism)
+    squares = [*(n**2 for n in names), *(Select(sp.Gt(let.name, 1), _ZERO, sp.Integer(1)) for let in agreement)]
     rates, jacobian = _named_entries(scaled, len(joints))
     body = (
         *composed.statements,
         *pose,
         *errors,
-        Let(error, Root(sp.Add(*[n**2 for n in names])), "pose error, in characteristic lengths and radians"),
+        *agreement,
+        Let(error, Root(sp.Add(*squares)), "pose error, in characteristic lengths and radians"),
         *lets,
         *rates,
         *_shortest_step(jacobian, names, steps),
@@ -196,6 +200,14 @@ def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequ
         ),
         *(Let(step, value) for step, value in zip(steps, jacobian.T * sp.Matrix(multipliers), strict=True)),
     ]
+
+
+def _agreement(mechanism: Mechanism) -> list[Let]:
+    """What tells a rotation that agrees with the goal from one half a turn away, whose error vanishes as well."""
+    if mechanism.task.turning is Turning.NONE:
+        return []
+    trace = sp.Add(*[GOAL[r] * r for r in ROTATION_ENTRIES])
+    return [Let(AGREEMENT, trace, "3 where the rotations agree, -1 where they are half a turn apart")]
 
 
 def _errors(mechanism: Mechanism) -> list[sp.Expr]:

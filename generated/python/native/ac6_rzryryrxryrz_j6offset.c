@@ -443,7 +443,7 @@ static softkin_status find_finish_root(const void *machine, const double *given,
       error_1, r21_at_q23, r23_at_q23, r23_at_q4, r23_at_q5, y_at_q2, r23_at_q2, y_at_q3, y_at_q4, r21_at_q5,
       y_at_q6, y, error_2, r33_at_q4, r33_at_q5, cos_q2, z_at_q3, z_at_q4, r31_at_q5, z_at_q6, z, error_3,
       r22_at_q4, sin_q6, cos_q6, r21_at_q6, r32_at_q4, r31_at_q6, r22_at_q6, r32_at_q6, error_4, r12_at_q4,
-      r11_at_q6, r12_at_q6, error_5, error_6, error, rate_1_1, rate_2_1, z_minus_d1,
+      r11_at_q6, r12_at_q6, error_5, error_6, agreement, error, rate_1_1, rate_2_1, z_minus_d1,
       cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4,
       y_minus_y_at_q4, rate_1_4, rate_1_5, z_minus_z_at_q6, y_minus_y_at_q6, rate_1_6, product_1_1,
       sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, x_minus_x_at_q4, rate_2_4, rate_2_5,
@@ -518,9 +518,13 @@ static softkin_status find_finish_root(const void *machine, const double *given,
         - goal_r32*r12_at_q6 - goal_r33*r13_at_q5);
     error_6 = 0.5*(goal_r21*r11_at_q6 + goal_r22*r12_at_q6 + goal_r23*r13_at_q5 - goal_r11*r21_at_q6
         - goal_r12*r22_at_q6 - goal_r13*r23_at_q5);
+    /* 3 where the rotations agree, -1 where they are half a turn apart */
+    agreement = goal_r11*r11_at_q6 + goal_r12*r12_at_q6 + goal_r13*r13_at_q5 + goal_r21*r21_at_q6
+        + goal_r22*r22_at_q6 + goal_r23*r23_at_q5 + goal_r31*r31_at_q6 + goal_r32*r32_at_q6
+        + goal_r33*r33_at_q5;
     /* pose error, in characteristic lengths and radians */
-    error = sqrt(error_1*error_1 + error_2*error_2 + error_3*error_3 + error_4*error_4 + error_5*error_5
-        + error_6*error_6);
+    error = softkin_root((agreement > 1.0 ? 0.0 : 1.0) + error_1*error_1 + error_2*error_2 + error_3*error_3
+        + error_4*error_4 + error_5*error_5 + error_6*error_6);
     rate_1_1 = -k->one_by_machine_scale*y;
     rate_2_1 = k->one_by_machine_scale*x;
     z_minus_d1 = z - k->d1;

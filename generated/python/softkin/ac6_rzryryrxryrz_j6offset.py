@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 142 additions, 207 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 108941 additions, 163421 multiplications, 8609 divisions, 3994 square roots, 6048 sines
-    inverse, all 16 branches open: 1743329 additions, 2614832 multiplications, 137744 divisions, 63904 square
+    inverse: 109805 additions, 164285 multiplications, 8609 divisions, 3994 square roots, 6048 sines
+    inverse, all 16 branches open: 1757153 additions, 2628656 multiplications, 137744 divisions, 63904 square
     roots, 96768 sines
     repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, more: 28 additions, 50 multiplications, 11 divisions, 3 square roots, 12
@@ -57,7 +57,7 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
-from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, solve, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, solve, sqrt
 from softkin._root import every_root, nearest_root
 from softkin._search import SearchedInverse
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
@@ -114,7 +114,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 4d16d8b4e99b724f"
+    KEY = "ac6_rzryryrxryrz_j6offset ee3c21329cb5a556"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -723,9 +723,22 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 - goal_r12 * r22_at_q6
                 - goal_r13 * r23_at_q5
             )
+            # 3 where the rotations agree, -1 where they are half a turn apart
+            agreement = (
+                goal_r11 * r11_at_q6
+                + goal_r12 * r12_at_q6
+                + goal_r13 * r13_at_q5
+                + goal_r21 * r21_at_q6
+                + goal_r22 * r22_at_q6
+                + goal_r23 * r23_at_q5
+                + goal_r31 * r31_at_q6
+                + goal_r32 * r32_at_q6
+                + goal_r33 * r33_at_q5
+            )
             # pose error, in characteristic lengths and radians
-            error = sqrt(
-                error_1 * error_1
+            error = root(
+                (0.0 if agreement > 1.0 else 1.0)
+                + error_1 * error_1
                 + error_2 * error_2
                 + error_3 * error_3
                 + error_4 * error_4

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 120532
+    VALUES = 120533
 
     def try_joint(self, given: Values, status: Codes) -> Values:
         """The residual of the closure at a trial, its slope, and the angles that may turn fast."""
@@ -497,9 +497,22 @@ class ArrayPrograms(Programs):
                 - goal_r12 * r22_at_q6
                 - goal_r13 * r23_at_q5
             )
+            # 3 where the rotations agree, -1 where they are half a turn apart
+            agreement = (
+                goal_r11 * r11_at_q6
+                + goal_r12 * r12_at_q6
+                + goal_r13 * r13_at_q5
+                + goal_r21 * r21_at_q6
+                + goal_r22 * r22_at_q6
+                + goal_r23 * r23_at_q5
+                + goal_r31 * r31_at_q6
+                + goal_r32 * r32_at_q6
+                + goal_r33 * r33_at_q5
+            )
             # pose error, in characteristic lengths and radians
-            error = sqrt(
-                error_1 * error_1
+            error = root(
+                select(agreement > 1.0, 0.0, 1.0)
+                + error_1 * error_1
                 + error_2 * error_2
                 + error_3 * error_3
                 + error_4 * error_4
