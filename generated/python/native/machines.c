@@ -57,7 +57,7 @@
 #include "wrist3.h"
 
 const softkin_native softkin_machines[] = {
-    {"ac6_rzryryrxryrz_j6offset 4d16d8b4e99b724f", &ac6_rzryryrxryrz_j6offset_mechanism},
+    {"ac6_rzryryrxryrz_j6offset cd05e58431a1eeed", &ac6_rzryryrxryrz_j6offset_mechanism},
     {"ac6_threeparallel 354eb60899465918", &ac6_threeparallel_mechanism},
     {"ac6_txtytzryrxrz 0dbc441e11229b01", &ac6_txtytzryrxrz_mechanism},
     {"articulatedrobot_6dof 18dab28b5adb5eff", &articulatedrobot_6dof_mechanism},
