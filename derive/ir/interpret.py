@@ -40,7 +40,7 @@ from derive.ir.program import (
     Statement,
     Status,
 )
-from derive.ir.roots import nearest
+from derive.ir.roots import nearest, nearest_listed
 from derive.ir.symbols import (
     PLACE,
     Flag,
@@ -285,8 +285,17 @@ def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]
         fits, *values = at(search.finish, place)
         return np.asarray(fits, dtype=bool), np.stack(values, axis=1)
 
+    def listed() -> list[tuple[Array, NDArray[np.bool_], int]]:
+        counted.trials += len(start)
+        outputs, _ = run(search.trial, {name: rows[name] for name in read[search.trial.name]})
+        joints, offered = ([np.broadcast_to(v, start.shape) for v in [*outputs.values()][k::2]] for k in (0, 1))
+        return [(j, o.astype(np.bool_), s) for j, o, s in zip(joints, offered, search.sides, strict=True)]
+
     start = np.broadcast_to(evaluate(search.start, known), shape)[looked]
-    found, values = nearest(tried, finished, start)
+    if search.is_listed:
+        found, values = nearest_listed(listed(), finished, start)
+    else:
+        found, values = nearest(tried, finished, start)
     for name, column in zip(search.names, (found, *values.T), strict=True):
         known[name.name] = np.zeros(shape, dtype=column.dtype)
         known[name.name][looked] = column

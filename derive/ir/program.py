@@ -159,6 +159,9 @@ class FindRoot:
     that may be free. `finish` has the same arguments; its first output tells whether the root is on the wanted
     branch. `roots` says how roots are found. Where there is none, or `wanted` is false, the names are bound to false
     and zeros.
+
+    Where candidates for the roots are known in closed form, nothing is tried: `trial` lists them. Its outputs are, for
+    each of `sides`, a joint value, and whether it is a candidate on this side.
     """
 
     trial: Program
@@ -169,6 +172,13 @@ class FindRoot:
     arguments: tuple[sp.Symbol, ...]
     """The arguments of both programs besides the place; their other inputs are constants of the machine."""
     note: str = ""
+    sides: tuple[int, ...] = ()
+    """The side of each candidate that is listed; none where a trial is scanned."""
+
+    @property
+    def is_listed(self) -> bool:
+        """Whether the trial lists candidates for its roots, and nothing is scanned."""
+        return bool(self.sides)
 
     def given(self, program: Program) -> tuple[sp.Symbol, ...]:
         """The arguments of one of the programs, in the order of its inputs."""

@@ -98,13 +98,26 @@ def nearest(trial: Trial, finish: Finish, start: Reals) -> tuple[Flags, Reals]:
     return found, answer
 
 
+def nearest_listed(places: Sequence[tuple[Reals, Flags, int]], finish: Finish, start: Reals) -> tuple[Flags, Reals]:
+    """The same where the candidates are listed: values of the joint, whether each is offered, and its side."""
+    every = []
+    for joint, is_offered, side in places:
+        rows = np.flatnonzero(is_offered)
+        every.append(At(rows, joint[rows], np.full(len(rows), side), np.full(len(rows), -1), np.zeros(len(rows))))
+    return _nearest_of(_all(every), finish, start)
+
+
 def _of_rows(asked: Callable[[At], T], rows: Rows) -> Callable[[At], T]:
     """The problem for some of the rows."""
     return lambda place: asked(place._replace(rows=rows[place.rows]))
 
 
 def _nearest(trial: Trial, finish: Finish, start: Reals, shift: float) -> tuple[Flags, Reals]:
-    place = find_roots(trial, start, shift)
+    return _nearest_of(find_roots(trial, start, shift), finish, start)
+
+
+def _nearest_of(place: At, finish: Finish, start: Reals) -> tuple[Flags, Reals]:
+    """The candidate that fits and is nearest to the start."""
     is_wanted, values = finish(place)
     away = place.joint - start[place.rows] - AHEAD
     away = np.abs(away - 2.0 * np.pi * np.round(away / (2.0 * np.pi)))

@@ -233,13 +233,18 @@ def _statement(statement: Statement, repeats: Repeats | None = None) -> Cost:
         given = _total(expression_cost(value) for _, value in statement.given)
         return given + cost_of(statement.program, repeats=repeats)
     if isinstance(statement, FindRoot):
-        tried, looked = (TRIALS, FINISHED) if repeats is None else (repeats.trials, repeats.finished)
+        tried, looked = _most_of(statement) if repeats is None else (repeats.trials, repeats.finished)
         return (cost_of(statement.trial) + _OF_A_TRIAL) * tried + cost_of(statement.finish) * looked
     one_pass = _total(map(_statement, statement.step)) + _total(
         map(expression_cost, (statement.done, *statement.following))
     )
     passes = statement.limit if repeats is None else repeats.passes
     return _total(map(expression_cost, statement.start)) + one_pass * passes
+
+
+def _most_of(search: FindRoot) -> tuple[int, int]:
+    """How many trials are made at most, and how many roots are looked at."""
+    return (1, len(search.sides)) if search.is_listed else (TRIALS, FINISHED)
 
 
 def _product(node: sp.Expr) -> Cost:
@@ -266,7 +271,8 @@ def _bounds(program: Program) -> Iterator[Bound]:
         if isinstance(statement, Iterate):
             yield Bound(program.name, statement.note, statement.limit)
         elif isinstance(statement, FindRoot):
-            yield Bound(program.name, statement.note, TRIALS)
+            yield from _bounds(statement.trial) if statement.is_listed else ()
+            yield Bound(program.name, statement.note, len(statement.sides) or TRIALS)
         elif isinstance(statement, Call):
             yield from _bounds(statement.program)
 

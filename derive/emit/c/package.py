@@ -15,7 +15,16 @@ from derive.emit.c.every_branch import NAME as EVERY_BRANCH
 from derive.emit.c.functions import Function, arguments_of, functions, read_by, rotation_function
 from derive.emit.c.layout import comment, harmless, laid_out, page
 from derive.emit.c.printer import C, list_of, member, number, text, type_of
-from derive.emit.c.program import Body, arguments_read, function_lines, function_of, of_search, searches, taken
+from derive.emit.c.program import (
+    Body,
+    arguments_read,
+    directions_of,
+    function_lines,
+    function_of,
+    of_search,
+    searches,
+    taken,
+)
 from derive.emit.c.setup import constants_read, setup
 from derive.emit.language import GENERATED, Part, environment
 from derive.ir import cells, roots
@@ -42,7 +51,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import reasons_of, reasons_of_rotation
 
 name = "c"
-MOST_AXES, MOST_BRANCHES, MOST_DIRECTIONS = 24, 12, 6
+MOST_AXES, MOST_BRANCHES, MOST_DIRECTIONS, MOST_LISTED = 24, 12, 6, 10
 _SHARED = ("softkin.c", "softkin.h")
 _HEADERS = frozenset(
     "softkin assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg "
@@ -107,7 +116,8 @@ def _fits(kin: Kinematics) -> bool:
     found = [search for program in kin.shared for search in searches(program)]
     given = () if kin.search_given is None else kin.search_given.outputs
     sizes = [(len(kin.mechanism.joints), MOST_AXES), (len(kin.branches), MOST_BRANCHES), (len(given), 2 * MOST_AXES)]
-    sizes += [((len(search.trial.outputs) - 4) // 2, MOST_DIRECTIONS) for search in found]
+    sizes += [(directions_of(search), MOST_DIRECTIONS) for search in found]
+    sizes += [(len(search.sides), MOST_LISTED) for search in found]
     sizes += [(len(search.names), MOST_AXES + 1) for search in found]
     return all(size <= most for size, most in sizes)
 
@@ -134,6 +144,7 @@ def _templates() -> Environment:
         "most_axes": MOST_AXES,
         "most_branches": MOST_BRANCHES,
         "most_directions": MOST_DIRECTIONS,
+        "most_listed": MOST_LISTED,
         "most_solutions": _SOLUTIONS,
         "most_together": MOST_SLOTS,
         "most_cells": _CELLS,

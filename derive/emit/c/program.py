@@ -201,16 +201,24 @@ class Body:
 
     def search(self, search: FindRoot) -> list[str]:
         """The search as data."""
-        directions = (len(search.trial.outputs) - 4) // 2
         names = ", ".join(f"{function_name(p)}_at" for p in (search.trial, search.finish))
+        sides = [f"const int sides[] = {list_of(map(str, search.sides))};"] if search.is_listed else []
+        listed = f"{'sides' if sides else 'NULL'}, {len(search.sides)}"
+        sizes = f"{directions_of(search)}, {len(search.names)}, {listed}"
         return [
             f"const double arguments[] = {list_of(self.printer.name(s) for s in arguments_read(search))};",
-            f"const softkin_search search = {{k, arguments, {names}, {directions}, {len(search.names)}}};",
+            *sides,
+            f"const softkin_search search = {{k, arguments, {names}, {sizes}}};",
         ]
 
     def sought(self, search: FindRoot) -> str:
         """Where the search starts, and whether it is wanted."""
         return f"{self.printer.print(search.start)}, {self.printer.print(search.wanted)}"
+
+
+def directions_of(search: FindRoot) -> int:
+    """The number of directions of a trial."""
+    return 0 if search.is_listed else (len(search.trial.outputs) - 4) // 2
 
 
 def arguments_read(search: FindRoot) -> list[sp.Symbol]:
@@ -226,8 +234,10 @@ def of_search(search: FindRoot) -> list[list[str]]:
     given = "const void *machine, const double *arguments, const softkin_place *place, double *results"
     for program in (search.trial, search.finish):
         name = function_name(program)
+        read = search.given(program)
         inner = [
-            f"const double given[] = {list_of(places[s.name] for s in search.given(program))};",
+            *([] if {*PLACE} & {*read} else ["(void)place;"]),
+            f"const double given[] = {list_of(places[s.name] for s in read)};",
             f"return {name}(machine, given, results, NULL);",
         ]
         found.append(function_of("", f"static softkin_status {name}_at({given})", inner))

@@ -161,6 +161,7 @@ def looked_for(search: FindRoot, function: str = "nearestRoot") -> str:
         for p in (search.trial, search.finish)
     ]
     values = [PRINTER.print(search.start), PRINTER.print(search.wanted), str(len(search.names))]
+    values += [list_of(map(str, search.sides))] if search.is_listed else []
     return f"{function}({', '.join([*programs, *values])})"
 
 

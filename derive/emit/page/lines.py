@@ -138,7 +138,8 @@ class Lines:
     def _search(self, item: FindRoot) -> Iterator[Line]:
         arguments = ", ".join(self._spelling(s.name) for s in item.arguments)
         what = item.note or "search for a root"
-        note = f"{what}: the root nearest to the value below, of trials that read {arguments}"
+        of = "candidates" if item.is_listed else "trials"
+        note = f"{what}: the root nearest to the value below, of {of} that read {arguments}"
         yield Line("call", math=(self.math.inline(item.start),), note=note)
 
 

@@ -55,8 +55,9 @@ def _looked_for(search: FindRoot, function: str, spelling: tuple[str, str], prin
     programs = ", ".join(f"{prefix}{p.name}" for p in (search.trial, search.finish))
     given = ", ".join(tuple_of([_given(s, printer) for s in search.given(p)]) for p in (search.trial, search.finish))
     values = f"{printer.print(search.start)}, {printer.print(search.wanted)}, {status}{given}, {len(search.names)}"
+    sides = f"({', '.join(map(str, search.sides))},)"
     scan = "" if status else f", self._array_programs().{search.trial.name}"
-    return f"{function}({programs}, {values}{scan})"
+    return f"{function}({programs}, {values}{f', sides={sides}' if search.is_listed else scan})"
 
 
 def _given(name: sp.Symbol, printer: ScalarPrinter) -> str:

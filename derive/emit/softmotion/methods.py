@@ -144,7 +144,7 @@ def _shared(program: Program | None, kinematics: Kinematics, contract: Contract,
     called = shared([program]) if program is not None else ()
     for inner in (p for p in called if p.name not in ready):
         ready.add(inner.name)
-        if (search := search_in(inner)) is not None:
+        if (search := search_in(inner)) is not None and not search.is_listed:
             yield _Source(try_at_signature(search), search=search)
         own = without_axes(inner, kinematics) if search is None else inner
         yield _Source(signature_of(inner, spelled_inputs(kinematics), contract), own, is_shared=True, search=search)
@@ -196,6 +196,8 @@ def _method(
             if p.name in (REASON, MISSING, TURN) and f"{p.name} :=" not in program.body
         ]
     template = "Shared" if source.is_shared and source.search is None else name
+    if source.search is not None and source.search.is_listed:
+        template = "FindListedRoot"
     text = templates.get_template(f"methods/{template}.st.j2").render(contract.spelling, **context)
     return Method(source.signature.head(), with_gathered(tidy(text)))
 

@@ -70,6 +70,8 @@ class SearchText:
     nothing: str
     may_be_left_out: bool
     """Whether some machines need no scan."""
+    sides: tuple[int, ...]
+    """Where candidates are listed: the side of each."""
 
 
 def search_in(program: Program) -> FindRoot | None:
@@ -97,8 +99,8 @@ def search_text(search: FindRoot) -> SearchText:
     root = {
         "tried": "joints[nearest]",
         "side": "sides[nearest]",
-        "freed": "freedAt[nearest]",
-        "freed_angle": "angles[nearest]",
+        "freed": "-1" if search.is_listed else "freedAt[nearest]",
+        "freed_angle": "0.0" if search.is_listed else "angles[nearest]",
     }
     outputs = [parameter_name(o.name) for o in search.trial.outputs]
     found = [parameter_name(o.name) for o in search.finish.outputs]
@@ -109,11 +111,14 @@ def search_text(search: FindRoot) -> SearchText:
         columns=len(outputs),
         directions=(len(outputs) - 4) // 2,
         tried_outputs=tuple(outputs),
-        try_call=_call(search.trial, _arguments(search, search.trial, cell | numbers), outputs),
+        try_call=_call(
+            search.trial, _arguments(search, search.trial, {} if search.is_listed else cell | numbers), outputs
+        ),
         finish_call=_call(search.finish, _arguments(search, search.finish, root), found),
         success=f"{targets[0]} := TRUE;",
         nothing="\n".join([f"{targets[0]} := FALSE;", *(f"{t} := 0.0;" for t in targets[1:])]),
         may_be_left_out=search.wanted != sp.true,
+        sides=search.sides,
     )
 
 

@@ -5,7 +5,8 @@ commanded point the third coordinate is left; joints that are held are known any
 turn. The positions are solved before the rotation, so the equations of the positions may hold no more unknown joints
 than there are equations, but for one more where three axes are parallel: where they do, nothing is derived. Of several
 joints that would do, the one is taken whose trial has the fewest branches, then the fewest places where it may be out
-of reach, then the fewest operations.
+of reach, then the fewest operations. Where its residual is a conic in cosine and sine of the joint, its roots are known
+in closed form, and nothing is scanned.
 """
 
 from __future__ import annotations
@@ -19,12 +20,14 @@ from derive.description.mechanism import Joint, Mechanism, Search, Turning, cros
 from derive.equations.closures.commanded import closure_at
 from derive.equations.closures.fixed_names import fixed_lets
 from derive.equations.conditions import with_conditions
+from derive.ir.primitives import ToReal
 from derive.ir.program import Let
-from derive.ir.symbols import cosine, names_in, sine
+from derive.ir.symbols import SIDE, TRIED, cosine, names_in, sine
 from derive.kinematics.branches.derived import with_named_steps
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, solve_at, solve_pose
 from derive.kinematics.scan.guards import guards_of
+from derive.kinematics.scan.quartic import quartic_of
 from derive.kinematics.shared_names import refuse_shared_names
 from derive.solver.solve import Undetermined, Unsolved
 from derive.solver.unsolved import searched_in_vain
@@ -100,19 +103,38 @@ def _searched(mechanism: Mechanism, found: _Candidate) -> Mechanism:
     last = own or (crossing("crossing", rising=+1, falling=-1),)
     chosen = replace(mechanism, branches=(*others, *last), search=Search(found.joint))
     named = with_named_steps(chosen, trial, forward)
-    noted = replace(named, notes=(*mechanism.notes, _note(named, found.joint)))
+    noted = replace(named, notes=(*mechanism.notes, _note(named, found)))
     lets = fixed_lets(mechanism)
     checks = tuple(check.constraint(lets) for check in dict.fromkeys(trial.checks))
     held = replace(noted, constraints=(*noted.constraints, *checks))
     return with_conditions(held, trial.derivation.conditions)
 
 
-def _note(mechanism: Mechanism, joint: Joint) -> str:
+def _note(mechanism: Mechanism, found: _Candidate) -> str:
     """What to know about the search."""
     (last,) = (b for b in mechanism.branches if b.is_crossing)
+    joint = found.joint.name
+    if _is_quartic(mechanism, found):
+        first = (
+            f"With {joint} known the other joints are solved, and one equation is left, a conic in cosine and sine of "
+            f"{joint}. The inverse finds its up to four roots in closed form."
+        )
+    else:
+        first = (
+            f"No closed form is known: with {joint} known the other joints are solved, and one equation is left. The "
+            f"inverse looks for its roots along {joint}, all around the circle."
+        )
     return (
-        f"No closed form is known: with {joint.name} known the other joints are solved, and one equation is left. The "
-        f"inverse looks for its roots along {joint.name}, all around the circle. The byte {last.name} tells whether "
-        f"the residual rises or falls with {joint.name} at the root; of the roots of one branch the answer is the one "
-        f"whose {joint.name} is nearest to the reference."
+        f"{first} The byte {last.name} tells whether the residual rises or falls with {joint} at the root; of the "
+        f"roots of one branch the answer is the one whose {joint} is nearest to the reference."
     )
+
+
+def _is_quartic(mechanism: Mechanism, found: _Candidate) -> bool:
+    """Whether the roots of the residual are known in closed form."""
+    angle, trial = found.joint.symbol, found.trial
+    own = (Let(cosine(angle), sp.cos(TRIED)), Let(sine(angle), sp.sin(TRIED)))
+    signs = (Let(sign, ToReal(SIDE)) for sign in trial.signs)
+    solved = (s for s in trial.derivation.statements if isinstance(s, Let))
+    statements = (*own, *signs, *fixed_lets(mechanism), *trial.closure.lets, *solved)
+    return quartic_of(statements, trial.derivation.residuals[0]) is not None

@@ -1,4 +1,5 @@
-"""The inverse of a mechanism with a root scan: one program with the closed form and the scan.
+"""The inverse of a mechanism with a root scan: one program with the closed form and the scan. Where the residual of a
+trial is a conic in cosine and sine of the joint, its roots are listed in closed form in place of a scan.
 
 The conditions of the closed form refuse nothing where a scan is made.
 """
@@ -35,6 +36,7 @@ from derive.ir.symbols import (
 )
 from derive.kinematics.branches.assignment import with_branch_signs
 from derive.kinematics.inverse import Inverse
+from derive.kinematics.scan.candidates import candidates_program
 from derive.kinematics.scan.derivations import (
     SEARCHED,
     Scanned,
@@ -46,6 +48,7 @@ from derive.kinematics.scan.derivations import (
     wanted,
 )
 from derive.kinematics.scan.margins import DETERMINANT, margins_wanted
+from derive.kinematics.scan.own_side import on_own_side
 from derive.kinematics.scan.programs import (
     FOUND,
     GOAL,
@@ -55,6 +58,7 @@ from derive.kinematics.scan.programs import (
     finish_program,
     try_program,
 )
+from derive.kinematics.scan.quartic import quartic_of
 
 
 def branch_statements(both: Scanned) -> tuple[Statement, ...]:
@@ -107,10 +111,16 @@ def search_given(both: Scanned) -> Program:
 def search_of(both: Scanned) -> Program:
     """The program that finds the root of a branch, with the programs that it calls."""
     mechanism = both.mechanism
+    assert mechanism.search is not None
     trial = trial_on_branch(both)
-    finish = finish_program(mechanism, trial, margins_wanted(both), DETERMINANT)
     arguments = (*GOAL.values(), *map(wanted, mechanism.branches), *map(reference_value, mechanism.joints))
-    return find_program(mechanism, try_program(trial), finish, arguments)
+    quartic = quartic_of(trial.statements, trial.value)
+    at_root = trial if quartic is None else on_own_side(trial, quartic)
+    finish = finish_program(mechanism, at_root, margins_wanted(both), DETERMINANT)
+    if quartic is None:
+        return find_program(mechanism, try_program(trial), finish, arguments)
+    listed, sides = candidates_program(quartic, reference_value(mechanism.search.joint))
+    return find_program(mechanism, listed, finish, arguments, sides)
 
 
 def _chosen(both: Scanned) -> Iterable[Let]:

@@ -84,14 +84,24 @@ def try_program(trial: Trial) -> Program:
     )
 
 
-def find_program(mechanism: Mechanism, trial: Program, finish: Program, arguments: Sequence[sp.Symbol]) -> Program:
-    """The program that finds the root on the wanted branch that is nearest to the start."""
+def find_program(
+    mechanism: Mechanism,
+    trial: Program,
+    finish: Program,
+    arguments: Sequence[sp.Symbol],
+    sides: tuple[int, ...] = (),
+) -> Program:
+    """The program that finds the root on the wanted branch that is nearest to the start.
+
+    sides: those of the candidates that the trial lists; none where it is scanned.
+    """
     search = mechanism.search
     assert search is not None
     names = (FOUND, *(real(o.name) for o in finish.outputs[1:]))
-    note = f"root scan along {search.joint.name}"
+    note = f"{'roots' if sides else 'root scan'} along {search.joint.name}"
     is_always = search.where is None
-    found = FindRoot(trial, finish, START, sp.true if is_always else LOOKED_FOR, names, tuple(arguments), note)
+    wanted = sp.true if is_always else LOOKED_FOR
+    found = FindRoot(trial, finish, START, wanted, names, tuple(arguments), note, sides)
     program = normalise("find_root", (found,), [Output(n.name, n) for n in names])
     otherwise = "there is none" if is_always else "the machine needs no scan"
     return replace(program, summary=f"The joints at the root that is nearest to the start; zeros where {otherwise}")

@@ -686,7 +686,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   const double arguments[] = {goal_x, goal_y, goal_z, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22,
       goal_r23, goal_r31, goal_r32, goal_r33, wanted_shoulder, wanted_elbow, wanted_wrist, wanted_crossing,
       reference_a1, reference_a2};
-  const softkin_search search = {k, arguments, find_try_joint_at, find_finish_root_at, 2, 7};
+  const softkin_search search = {k, arguments, find_try_joint_at, find_finish_root_at, 2, 7, NULL, 0};
   double root[7];
   softkin_nearest_root(&search, start_, looked_for, root);
   const double found_q1 = root[1], found_q2 = root[2], found_q3 = root[3], found_q4 = root[4],
@@ -1494,7 +1494,7 @@ static void find_every_root(const void *machine, const double *given, softkin_ta
   const double arguments[] = {goal_x, goal_y, goal_z, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22,
       goal_r23, goal_r31, goal_r32, goal_r33, wanted_shoulder, wanted_elbow, wanted_wrist, wanted_crossing,
       reference_a1, reference_a2};
-  const softkin_search search = {k, arguments, find_try_joint_at, find_finish_root_at, 2, 7};
+  const softkin_search search = {k, arguments, find_try_joint_at, find_finish_root_at, 2, 7, NULL, 0};
   softkin_every_root(&search, start_, looked_for, take, context);
 }
 

@@ -57,7 +57,7 @@
 #include "wrist3.h"
 
 const softkin_native softkin_machines[] = {
-    {"ac6_rzryryrxryrz_j6offset ee3c21329cb5a556", &ac6_rzryryrxryrz_j6offset_mechanism},
+    {"ac6_rzryryrxryrz_j6offset 4734b91b82d185c1", &ac6_rzryryrxryrz_j6offset_mechanism},
     {"ac6_threeparallel 354eb60899465918", &ac6_threeparallel_mechanism},
     {"ac6_txtytzryrxrz 0dbc441e11229b01", &ac6_txtytzryrxrz_mechanism},
     {"articulatedrobot_6dof 18dab28b5adb5eff", &articulatedrobot_6dof_mechanism},

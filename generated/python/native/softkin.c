@@ -1203,6 +1203,22 @@ static void sort_places(scan *on, double start) {
   }
 }
 
+/* The candidates that the trial lists. */
+static void list_roots(scan *on) {
+  const softkin_search *search = on->search;
+  const softkin_place nowhere = {0.0, 0.0, 1, -1};
+  double results[2*SOFTKIN_MOST_LISTED];
+  on->found = 0;
+  if (search->trial(search->machine, search->arguments, &nowhere, results) != SOFTKIN_OK) {
+    return;
+  }
+  for (int i = 0; i < search->listed; i += 1) {
+    if (results[2*i + 1] != 0.0) {
+      add(on, (softkin_place){results[2*i], 0.0, search->sides[i], -1});
+    }
+  }
+}
+
 /* Give the values of the roots that fit, the nearest to the start first, until they are not taken any more.
  * */
 static void finished(const softkin_search *search, double start, int most, softkin_take take, void *context) {
@@ -1215,7 +1231,11 @@ static void finished(const softkin_search *search, double start, int most, softk
     if (i > 0 && on.trials + CELLS > TRIALS - RESERVE) {
       return;
     }
-    find_roots(&on, start, SHIFTS[i]);
+    if (search->listed > 0) {
+      list_roots(&on);
+    } else {
+      find_roots(&on, start, SHIFTS[i]);
+    }
     sort_places(&on, start);
     bool is_there = false;
     for (int k = 0; k < on.found && k < most - looked; k += 1) {
@@ -1228,7 +1248,7 @@ static void finished(const softkin_search *search, double start, int most, softk
         }
       }
     }
-    if (is_there) {
+    if (is_there || search->listed > 0) {
       return;
     }
     looked = most < looked + on.found ? most : looked + on.found;

@@ -307,9 +307,14 @@ typedef struct {
       double *values);
   int directions; /* at most SOFTKIN_MOST_DIRECTIONS */
   int count;      /* of the values, at most SOFTKIN_MOST_AXES + 1 */
+  /* where the trial lists candidates, a joint value and whether it is one of each: their sides; else NULL, 0
+   * */
+  const int *sides;
+  int listed; /* at most SOFTKIN_MOST_LISTED */
 } softkin_search;
 
 #define SOFTKIN_MOST_DIRECTIONS 6
+#define SOFTKIN_MOST_LISTED 10
 
 /** Fill a refusal, if there is one to fill, and return the status. */
 softkin_status softkin_refuse(softkin_refusal *why, softkin_status status, const char *reason,

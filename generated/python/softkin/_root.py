@@ -8,7 +8,7 @@ there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from math import acos, atan2, hypot, pi, sqrt
 from typing import Any
 
@@ -53,15 +53,17 @@ def nearest_root(
     trial_given: Values,
     finish_given: Values,
     count: int,
-    scan: Scan,
+    scan: Scan | None = None,
+    sides: tuple[int, ...] = (),
 ) -> Values:
     """True and the results of `finish` at the root that fits and is nearest to the start; False and zeros where there
     is none, or none is wanted.
 
-    trial_given, finish_given: the arguments, in which a name stands for a coordinate of the place.
+    trial_given, finish_given: the arguments, in which a name stands for a coordinate of the place. sides: of the
+    candidates, where the trial lists them.
     """
     if wanted:
-        for values in _finished(trial, finish, start, trial_given, finish_given, scan, _FINISHED):
+        for values in _finished(trial, finish, start, trial_given, finish_given, scan, sides, _FINISHED):
             return values
     return (False, *(count - 1) * (0.0,))
 
@@ -74,10 +76,11 @@ def every_root(
     trial_given: Values,
     finish_given: Values,
     count: int,
-    scan: Scan,
+    scan: Scan | None = None,
+    sides: tuple[int, ...] = (),
 ) -> list[Values]:
     """The results of `finish` at all roots that fit, the nearest to the start first."""
-    every = _finished(trial, finish, start, trial_given, finish_given, scan, _TRIALS) if wanted else ()
+    every = _finished(trial, finish, start, trial_given, finish_given, scan, sides, _TRIALS) if wanted else ()
     return [values[1:] for values in every]
 
 
@@ -87,15 +90,21 @@ def _finished(
     start: float,
     trial_given: Values,
     finish_given: Values,
-    scan: Scan,
+    scan: Scan | None,
+    sides: tuple[int, ...],
     most: int,
 ) -> Iterator[Values]:
     search, at, looked_at = _Search(_of(trial, trial_given)), _of(finish, finish_given), 0
+    if scan is None:
+        places = _listed(trial(trial_given), sides)
+        places.sort(key=lambda place: _away(place, start))
+        yield from (values for values in map(at, places) if values[0])
+        return
     for shift in SHIFTS:
         if shift != SHIFTS[0] and search.trials + CELLS > _TRIALS - RESERVE:
             return
         places = search.roots(start, shift, _scanned(scan, start, shift, trial_given))
-        places.sort(key=lambda place: abs((place[0] - start - AHEAD + pi) % (2.0 * pi) - pi))
+        places.sort(key=lambda place: _away(place, start))
         is_there = False
         for place in places[: most - looked_at]:
             values = at(place)
@@ -105,6 +114,15 @@ def _finished(
         if is_there:
             return
         looked_at = min(most, looked_at + len(places))
+
+
+def _away(place: Place, start: float) -> float:
+    return abs((place[0] - start - AHEAD + pi) % (2.0 * pi) - pi)
+
+
+def _listed(said: Sequence[Any], sides: tuple[int, ...]) -> list[Place]:
+    """The candidates that are offered: of each a joint value, and whether it is one."""
+    return [(said[2 * k], side, -1, 0.0) for k, side in enumerate(sides) if said[2 * k + 1]]
 
 
 def _scanned(scan: Scan, start: float, shift: float, given: Values) -> list[Results]:

@@ -93,13 +93,26 @@ def nearest(trial: Trial, finish: Finish, start: Reals) -> tuple[Flags, Reals]:
     return found, answer
 
 
+def nearest_listed(places: Sequence[tuple[Reals, Flags, int]], finish: Finish, start: Reals) -> tuple[Flags, Reals]:
+    """The same where the candidates are listed: values of the joint, whether each is offered, and its side."""
+    every = []
+    for joint, is_offered, side in places:
+        rows = np.flatnonzero(is_offered)
+        every.append(At(rows, joint[rows], np.full(len(rows), side), np.full(len(rows), -1), np.zeros(len(rows))))
+    return _nearest_of(_all(every), finish, start)
+
+
 def _of_rows(asked: Callable[[At], T], rows: Rows) -> Callable[[At], T]:
     """The problem for some of the rows."""
     return lambda place: asked(place._replace(rows=rows[place.rows]))
 
 
 def _nearest(trial: Trial, finish: Finish, start: Reals, shift: float) -> tuple[Flags, Reals]:
-    place = find_roots(trial, start, shift)
+    return _nearest_of(find_roots(trial, start, shift), finish, start)
+
+
+def _nearest_of(place: At, finish: Finish, start: Reals) -> tuple[Flags, Reals]:
+    """The candidate that fits and is nearest to the start."""
     is_wanted, values = finish(place)
     away = place.joint - start[place.rows] - AHEAD
     away = np.abs(away - 2.0 * np.pi * np.round(away / (2.0 * np.pi)))
@@ -281,11 +294,13 @@ def nearest_root(
     trial_given: Values,
     finish_given: Values,
     count: int,
+    sides: tuple[int, ...] = (),
 ) -> Values:
     """True and the results of `finish` at the root that fits and is nearest to the start; False and zeros where there
     is none, or none is wanted.
 
-    given: the arguments, a value for every row or one for all; the parts of a place by their names.
+    given: the arguments, a value for every row or one for all; the parts of a place by their names. sides: of the
+    candidates, where the trial lists them.
     """
     shape = np.shape(status)
     there, answer = np.zeros(shape, np.bool_), np.zeros((count - 1, *shape))
@@ -294,7 +309,10 @@ def nearest_root(
         rows = looked[k : k + _ROWS]
         begin = np.broadcast_to(start, shape).ravel()[rows]
         tries, finishes = _of(trial, trial_given, shape, rows), _of(finish, finish_given, shape, rows)
-        found, values = nearest(_tried(tries), _finished(finishes, count - 1), begin)
+        if sides:
+            found, values = nearest_listed(_listed(tries, len(rows), sides), _finished(finishes, count - 1), begin)
+        else:
+            found, values = nearest(_tried(tries), _finished(finishes, count - 1), begin)
         there.reshape(-1)[rows] = found
         answer.reshape(count - 1, -1)[:, rows] = values.T
     return (there, *answer)
@@ -303,6 +321,13 @@ def nearest_root(
 def _tried(says: Callable[[At], list[Any]]) -> Trial:
     """The results of a trial as a table."""
     return lambda place: np.stack(says(place), axis=1) if len(place.rows) else np.zeros((0, 0))
+
+
+def _listed(says: Callable[[At], list[Any]], count: int, sides: tuple[int, ...]) -> list[tuple[Reals, Flags, int]]:
+    """The candidates of every row: a joint value, whether it is offered, and its side."""
+    none = np.zeros(count)
+    said = says(At(np.arange(count), none, none.astype(int), none.astype(int), none))
+    return [(said[2 * k], said[2 * k + 1], side) for k, side in enumerate(sides)]
 
 
 def _finished(says: Callable[[At], list[Any]], count: int) -> Finish:
