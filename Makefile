@@ -48,6 +48,8 @@ view: $(READY)
 check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)
 
+# Compiled modules are kept beside their sources even where the environment says not to: a run starts some hundred Pythons.
+test quick: export PYTHONDONTWRITEBYTECODE =
 # The core in C is built into build/native and asked first; where there is no compiler, a line says so.
 test: $(READY)
 	$(RUN) -m tests.native

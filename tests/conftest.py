@@ -26,11 +26,14 @@ settings.load_profile("softkin")
 # 700 new objects took a fifth of the time.
 gc.set_threshold(50_000, 20, 100)
 # The core that is asked is Python's, unless `python -m tests.native` has built the other one and asks for it.
-collect_ignore = [] if os.environ.setdefault("SOFTKIN_CORE", "python") == "native" else ["native"]
+IS_NATIVE = os.environ.setdefault("SOFTKIN_CORE", "python") == "native"
+collect_ignore = [] if IS_NATIVE else ["native"]
 
 ROOT = Path(__file__).parent
 ALL_OF_THEM_QUICK = (("unit",), ("harness",))
 """The folders whose tests are quick where they are about no mechanism of the catalogue, but for those that are slow."""
+ASKED_WHOLE = (("native",), ("corpus",))
+"""The folders that are asked about all mechanisms with the native core, where the catalogue is about the quick ones."""
 OF_ONE_MECHANISM = {"hexapod": "Kin_Hexapod", "search": "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"}
 """Folders of tests about one mechanism, which their parameters do not name."""
 SWEEPS = (
@@ -124,7 +127,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         names = mechanisms_of(item, folders)
         place = f"{item.path.relative_to(ROOT).as_posix()}::{item.name}"
         is_quick = set(names) <= PATHS.keys() if names else folders[:1] in ALL_OF_THEM_QUICK
-        if is_quick and item.get_closest_marker("slow") is None and not place.startswith(SWEEPS):
+        is_long = item.get_closest_marker("slow") is not None or place.startswith(SWEEPS)
+        if (is_quick and not is_long) or (IS_NATIVE and folders[:1] in ASKED_WHOLE):
             item.add_marker("quick")
         if is_shared_out:
             if place.startswith(OF_A_GENERATION):

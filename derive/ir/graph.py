@@ -48,6 +48,8 @@ class Node:
 
     is_number: bool = False
     """Whether it is a number."""
+    is_whole: bool = False
+    """Whether it is an integer, by the names in it: told once, since what is shared is reached along many ways."""
     read: tuple[Node, ...] = ()
     """The nodes that it reads, made once: every pass asks for them."""
 
@@ -159,7 +161,13 @@ class Graph:
         if known is None:
             read = (*(part.node for part in parts), *divisors)
             known = self._known[key] = Node(
-                len(self.nodes), head, parts, divisors, is_number=isinstance(head, sp.Number), read=read
+                len(self.nodes),
+                head,
+                parts,
+                divisors,
+                is_number=isinstance(head, sp.Number),
+                is_whole=_is_whole(head, parts) if read else is_count(head),
+                read=read,
             )
             self.nodes.append(known)
         return known
@@ -177,10 +185,5 @@ def reached(starts: Iterable[Node], is_end: Callable[[Node], bool] = lambda _: F
             pending += () if is_end(node) else node.read
 
 
-def is_whole(node: Node) -> bool:
-    """Whether it is an integer, by the names in it."""
-    if node.is_leaf:
-        return is_count(node.head)
-    if node.head in (SUM, PRODUCT, sp.Abs, Select):
-        return any(is_whole(part.node) for part in node.parts)
-    return False
+def _is_whole(head: Head, parts: Iterable[Value]) -> bool:
+    return head in (SUM, PRODUCT, sp.Abs, Select) and any(part.node.is_whole for part in parts)

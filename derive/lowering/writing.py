@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from derive.ir.graph import ODD, PRODUCT, SUM, Node, Value, is_whole, reached
+from derive.ir.graph import ODD, PRODUCT, SUM, Node, Value, reached
 from derive.ir.names import Names
 from derive.ir.passes import with_inputs
 from derive.ir.primitives import Atan2, Select
@@ -96,7 +96,7 @@ class _Writer:
         order = len(self.draft.program.body) if known is None else known.order
         has_whole_sides = node.head is Select and known is not None and is_count(known.name)
         return Named(
-            self.free.fresh(proposal, _WHOLE if has_whole_sides or is_whole(node) else None), value.sign, "", order
+            self.free.fresh(proposal, _WHOLE if has_whole_sides or node.is_whole else None), value.sign, "", order
         )
 
     def _called(self, node: Node) -> sp.Expr | None:

@@ -1,5 +1,7 @@
 """Check declarations: names, initial values, bodies. Everything the translator relies on."""
 
+from collections.abc import Sequence
+
 from . import ast, constants
 from . import st_types as types
 from .check_statements import Statements
@@ -13,7 +15,7 @@ from .universe import Universe
 NATIVE = "{attribute 'native'}"
 
 
-def check(universe: Universe, declarations: list[ast.Declaration]) -> Facts:
+def check(universe: Universe, declarations: Sequence[ast.Declaration]) -> Facts:
     facts = Facts()
     for declaration in declarations:
         check_name(declaration.name, declaration.at)

@@ -10,17 +10,15 @@ from functools import cached_property, lru_cache
 from types import CodeType
 from typing import Any
 
-from . import ast, library_interfaces, python_names, stubs
+from . import ast, python_names, stubs
 from . import st_types as types
-from .check import check
 from .check_expressions import block_parameters
-from .faults import Place, StError, StFault
+from .faults import StError, StFault
 from .initial_values import default, initial
 from .instance import Entry, Function, Instance, Origin
+from .layers import Texts, declarations_of, layer_of
 from .marks import marked, marked_code
-from .parse import parse
 from .runtime import ENVIRONMENT, Cell, Matrix
-from .translate import translate
 from .translate_statements import Source
 from .universe import Universe
 
@@ -93,31 +91,16 @@ def _marked(part: str) -> dict[str, CodeType]:
 
 
 @lru_cache(maxsize=8)
-def _translated(texts: tuple[tuple[str, str], ...], matrix_size: int, max_config_data: int) -> Translated:
-    universe = Universe()
-    universe.declare("SM3M", "SMC_Matrix3", types.Opaque("SMC_Matrix3", matrix_size), Place("SM3M", 0))
-    library_declarations: list[ast.Declaration] = []
-    for space, declarations in _stub_declarations(max_config_data).items():
-        universe.add(list(declarations), space)
-        library_declarations += declarations
-    own = [declaration for file, text in texts for declaration in _declarations(text, file)]
-    universe.add(own, "")
-    everything = library_declarations + own
-    facts = check(universe, everything)
-    source = translate(universe, everything, facts, stubs.EXTRA_INITIALISATION)
-    return Translated(universe, tuple(own), source)
+def _translated(texts: Texts, matrix_size: int, max_config_data: int) -> Translated:
+    layer = layer_of(texts, matrix_size, max_config_data)
+    own = tuple(declaration for file, text in texts for declaration in declarations_of(text, file))
+    return Translated(layer.universe, own, layer.whole())
 
 
-@lru_cache(maxsize=256)
-def _declarations(text: str, file: str) -> tuple[ast.Declaration, ...]:
-    """A text that stands in many libraries is parsed once: nobody writes into a syntax tree."""
-    return tuple(parse(text, file))
-
-
-@lru_cache
-def _stub_declarations(max_config_data: int) -> dict[str, tuple[ast.Declaration, ...]]:
-    found = {space: tuple(parse(text, space)) for space, text in stubs.texts(max_config_data).items()}
-    return found | {"TRAFO": (*found["TRAFO"], *library_interfaces.declared())}
+@lru_cache(maxsize=2000)
+def _made_by(value: str) -> CodeType:
+    """The code of a function that makes a value: thousands of parameters have the same few."""
+    return compile(f"lambda: {value}", FILENAME, "eval")
 
 
 class Library:
@@ -168,8 +151,7 @@ class Library:
 
     def _entry(self, function: Any, routine: types.Routine) -> Entry:
         defaults = [
-            eval(f"lambda: {initial(parameter, self._universe.meaning)}", self._names)
-            for parameter in routine.parameters
+            eval(_made_by(initial(parameter, self._universe.meaning)), self._names) for parameter in routine.parameters
         ]
         return Entry(function, routine, defaults)
 

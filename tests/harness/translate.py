@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from . import ast, python_names
 from . import st_types as types
 from .check import NATIVE
@@ -12,27 +14,37 @@ from .universe import Universe
 
 
 def translate(
-    universe: Universe, declarations: list[ast.Declaration], facts: Facts, extra: dict[str, list[str]]
-) -> Source:
-    """The source of a whole library; `extra` adds lines to the start of a structure's life."""
-    translator = _Translator(universe, facts, extra)
+    universe: Universe,
+    declarations: Sequence[ast.Declaration],
+    facts: Facts,
+    extra: dict[str, list[str]],
+    source: Source,
+) -> None:
+    """Add declarations to the source of what they are based on; `extra` adds lines to the start of a structure's
+    life.
+    """
+    translator = _Translator(universe, facts, extra, source, [one.name for one in declarations])
     for declaration in declarations:
         translator.declaration(declaration)
-    # Globals hold instances of the classes above, so they come last.
+
+
+def globals_of(universe: Universe, source: Source) -> None:
+    """Add the globals: they hold instances of the classes, so they come last."""
     for variable in universe.globals:
         if not is_inlined(variable):
             name = python_names.global_variable(variable)
-            translator.source.add(f"{name} = {initial(variable, universe.meaning)}")
-    return translator.source
+            source.add(f"{name} = {initial(variable, universe.meaning)}")
 
 
 class _Translator:
-    def __init__(self, universe: Universe, facts: Facts, extra: dict[str, list[str]]) -> None:
+    def __init__(
+        self, universe: Universe, facts: Facts, extra: dict[str, list[str]], source: Source, names: list[str]
+    ) -> None:
         self.universe = universe
         self.facts = facts
         self.extra = extra
-        self.source = Source()
-        self.done: set[types.Block] = set()
+        self.source = source
+        self.pending = set(names)
 
     def declaration(self, node: ast.Declaration) -> None:
         found = self.universe.find(node.name)
@@ -69,9 +81,9 @@ class _Translator:
 
     # ---- blocks ------------------------------------------------------------------------
     def _block(self, block: types.Block) -> None:
-        if block in self.done:
+        if block.name not in self.pending:
             return
-        self.done.add(block)
+        self.pending.remove(block.name)
         if block.base is not None:
             self._block(block.base)  # Python needs the base class first
         add = self.source.add

@@ -19,6 +19,13 @@ class Universe:
         self.spaces[SYSTEM.lower()] = types.Namespace(SYSTEM, {query.name.lower(): query})
         self.globals: list[types.Variable] = []
 
+    def copy(self) -> Universe:
+        """The same objects, to which others can be added."""
+        other = Universe()
+        other.spaces = {key: types.Namespace(space.name, dict(space.entries)) for key, space in self.spaces.items()}
+        other.globals = self.globals[:]
+        return other
+
     # ---- finding -----------------------------------------------------------------------
     def find(self, name: str) -> types.Meaning | None:
         """An unqualified name: own objects, library objects, members of open enumerations."""

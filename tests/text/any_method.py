@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from tests.harness.instance import Entry
@@ -30,6 +30,10 @@ class Call:
     def inputs(self) -> tuple[str, ...]:
         """The arguments that the method reads only."""
         return tuple(name for name in self.arguments if name not in self.written)
+
+    def again(self) -> Call:
+        """The same with arguments of its own."""
+        return replace(self, arguments={name: values.copied(value) for name, value in self.arguments.items()})
 
     def run(self) -> tuple[Any, dict[str, Any]]:
         """What the method returns, and what it has written."""

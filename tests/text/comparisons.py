@@ -125,11 +125,12 @@ def _is_spatial(pair: SerialPair) -> bool:
 
 def inverse(pair: SerialPair, sample: Sample) -> None:
     """CartesianToAxes gives the axis values of Python; where branches coincide, axis values of the same pose."""
+    coincide = _is_spatial(pair) and 3 in own_bytes(pair, sample)
     for command, (status, answer) in solved(pair.machine, sample):
         frame = command.position, command.rotation
         expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
         found = pair.controller.inverse(*frame, command.configuration, command.reference)
-        if 3 in own_bytes(pair, sample) and _is_spatial(pair) and not is_close(found, (status, expected)):
+        if coincide and not is_close(found, (status, expected)):
             assert_same_pose(pair, found, (status, expected), command)
         else:
             assert_same(found, (status, expected), pair, command)

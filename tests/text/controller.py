@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import cached_property
 from typing import Any
 
 from derive.description.mechanism import Mechanism, Parameter, Role
@@ -35,16 +36,21 @@ class Controller:
         self.mechanism = mechanism
         self.block = library.new(mechanism.block_name)
 
-    @property
+    @cached_property
     def methods(self) -> frozenset[str]:
         """The public methods that its interfaces have, in small letters; others that it inherits answer nothing."""
         return frozenset(name.lower() for name in public_methods(self.mechanism))
 
     def set_inputs(self, given: Mapping[str, float]) -> None:
         """Set the inputs that parameters name."""
-        for parameter in machine_parameters(self.mechanism):
+        for parameter, name in self._inputs:
             if parameter.name in given:
-                setattr(self.block, input_name(parameter), input_value(parameter, given[parameter.name]))
+                setattr(self.block, name, input_value(parameter, given[parameter.name]))
+
+    @cached_property
+    def _inputs(self) -> tuple[tuple[Parameter, str], ...]:
+        """The parameters of the machine, each with the name of its input."""
+        return tuple((parameter, input_name(parameter)) for parameter in machine_parameters(self.mechanism))
 
     def initialise(self, given: Mapping[str, float]) -> str:
         """Set inputs, and call Initialize."""

@@ -66,10 +66,11 @@ def test_garbage_in_one_number(pairs: tuple[Pair, ...]) -> None:
     for one in (pairs[1], pairs[-3]):
         sample = one.regular[-1]
         for method in methods_of(one.controller):
-            clean = call_of(one, one.controller, method, sample).run()
-            for name, path in real_inputs(call_of(one, one.controller, method, sample)):
+            fitting = call_of(one, one.controller, method, sample)
+            clean = fitting.again().run()
+            for name, path in real_inputs(fitting):
                 for garbage in GARBAGE:
-                    call = call_of(one, one.controller, method, sample)
+                    call = fitting.again()
                     values.put(call.arguments[name], path, garbage)
                     check(call, clean, (name, path, garbage))
 
@@ -79,9 +80,10 @@ def test_garbage_in_every_number(pairs: tuple[Pair, ...]) -> None:
     for one in (pairs[1], pairs[-3]):
         sample = one.regular[-1]
         for method in methods_of(one.controller):
-            clean = call_of(one, one.controller, method, sample).run()
+            fitting = call_of(one, one.controller, method, sample)
+            clean = fitting.again().run()
             for garbage in GARBAGE:
-                call = call_of(one, one.controller, method, sample)
+                call = fitting.again()
                 for name, path in real_inputs(call):
                     values.put(call.arguments[name], path, garbage)
                 check(call, clean, garbage)
@@ -92,9 +94,10 @@ def test_garbage_in_what_is_written(pairs: tuple[Pair, ...]) -> None:
     for one in pairs[1:2]:
         sample = one.regular[-1]
         for method in methods_of(one.controller):
-            clean = call_of(one, one.controller, method, sample).run()
+            fitting = call_of(one, one.controller, method, sample)
+            clean = fitting.again().run()
             for garbage in GARBAGE:
-                call = call_of(one, one.controller, method, sample)
+                call = fitting.again()
                 for name in call.written:
                     spoil(call.arguments[name], garbage)
                 assert call.run() == clean, method

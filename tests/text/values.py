@@ -110,16 +110,32 @@ def plain(value: Any) -> Any:
     return {path: element(value, path) for path in scalars(value)}
 
 
-def scalars(value: Any) -> Iterator[Path]:
-    """Where every scalar of a value lies."""
+def scalars(value: Any) -> tuple[Path, ...]:
+    """Where every scalar of a value lies: in all structures of a type at the same places."""
+    return _places(type(value)) if isinstance(value, StructValue) else tuple(_found(value))
+
+
+@cache
+def _places(made: type[StructValue]) -> tuple[Path, ...]:
+    return tuple(_found(made()))
+
+
+def _found(value: Any) -> Iterator[Path]:
     if isinstance(value, StructValue):
         for name in value._fields:
-            yield from ((name, *rest) for rest in scalars(getattr(value, name)))
+            yield from ((name, *rest) for rest in _found(getattr(value, name)))
     elif isinstance(value, list):
         for index, part in enumerate(value):
-            yield from ((index, *rest) for rest in scalars(part))
+            yield from ((index, *rest) for rest in _found(part))
     else:
         yield ()
+
+
+def copied(value: Any) -> Any:
+    """The same value at another place in memory."""
+    if isinstance(value, StructValue):
+        return value._copy()
+    return list(map(copied, value)) if isinstance(value, list) else value
 
 
 def element(value: Any, path: Path) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
+from itertools import islice
 
 import numpy as np
 import softkin
@@ -123,11 +124,15 @@ def _loop(machine: Machine, rng: Generator) -> Loop:
     assert controller.initialise(machine.robot.parameters) == OK
     drawn = _drawn(machine, 6000, rng)
     closed = [a for a, s in zip(drawn.tolist(), machine.robot.forward_batch(drawn)[3], strict=True) if s == Status.OK]
-    regular = [a for a in closed if all(abs(m) > 0.01 for m in machine.robot.singularity(tuple(a)).margins.values())]
-    regular = [a for a in regular if _returns(machine, tuple(a))]
-    assert len(regular) >= POSES, f"{machine.mechanism.name} {machine.label}: {len(regular)}"
-    made = [_sample(machine, axes, rng) for axes in (*regular[:POSES], *drawn[:BROKEN].tolist())]
+    regular = list(islice((a for a in closed if _is_regular(machine, tuple(a))), POSES))
+    assert len(regular) == POSES, f"{machine.mechanism.name} {machine.label}: {len(regular)}"
+    made = [_sample(machine, axes, rng) for axes in (*regular, *drawn[:BROKEN].tolist())]
     return Loop(machine, controller, tuple(made[:POSES]), tuple(made[POSES:]))
+
+
+def _is_regular(machine: Machine, axes: tuple[float, ...]) -> bool:
+    margins = machine.robot.singularity(axes).margins.values()
+    return all(abs(m) > 0.01 for m in margins) and _returns(machine, axes)
 
 
 def _returns(machine: Machine, axes: tuple[float, ...]) -> bool:

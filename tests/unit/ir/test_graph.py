@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 
-from derive.ir.graph import Graph, Value, is_whole
+from derive.ir.graph import Graph, Value
 from derive.ir.primitives import Root, Select, ToReal
 from derive.ir.symbols import count, real
 
@@ -84,6 +84,14 @@ def test_what_is_made_of_whole_numbers_is_whole_until_it_is_converted(graph: Gra
     """Expressions of whole numbers are whole until they are converted to a real number."""
     turn = leaf(graph, count("turn"))
     degrees = graph.product([graph.leaf(sp.Integer(360)), turn])
-    assert is_whole(degrees.node)
-    assert not is_whole(graph.apply(ToReal, [turn]).node)
-    assert not is_whole(leaf(graph, X).node)
+    assert degrees.node.is_whole
+    assert not graph.apply(ToReal, [turn]).node.is_whole
+    assert not leaf(graph, X).node.is_whole
+
+
+def test_what_is_shared_is_asked_once_whether_it_is_whole(graph: Graph) -> None:
+    """A value that is reached along 2^200 ways is told at once."""
+    value, other = leaf(graph, X), leaf(graph, Y)
+    for _ in range(200):
+        value = graph.product([value, graph.sum([value, other])])
+    assert not value.node.is_whole
