@@ -170,6 +170,13 @@ WRIST_BEYOND_QUARTIC = {
         (L1, L2, L3, L4),
         Task("xyz", Turning.FULL),
     ),
+    "arm whose elbow goes across, with a wrist": _chain(
+        "AcrossWrist",
+        (A1, A2, A3, A4, A5, A6),
+        Ry(A1) * Tz(L1) * Ty(L2) * Rx(A2) * Tz(L3) * Ty(L5) * Ry(A3) * Tz(L2) * Rx(A4) * Ry(A5) * Rx(A6) * Tz(L4),
+        (L1, L2, L3, L4, L5),
+        Task("xyz", Turning.FULL),
+    ),
 }
 """The position alone is searched as above: its wrist takes any rotation, and does not say which trial is a solution."""
 
@@ -297,6 +304,7 @@ CHAIN_SOLUTIONS = {
     "three axes with offsets everywhere": 4,
     "three axes that lean by 60 degrees": 4,
     "arm whose elbow rolls, with a wrist": 8,
+    "arm whose elbow goes across, with a wrist": 8,
     "arm with three parallel axes, the last two beside each other": 8,
     "six axes by a table with angles as numbers": 10,
     "arm with a wrist that is bent by 60 degrees": 8,

@@ -49,6 +49,7 @@ from derive.kinematics.scan.derivations import (
 )
 from derive.kinematics.scan.margins import DETERMINANT, margins_wanted
 from derive.kinematics.scan.own_side import on_own_side
+from derive.kinematics.scan.position_first import with_position_first
 from derive.kinematics.scan.programs import (
     FOUND,
     GOAL,
@@ -116,7 +117,7 @@ def search_of(both: Scanned) -> Program:
     arguments = (*GOAL.values(), *map(wanted, mechanism.branches), *map(reference_value, mechanism.joints))
     quartic = quartic_of(trial.statements, trial.value)
     at_root = trial if quartic is None else on_own_side(trial, quartic)
-    finish = finish_program(mechanism, at_root, margins_wanted(both), DETERMINANT)
+    finish = finish_program(mechanism, with_position_first(both, at_root), margins_wanted(both), DETERMINANT)
     if quartic is None:
         return find_program(mechanism, try_program(trial), finish, arguments)
     listed, sides = candidates_program(quartic, reference_value(mechanism.search.joint))

@@ -107,31 +107,33 @@ def find_program(
     return replace(program, summary=f"The joints at the root that is nearest to the start; zeros where {otherwise}")
 
 
-def finish_program(mechanism: Mechanism, trial: Trial, wanted: Sequence[sp.Expr], determinant: sp.Symbol) -> Program:
+def finish_program(
+    mechanism: Mechanism, trial: Sequence[Statement], wanted: Sequence[sp.Expr], determinant: sp.Symbol
+) -> Program:
     """The program that computes the joints at a root, and whether they fit: no value in `wanted` may be negative."""
     joints = [j.symbol for j in mechanism.solved_joints]
     held = [Let(j.symbol, reference_value(j)) for j in mechanism.held_joints]
-    solved = {j: _solved_value(mechanism, j) for j in joints}
+    solved = {j: solved_value(mechanism, j) for j in joints}
     error = real("error")
     conditions = [sp.Le(error, MET), *(sp.Ge(w, -NEARLY) for w in wanted)]
-    loop, jacobian = _newton(mechanism, [solved[j] for j in joints])
+    loop, jacobian = newton(mechanism, [solved[j] for j in joints])
     last = Solve((), jacobian, (), determinant, "determinant of the Jacobian, positions in characteristic lengths")
     fits = Let(flag(FITS), sp.And(*conditions))
     outputs = [Output(FITS, fits.name), *(Output(f"found_{j.symbol.name}", j.symbol) for j in mechanism.joints)]
-    program = normalise("finish_root", (*trial.statements, *held, loop, last, fits), outputs)
+    program = normalise("finish_root", (*trial, *held, loop, last, fits), outputs)
     return replace(
         program, summary="The joints at a root, improved by Newton's method, and whether they are on the branch"
     )
 
 
-def _solved_value(mechanism: Mechanism, joint: sp.Symbol) -> sp.Expr:
+def solved_value(mechanism: Mechanism, joint: sp.Symbol) -> sp.Expr:
     """The value of a joint in a trial."""
     if any(j.symbol == joint and not j.is_angle for j in mechanism.joints):
         return real(f"{joint.name}_tried")
     return Atan2(real(f"{sine(joint).name}_tried"), real(f"{cosine(joint).name}_tried"))
 
 
-def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tuple[sp.Expr, ...]]:
+def newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tuple[sp.Expr, ...]]:
     """Newton's method on the closure: a step is taken where the next error, about its square, is smaller than this one.
 
     The step is that of damped least squares, J^T (J J^T + d^2)^-1 e. Where the machine is singular it leaves an error
@@ -284,7 +286,7 @@ def names_of_search(mechanism: Mechanism, trial: Trial) -> Iterator[sp.Symbol]:
     yield from (*PLACE, *GOAL.values(), START, LOOKED_FOR, FOUND, flag(FITS))
     yield from (real(n) for n in ("value", "guard", "remainder", "slope", "room", "room_slope", "error"))
     yield from (s.name for s in trial.statements)
-    loop, _ = _newton(mechanism, [_ZERO] * len(mechanism.solved_joints))
+    loop, _ = newton(mechanism, [_ZERO] * len(mechanism.solved_joints))
     yield from (name for s in loop.step for name in binds(s))
 
 
