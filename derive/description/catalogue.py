@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
 import re
 import traceback
 from collections.abc import Sequence
 from dataclasses import replace
+from importlib.machinery import SOURCE_SUFFIXES, ModuleSpec, SourceFileLoader
+from importlib.util import module_from_spec
 from pathlib import Path
 from types import ModuleType
 
@@ -63,16 +64,24 @@ def load(path: Path) -> Mechanism:
         raise DescriptionError(in_place(path, f"{type(problem).__name__}: {_text(problem)}")) from None
 
 
+class _Loader(SourceFileLoader):
+    """The loader of a description: it leaves no compiled module beside it."""
+
+    def set_data(self, path: str, data: object, *, _mode: int = 0) -> None:
+        """Write nothing."""
+
+
 def _executed(path: Path) -> ModuleType:
     """The module of a file, executed: where that fails, the message names the line of the file."""
     if not path.is_file():
         raise DescriptionError(f"{path}: there is no such file; `softkin new {path}` writes one")
-    spec = importlib.util.spec_from_file_location(f"mechanism_{path.stem}", path)
-    if spec is None or spec.loader is None:
+    if path.suffix not in SOURCE_SUFFIXES:
         raise DescriptionError(f"{path}: not a Python file: a description is a file whose name ends in .py")
-    module = importlib.util.module_from_spec(spec)
+    loader = _Loader(f"mechanism_{path.stem}", str(path))
+    module = module_from_spec(ModuleSpec(loader.name, loader, origin=loader.path))
+    module.__file__ = loader.path
     try:
-        spec.loader.exec_module(module)
+        loader.exec_module(module)
     except (Exception, SystemExit) as problem:
         if _is_of_the_compiler(problem):
             raise

@@ -76,11 +76,14 @@ _MEANINGS = {
 }
 
 
-@kept_by_identity(10)
 def part(kinematics: Kinematics) -> Part | None:
     """Header and source of one mechanism; None where it has more axes, branches or directions than the calls hold."""
-    if not _fits(kinematics):
-        return None
+    return _written(kinematics) if _fits(kinematics) else None
+
+
+@kept_by_identity(10)
+def _written(kinematics: Kinematics) -> Part:
+    """The same of one that fits: LinuxCNC and the core of the Python package take it as well."""
     module = module_name(kinematics.mechanism.name)
     known = _known(kinematics, module)
     texts = {end: page(_templates().get_template(f"mechanism.{end}.j2").render(known)) for end in ("c", "h")}
