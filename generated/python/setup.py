@@ -15,7 +15,7 @@ from setuptools import Extension, setup
 
 FOLDER = Path(__file__).parent
 OPTIONS = (
-    [] if sys.platform == "win32" else ["-O2", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden"]
+    [] if sys.platform == "win32" else ["-O3", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden"]
 )
 
 

@@ -57,7 +57,7 @@ def headers() -> str:
     return sysconfig.get_path("include")
 
 
-def built(folder: Path = FOLDER, options: Sequence[str] = ("-O2",), sources: Path = SOURCES) -> Path:
+def built(folder: Path = FOLDER, options: Sequence[str] = ("-O3",), sources: Path = SOURCES) -> Path:
     """The folder that holds the extension, which is built first where a source has changed."""
     command = [*compiler(), *STRICT, *options, "-fPIC", f"-I{headers()}"]
     folder.mkdir(parents=True, exist_ok=True)
