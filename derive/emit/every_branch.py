@@ -16,7 +16,7 @@ from derive.lowering.unrolling import is_straight
 from derive.optimize.angle_addition import with_added_angles
 from derive.optimize.rotation_identities import with_rotation_identities
 from derive.optimize.without_periods import specialised, turns_that_count, without_chosen_turns
-from derive.solver.folds import far_from_folds
+from derive.solver.corners.folds import far_from_folds
 
 
 @dataclass(frozen=True)

@@ -14,40 +14,11 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from derive.ir.cells import At
-from derive.ir.constants import (
-    DEGREE,
-    EDGE,
-    PIVOT,
-    SOLVABLE,
-)
-from derive.ir.primitives import (
-    Atan2,
-    NearestOnArc,
-    NearestPeriod,
-    Root,
-    Select,
-    ToReal,
-    Wrap,
-)
-from derive.ir.program import (
-    Call,
-    FindRoot,
-    Iterate,
-    Let,
-    Program,
-    Require,
-    Solve,
-    Statement,
-    Status,
-)
+from derive.ir.constants import DEGREE, EDGE, PIVOT, SOLVABLE
+from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
+from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, Statement, Status
 from derive.ir.roots import nearest, nearest_listed
-from derive.ir.symbols import (
-    PLACE,
-    Flag,
-    is_condition,
-    is_count,
-    is_decided,
-)
+from derive.ir.symbols import PLACE, Flag, is_condition, is_count, is_decided
 from derive.kept import kept_by_identity
 
 Array = NDArray[np.float64]

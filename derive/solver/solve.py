@@ -12,8 +12,13 @@ import sympy as sp
 
 from derive.equations.positions import positions, positions_and_distance, positions_from_flange
 from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
-from derive.equations.rotations import conditions, rotations
+from derive.equations.rotations import rotations
 from derive.ir.program import Statement
+from derive.solver.corners.feasible_arc import within_reach
+from derive.solver.corners.folds import beyond_folds
+from derive.solver.corners.lost_arms import with_lost_arms_free
+from derive.solver.corners.short_arms import with_arms_long_enough
+from derive.solver.corners.within_legs import within_legs
 from derive.solver.derivation_record import DerivationRecord
 from derive.solver.eliminations import (
     differences,
@@ -24,13 +29,10 @@ from derive.solver.eliminations import (
     squares_of_three,
     squares_with_lengths,
 )
-from derive.solver.feasible_arc import within_reach
-from derive.solver.folds import beyond_folds
-from derive.solver.lost_arms import with_lost_arms_free
 from derive.solver.meeting_axes import circles_and_spheres
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from derive.solver.positive_steps import known_signs, where_roots_meet, with_known_signs
-from derive.solver.short_arms import with_arms_long_enough
+from derive.solver.residuals import left_alone, left_of_positions, left_of_rotation, unknowns_in
 from derive.solver.subproblems.affine import affine
 from derive.solver.subproblems.affine_system import (
     affine_across,
@@ -45,7 +47,6 @@ from derive.solver.subproblems.polar import polar
 from derive.solver.subproblems.quadratic import quadratic
 from derive.solver.subproblems.spheres import spheres
 from derive.solver.unsolved import undetermined, unsolved
-from derive.solver.within_legs import within_legs
 
 Rule = Callable[[Problem, tuple[Equation, ...]], Iterator[Binding]]
 RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quadratic, spheres)
@@ -149,24 +150,22 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     sums: tuple[Sum, ...] = ()
     rules: list[str] = []
     steps: list[Step] = []
-    has_spare = len(_unknowns(problem)) < len(problem.equations)
-    left = _without_unknowns(problem, record) if is_trial else []
+    has_spare = len(unknowns_in(problem)) < len(problem.equations)
+    left = left_alone(problem, record) if is_trial else []
     problem = replace(problem, is_overdetermined=is_trial and not left)
     wrist: tuple[sp.Symbol, ...] = ()
     not_zero: list[sp.Expr] = []
     while problem.angles or problem.lengths or problem.pending:
         if problem.is_overdetermined and not problem.equations and not left:
-            left += _residuals(problem, record)
-            if (
-                not left and has_spare
-            ):  # the joints of a wrist take any rotation: the positions have the equation too many
-                left, wrist = _of_positions(problem, record), problem.angles
+            left += left_of_rotation(problem, record)
+            if not left and has_spare:  # a wrist takes any rotation: the positions have the equation too many
+                left, wrist = left_of_positions(problem, record), problem.angles
                 problem = replace(problem, is_overdetermined=False)
         try:
             problem, binding, sums = _next_after(steps, problem, sums, arguments)
         except Unsolved:
             if problem.is_overdetermined and not left:  # parallel axes: the rotation tells their sum before a position
-                left += _residuals(problem, record)
+                left += left_of_rotation(problem, record)
             if not left or not problem.is_overdetermined:
                 raise
             problem = replace(problem, is_overdetermined=False)
@@ -180,7 +179,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         steps.append(Step(problem, found, binding, (begin, len(record.statements)), names))
         problem = _without(problem, binding, record)
     if is_trial and not problem.turns:
-        left = _of_positions(problem, record)
+        left = left_of_positions(problem, record)
     statements = record.statements
     if not is_trial:
         held = within_legs(statements, record.determinants)
@@ -202,30 +201,6 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         with_known_signs(record.statements, signs),
         tuple(steps),
     )
-
-
-def _unknowns(problem: Problem) -> set[sp.Symbol]:
-    """The unknowns in the equations."""
-    return {u for e in problem.equations for u in problem.unknowns_of(e.expression)}
-
-
-def _without_unknowns(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
-    """What is left of the equations of a trial that hold none of its unknowns."""
-    alone = [e for e in problem.equations if not problem.unknowns_of(e.expression)]
-    bindings = [Binding(e.label, (), e.lets, residual=e.expression / problem.scale_of(e)) for e in alone]
-    return [left for b in bindings if (left := record.commit(b).residual) is not None]
-
-
-def _residuals(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
-    """The expressions that vanish where the commanded rotation agrees with the positions."""
-    bindings = (Binding("rotation", (), c.lets, residual=c.expression) for c in conditions(problem))
-    found = [record.commit(binding).residual for binding in bindings]
-    return [residual for residual in found if residual is not None]
-
-
-def _of_positions(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
-    """What is left of the positions where they have an equation too many; it implies those that follow."""
-    return [residual / problem.scale**2 for residual in record.residuals[:1]]
 
 
 def _read_plainly(problem: Problem, unknowns: Sequence[sp.Symbol]) -> list[sp.Symbol]:
@@ -276,7 +251,7 @@ def _of_a_trial(problem: Problem) -> Binding | None:
     """The step of a trial that leaves a residual of the positions without any two-root step: for a point alone, or
     where the joints of a wrist take any rotation.
     """
-    if not problem.is_overdetermined or (problem.turns and len(_unknowns(problem)) >= len(problem.equations)):
+    if not problem.is_overdetermined or (problem.turns and len(unknowns_in(problem)) >= len(problem.equations)):
         return None
     return _best([list(scaled_pair(problem, positions_and_distance(problem)))])
 

@@ -22,7 +22,7 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Output, Program, Statement
 from derive.ir.symbols import cosine, real, sine
-from derive.solver.folds import beyond_folds
+from derive.solver.corners.folds import beyond_folds
 from derive.solver.subproblems.direction import direction
 from derive.solver.subproblems.one_equation.trigonometric import trigonometric
 

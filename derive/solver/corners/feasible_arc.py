@@ -23,7 +23,7 @@ from derive.ir.passes import needed_lets
 from derive.ir.primitives import Atan2, NearestOnArc, Root, Select, Wrap
 from derive.ir.program import Let, Statement, binds, reads, rewritten
 from derive.ir.symbols import cosine, flag, real, sine
-from derive.solver.where_free import square_where_free
+from derive.solver.corners.where_free import square_where_free
 
 WITHIN_ITS_BOUND = "{} has solutions where this is within its bound"
 LARGE_ENOUGH = "{} has solutions where this is large enough"

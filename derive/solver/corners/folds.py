@@ -47,8 +47,8 @@ from derive.ir.symbols import (
     real,
     sine,
 )
-from derive.solver.feasible_arc import WITHIN_ITS_BOUND
-from derive.solver.sweeps import WAYS, Sweep, sweep_of, swept
+from derive.solver.corners.feasible_arc import WITHIN_ITS_BOUND
+from derive.solver.corners.sweeps import WAYS, Sweep, sweep_of, swept
 
 
 @dataclass(frozen=True)

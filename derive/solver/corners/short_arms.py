@@ -24,8 +24,8 @@ from derive.ir.passes import depending_on, needed_lets
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let, Statement, rewritten
 from derive.ir.symbols import cosine, real, sine
-from derive.solver.feasible_arc import WITHIN_ITS_BOUND, in_order
-from derive.solver.folds import Later, rate_along, rates_of, taken, turned, with_motion
+from derive.solver.corners.feasible_arc import WITHIN_ITS_BOUND, in_order
+from derive.solver.corners.folds import Later, rate_along, rates_of, taken, turned, with_motion
 
 Row = tuple[sp.Expr, sp.Expr, sp.Expr]
 

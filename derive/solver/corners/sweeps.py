@@ -40,7 +40,7 @@ from derive.ir.symbols import (
     real,
     sine,
 )
-from derive.solver.feasible_arc import nearest_on_arc
+from derive.solver.corners.feasible_arc import nearest_on_arc
 
 Row = tuple[sp.Expr, sp.Expr]
 

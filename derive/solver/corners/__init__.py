@@ -1,0 +1,1 @@
+"""Where singularities meet: angles are moved to where later steps have solutions, or free where no digits are left."""
