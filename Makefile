@@ -66,6 +66,7 @@ bench: $(READY) $(BENCH)/ready
 	$(RUN) -m bench.in_c
 	$(RUN) -m tests.native.build
 	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench
+	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench.rows
 
 # Two wheels into dist/: one with the native core, for every CPython from 3.11 on with an old enough C library, as auditwheel
 # finds it; one without, for all other Pythons, free-threaded ones among them.

@@ -87,7 +87,7 @@ SHARED_BY_A_FILE = (
 grammar."""
 OF_A_GENERATION = ("test_generated_is_fresh.py", "view/")
 """Tests that share a fresh generation of the whole catalogue, or the browser that shows it."""
-WITH_THEIR_MECHANISM = ("unit/drawing/",)
+WITH_THEIR_MECHANISM = ("unit/drawing/", "unit/optimize/test_regular.py")
 """Units that need all programs of a mechanism, which its other tests have built."""
 PATHS = {
     "Kin_Scara4_ZCcoupled_Type1": "a serial arm in a plane, with turns and a coupled axis",

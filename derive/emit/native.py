@@ -9,27 +9,50 @@ from typing import Any
 
 from jinja2 import Environment
 
+from derive.emit.c import lanes
 from derive.emit.c import package as c
-from derive.emit.c.layout import page
+from derive.emit.c.arc_tangent import horner
+from derive.emit.c.layout import laid_out, page
+from derive.emit.c.printer import number
 from derive.emit.language import GENERATED, environment
+from derive.ir.constants import EDGE, LARGEST
+from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 
 FOLDER = "native"
 """Beside the package: what stands here is compiled, and never imported."""
-_SHARED = ("batches.c", "batches.h", "machine.c")
+_SHARED = ("batches.c", "batches.h", "lanes.h", "machine.c")
 _DIGITS = 16
 
 
 def key(kin: Kinematics) -> str:
     """What a class and its C have in common: the module with a digest of the C. Empty where there is none."""
     found = c.part(kin)
-    return "" if found is None else f"{found['index']['module']} {_digest(found['files'])}"
+    return "" if found is None else f"{found['index']['module']} {_digest(_sources(kin))}"
+
+
+def in_lanes(kin: Kinematics) -> list[str]:
+    """The functions that compute several poses at a time: of one branch and of every branch; where there are none."""
+    found = c.part(kin)
+    return [] if found is None else [f"{found['index']['module']}_{one.name}" for one in lanes.in_lanes(kin)]
 
 
 def sources(kin: Kinematics) -> dict[str, str]:
-    """Header and source of the machine: path → text."""
+    """Header and source of the machine, and that of several poses at a time: path → text."""
+    return {f"{FOLDER}/{path}": text for path, text in _sources(kin).items()}
+
+
+@kept_by_identity(10)
+def _sources(kin: Kinematics) -> dict[str, str]:
     found = c.part(kin)
-    return {} if found is None else {f"{FOLDER}/{path}": text for path, text in found["files"].items()}
+    if found is None:
+        return {}
+    module, programs = found["index"]["module"], lanes.in_lanes(kin)
+    if not programs:
+        return dict(found["files"])
+    known = {"module": module, "functions": [laid_out(lanes.lanes_lines(kin, module, one)) for one in programs]}
+    text = page(_templates().get_template("machine_lanes.c.j2").render(known))
+    return {**found["files"], f"{module}_lanes.c": text}
 
 
 def extension(package: str) -> str:
@@ -42,7 +65,11 @@ def shared(listed: Sequence[Mapping[str, Any]], package: str) -> dict[str, str]:
     known = {
         "extension": extension(package),
         "sources": digest_of_shared(),
-        "keys": [(entry["key"], entry["key"].split()[0]) for entry in listed if entry["key"]],
+        "machines": [
+            {"key": entry["key"], "module": entry["key"].split()[0], "lanes": entry["lanes"]}
+            for entry in listed
+            if entry["key"]
+        ],
     }
     found = {f"{FOLDER}/{path}": text for path, text in c.shared().items()}
     for path in (*_SHARED, "machines.c", "machines.h"):
@@ -59,7 +86,15 @@ def digest_of_shared() -> str:
 @cache
 def _templates() -> Environment:
     found = environment(FOLDER)
-    found.globals |= {"generated": GENERATED}
+    even, odd = horner("zz")
+    found.globals |= {
+        "generated": GENERATED,
+        "edge": number(EDGE),
+        "largest": number(float(LARGEST)),
+        "even": even,
+        "odd": odd,
+        "rotation": laid_out(lanes.rotation_lines()),
+    }
     return found
 
 

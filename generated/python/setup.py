@@ -15,7 +15,9 @@ from setuptools import Extension, setup
 
 FOLDER = Path(__file__).parent
 OPTIONS = (
-    [] if sys.platform == "win32" else ["-O3", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden"]
+    []
+    if sys.platform == "win32"
+    else ["-O3", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-fvisibility=hidden"]
 )
 
 

@@ -43,7 +43,8 @@ def function_lines(function: Function, machine: str, constants: Mapping[str, str
 
 def function_of(summary: str, head: str, inner: Sequence[str]) -> list[str]:
     """A function; parameters that it does not read are named as such."""
-    names = [re.findall(r"\w+", part)[-1] for part in head.partition("(")[2].removesuffix(")").split(",")]
+    given = re.sub(r"\[\w*\]", "", head.partition("(")[2].removesuffix(")"))
+    names = [re.findall(r"\w+", part)[-1] for part in given.split(",")]
     unread = [f"(void){name};" for name in names if not _reads(name, inner)]
     return [*comment(summary), *block(head, [*unread, *inner])]
 

@@ -52,6 +52,7 @@ def index(kin: Kinematics) -> dict[str, Any]:
         "summary": mechanism.summary,
         "example": entries.example(kin),
         "key": native.key(kin),
+        "lanes": native.in_lanes(kin),
     }
 
 

@@ -4,7 +4,7 @@
 #ifndef SOFTKIN_BATCHES_H
 #define SOFTKIN_BATCHES_H
 
-#include "softkin.h"
+#include "lanes.h"
 
 /** Rows of numbers of the size of a double or an int64_t, anywhere in memory: the bytes from one to the next.
  * */
@@ -17,6 +17,7 @@ typedef struct {
  * configuration. */
 typedef struct {
   const softkin_mechanism *kind;
+  softkin_in_lanes in_lanes;
   const void *machine;
   ptrdiff_t start, stop;
 } softkin_rows;

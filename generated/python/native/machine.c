@@ -21,6 +21,7 @@
 typedef struct {
   PyObject_HEAD
   const softkin_mechanism *kind; /* NULL: every call answers NotImplemented */
+  softkin_in_lanes in_lanes;
   void *machine;
   PyObject *frame, *solution, *named; /* the classes of results, and of a configuration by names */
   PyObject *statuses;                 /* the members of the class Status, by their numbers */
@@ -595,6 +596,7 @@ static bool take_range(const machine_object *self, PyObject *const *given, Py_ss
     return false;
   }
   rows->kind = self->kind;
+  rows->in_lanes = self->in_lanes;
   rows->machine = self->machine;
   rows->start = PyLong_AsSsize_t(given[count - 2]);
   rows->stop = PyLong_AsSsize_t(given[count - 1]);
@@ -768,6 +770,7 @@ static PyObject *make(PyTypeObject *type, PyObject *arguments, PyObject *keyword
     }
     if (made(found->kind, parameters, self->machine)) {
       self->kind = found->kind;
+      self->in_lanes = found->in_lanes;
     }
   }
   return (PyObject *)self;

@@ -56,58 +56,147 @@
 #include "wrist2.h"
 #include "wrist3.h"
 
+softkin_regular ac6_threeparallel_regular;
+softkin_regular_all ac6_threeparallel_regular_all;
+softkin_regular ac6_txtytzryrxrz_regular;
+softkin_regular_all ac6_txtytzryrxrz_regular_all;
+softkin_regular articulatedrobot_6dof_regular;
+softkin_regular_all articulatedrobot_6dof_regular_all;
+softkin_regular bipod_rotary_regular;
+softkin_regular_all bipod_rotary_regular_all;
+softkin_regular caxis_regular;
+softkin_regular caxis_tool_regular;
+softkin_regular delta_c_regular;
+softkin_regular_all delta_c_regular_all;
+softkin_regular delta_p3c_type3_regular;
+softkin_regular_all delta_p3c_type3_regular_all;
+softkin_regular dualscara_regular;
+softkin_regular_all dualscara_regular_all;
+softkin_regular gantry2_regular;
+softkin_regular gantry3_regular;
+softkin_regular gantrycutter2_regular;
+softkin_regular gantrycutter3_regular;
+softkin_regular headhead_cb_regular;
+softkin_regular_all headhead_cb_regular_all;
+softkin_regular headtable_bc_regular;
+softkin_regular_all headtable_bc_regular_all;
+softkin_regular hgantry2_regular;
+softkin_regular hgantry3_regular;
+softkin_regular kin_5axes_regular;
+softkin_regular_all kin_5axes_regular_all;
+softkin_regular mc_kin_type_12_xy_regular;
+softkin_regular_all mc_kin_type_12_xy_regular_all;
+softkin_regular p2c_type1_regular;
+softkin_regular_all p2c_type1_regular_all;
+softkin_regular p2c_type2_regular;
+softkin_regular_all p2c_type2_regular_all;
+softkin_regular p2x_type1_regular;
+softkin_regular_all p2x_type1_regular_all;
+softkin_regular p2x_type2_regular;
+softkin_regular p2y_regular;
+softkin_regular palletizer_regular;
+softkin_regular_all palletizer_regular_all;
+softkin_regular pcc_regular;
+softkin_regular_all pcc_regular_all;
+softkin_regular polar_regular;
+softkin_regular polar_z_regular;
+softkin_regular pos_rrr_regular;
+softkin_regular_all pos_rrr_regular_all;
+softkin_regular scara2_z_regular;
+softkin_regular_all scara2_z_regular_all;
+softkin_regular scara3_ccz_regular;
+softkin_regular_all scara3_ccz_regular_all;
+softkin_regular scara3_z_regular;
+softkin_regular_all scara3_z_regular_all;
+softkin_regular scara3_zccc_regular;
+softkin_regular_all scara3_zccc_regular_all;
+softkin_regular scara4_cczc_zccoupled_regular;
+softkin_regular_all scara4_cczc_zccoupled_regular_all;
+softkin_regular scara4_zccc_regular;
+softkin_regular_all scara4_zccc_regular_all;
+softkin_regular scara4_zccoupled_type1_regular;
+softkin_regular_all scara4_zccoupled_type1_regular_all;
+softkin_regular scaraonrail_regular;
+softkin_regular_all scaraonrail_regular_all;
+softkin_regular tabletable_ac_regular;
+softkin_regular_all tabletable_ac_regular_all;
+softkin_regular tgantry2_regular;
+softkin_regular tgantry3_regular;
+softkin_regular tripod_linear_regular;
+softkin_regular_all tripod_linear_regular_all;
+softkin_regular tripod_p3z_regular;
+softkin_regular_all tripod_p3z_regular_all;
+softkin_regular tripod_rotary_regular;
+softkin_regular_all tripod_rotary_regular_all;
+softkin_regular wrist2_regular;
+softkin_regular_all wrist2_regular_all;
+softkin_regular wrist3_regular;
+softkin_regular_all wrist3_regular_all;
+
 const softkin_native softkin_machines[] = {
-    {"ac6_rzryryrxryrz_j6offset 4734b91b82d185c1", &ac6_rzryryrxryrz_j6offset_mechanism},
-    {"ac6_threeparallel 354eb60899465918", &ac6_threeparallel_mechanism},
-    {"ac6_txtytzryrxrz 0dbc441e11229b01", &ac6_txtytzryrxrz_mechanism},
-    {"articulatedrobot_6dof 18dab28b5adb5eff", &articulatedrobot_6dof_mechanism},
-    {"bipod_rotary 82027583b9b57fb7", &bipod_rotary_mechanism},
-    {"caxis dbf05195023a1808", &caxis_mechanism},
-    {"caxis_tool 81bc60fc2016ed1f", &caxis_tool_mechanism},
-    {"crane 61942987bc3af810", &crane_mechanism},
-    {"delta_c 23c4cb07e2d483c6", &delta_c_mechanism},
-    {"delta_p3c_type3 4ac12971f2cf641e", &delta_p3c_type3_mechanism},
-    {"dualscara bd57ad229899eb2b", &dualscara_mechanism},
-    {"gantry2 9a27c01234c6411e", &gantry2_mechanism},
-    {"gantry3 fc799659f34a2d92", &gantry3_mechanism},
-    {"gantrycutter2 23718acf74c1d824", &gantrycutter2_mechanism},
-    {"gantrycutter3 8804129552c8cf76", &gantrycutter3_mechanism},
-    {"headhead_cb 9383c4426812d108", &headhead_cb_mechanism},
-    {"headtable_bc ba2c697ae88c5fcb", &headtable_bc_mechanism},
-    {"hexaglide dd16133af821fb6b", &hexaglide_mechanism},
-    {"hexapod 5a267ad7b3c2cc1e", &hexapod_mechanism},
-    {"hgantry2 45ec8203f126ca47", &hgantry2_mechanism},
-    {"hgantry3 8a4a1aed316d0d03", &hgantry3_mechanism},
-    {"kin_5axes 9c5e1f5f6ab58ee5", &kin_5axes_mechanism},
-    {"mc_kin_type_12_xy 48abd37b1795bc5f", &mc_kin_type_12_xy_mechanism},
-    {"p2c_type1 e90aa482585d386b", &p2c_type1_mechanism},
-    {"p2c_type2 eebd664511e03bbf", &p2c_type2_mechanism},
-    {"p2x_type1 c381730c7667da65", &p2x_type1_mechanism},
-    {"p2x_type2 10ec8d842a0fdce8", &p2x_type2_mechanism},
-    {"p2y 438dc457edff0b9d", &p2y_mechanism},
-    {"palletizer 3d38081506950488", &palletizer_mechanism},
-    {"pcc d3b08ee67319658d", &pcc_mechanism},
-    {"planar_3rrr fd991b4feec229d7", &planar_3rrr_mechanism},
-    {"polar 3a47f5e3855e31ef", &polar_mechanism},
-    {"polar_z 3a0597e90b1641c5", &polar_z_mechanism},
-    {"pos_rrr d4c67d188e73ad18", &pos_rrr_mechanism},
-    {"scara2_z 56d25ba0fe0b9673", &scara2_z_mechanism},
-    {"scara3_ccz 126daeb958ea7615", &scara3_ccz_mechanism},
-    {"scara3_z 4c423c992d84c185", &scara3_z_mechanism},
-    {"scara3_zccc a3706bc09c06c53a", &scara3_zccc_mechanism},
-    {"scara4_cczc_zccoupled e177fdf22b9e9633", &scara4_cczc_zccoupled_mechanism},
-    {"scara4_zccc b59c8c823b3e8c55", &scara4_zccc_mechanism},
-    {"scara4_zccoupled_type1 31292bdf4cc6b32b", &scara4_zccoupled_type1_mechanism},
-    {"scaraonrail 5105a428ed225357", &scaraonrail_mechanism},
-    {"sccc cf6e1132c3566a32", &sccc_mechanism},
-    {"tabletable_ac 37baee810befd3c5", &tabletable_ac_mechanism},
-    {"tgantry2 67e73d1dec7f0660", &tgantry2_mechanism},
-    {"tgantry3 23fe9d77f7316c75", &tgantry3_mechanism},
-    {"tool 487bf993b464fc8a", &tool_mechanism},
-    {"tripod_linear a6a127c658eb0d11", &tripod_linear_mechanism},
-    {"tripod_p3z 36605eea8611f05a", &tripod_p3z_mechanism},
-    {"tripod_rotary 122afa373ac3441f", &tripod_rotary_mechanism},
-    {"wrist2 cb293738ffb17c89", &wrist2_mechanism},
-    {"wrist3 451d821b6dc2c48d", &wrist3_mechanism},
-    {NULL, NULL},
+    {"ac6_rzryryrxryrz_j6offset 4734b91b82d185c1", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
+    {"ac6_threeparallel 2139485d9ee65f7c", &ac6_threeparallel_mechanism,
+        {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
+    {"ac6_txtytzryrxrz 8c220864634a1691", &ac6_txtytzryrxrz_mechanism,
+        {ac6_txtytzryrxrz_regular, ac6_txtytzryrxrz_regular_all}},
+    {"articulatedrobot_6dof 2d3a84835100a218", &articulatedrobot_6dof_mechanism,
+        {articulatedrobot_6dof_regular, articulatedrobot_6dof_regular_all}},
+    {"bipod_rotary 227d5711ef89e1b6", &bipod_rotary_mechanism,
+        {bipod_rotary_regular, bipod_rotary_regular_all}},
+    {"caxis 247be165b85e300d", &caxis_mechanism, {caxis_regular, NULL}},
+    {"caxis_tool 8100fb15eb9bd842", &caxis_tool_mechanism, {caxis_tool_regular, NULL}},
+    {"crane 61942987bc3af810", &crane_mechanism, {NULL, NULL}},
+    {"delta_c aa0daccf74beb852", &delta_c_mechanism, {delta_c_regular, delta_c_regular_all}},
+    {"delta_p3c_type3 fa241fdc608f03b3", &delta_p3c_type3_mechanism,
+        {delta_p3c_type3_regular, delta_p3c_type3_regular_all}},
+    {"dualscara 7ce8d525d5d43aa8", &dualscara_mechanism, {dualscara_regular, dualscara_regular_all}},
+    {"gantry2 ef9ceba876f7b4b1", &gantry2_mechanism, {gantry2_regular, NULL}},
+    {"gantry3 fa9c4240c79259a4", &gantry3_mechanism, {gantry3_regular, NULL}},
+    {"gantrycutter2 0a6f51163c6f1f65", &gantrycutter2_mechanism, {gantrycutter2_regular, NULL}},
+    {"gantrycutter3 77bb160ffa3ec873", &gantrycutter3_mechanism, {gantrycutter3_regular, NULL}},
+    {"headhead_cb 8497e66d53c7e5cc", &headhead_cb_mechanism, {headhead_cb_regular, headhead_cb_regular_all}},
+    {"headtable_bc 59ae3ffc3a8a3338", &headtable_bc_mechanism,
+        {headtable_bc_regular, headtable_bc_regular_all}},
+    {"hexaglide dd16133af821fb6b", &hexaglide_mechanism, {NULL, NULL}},
+    {"hexapod 5a267ad7b3c2cc1e", &hexapod_mechanism, {NULL, NULL}},
+    {"hgantry2 f47468e3d4350ca9", &hgantry2_mechanism, {hgantry2_regular, NULL}},
+    {"hgantry3 cda714270341e885", &hgantry3_mechanism, {hgantry3_regular, NULL}},
+    {"kin_5axes b2b084a9b0425679", &kin_5axes_mechanism, {kin_5axes_regular, kin_5axes_regular_all}},
+    {"mc_kin_type_12_xy dbc2ff429da6f634", &mc_kin_type_12_xy_mechanism,
+        {mc_kin_type_12_xy_regular, mc_kin_type_12_xy_regular_all}},
+    {"p2c_type1 0d797ee6415baf78", &p2c_type1_mechanism, {p2c_type1_regular, p2c_type1_regular_all}},
+    {"p2c_type2 df4a76d3f313f8ee", &p2c_type2_mechanism, {p2c_type2_regular, p2c_type2_regular_all}},
+    {"p2x_type1 614e441d282b2c91", &p2x_type1_mechanism, {p2x_type1_regular, p2x_type1_regular_all}},
+    {"p2x_type2 5ff02bde64a2ccec", &p2x_type2_mechanism, {p2x_type2_regular, NULL}},
+    {"p2y 359888dd06c3fcde", &p2y_mechanism, {p2y_regular, NULL}},
+    {"palletizer 7423931f348e75f3", &palletizer_mechanism, {palletizer_regular, palletizer_regular_all}},
+    {"pcc 1a062a28e855420c", &pcc_mechanism, {pcc_regular, pcc_regular_all}},
+    {"planar_3rrr fd991b4feec229d7", &planar_3rrr_mechanism, {NULL, NULL}},
+    {"polar 81cb220d9f517aee", &polar_mechanism, {polar_regular, NULL}},
+    {"polar_z 628f85d0eda06804", &polar_z_mechanism, {polar_z_regular, NULL}},
+    {"pos_rrr 09270d2e6418023d", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
+    {"scara2_z 90b8fe77579cb58d", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},
+    {"scara3_ccz 1e6dcec5e9384a9f", &scara3_ccz_mechanism, {scara3_ccz_regular, scara3_ccz_regular_all}},
+    {"scara3_z 1b1ce398e4ff6b24", &scara3_z_mechanism, {scara3_z_regular, scara3_z_regular_all}},
+    {"scara3_zccc 5ac809c51ad08b71", &scara3_zccc_mechanism, {scara3_zccc_regular, scara3_zccc_regular_all}},
+    {"scara4_cczc_zccoupled af840869c6e056eb", &scara4_cczc_zccoupled_mechanism,
+        {scara4_cczc_zccoupled_regular, scara4_cczc_zccoupled_regular_all}},
+    {"scara4_zccc 60215d447369e151", &scara4_zccc_mechanism, {scara4_zccc_regular, scara4_zccc_regular_all}},
+    {"scara4_zccoupled_type1 81fdb0eaab9c35aa", &scara4_zccoupled_type1_mechanism,
+        {scara4_zccoupled_type1_regular, scara4_zccoupled_type1_regular_all}},
+    {"scaraonrail 1a07a29a845fb335", &scaraonrail_mechanism, {scaraonrail_regular, scaraonrail_regular_all}},
+    {"sccc cf6e1132c3566a32", &sccc_mechanism, {NULL, NULL}},
+    {"tabletable_ac 8fcc480f67540701", &tabletable_ac_mechanism,
+        {tabletable_ac_regular, tabletable_ac_regular_all}},
+    {"tgantry2 0f368ded8249c88e", &tgantry2_mechanism, {tgantry2_regular, NULL}},
+    {"tgantry3 b598c89776546049", &tgantry3_mechanism, {tgantry3_regular, NULL}},
+    {"tool 487bf993b464fc8a", &tool_mechanism, {NULL, NULL}},
+    {"tripod_linear 093fcb9206b3464b", &tripod_linear_mechanism,
+        {tripod_linear_regular, tripod_linear_regular_all}},
+    {"tripod_p3z 4e27b5cd857d882a", &tripod_p3z_mechanism, {tripod_p3z_regular, tripod_p3z_regular_all}},
+    {"tripod_rotary 6fbdb47be3e9fb6f", &tripod_rotary_mechanism,
+        {tripod_rotary_regular, tripod_rotary_regular_all}},
+    {"wrist2 460fecfb82503d98", &wrist2_mechanism, {wrist2_regular, wrist2_regular_all}},
+    {"wrist3 ff0b7ee40c0356a4", &wrist3_mechanism, {wrist3_regular, wrist3_regular_all}},
+    {NULL, NULL, {NULL, NULL}},
 };

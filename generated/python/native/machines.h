@@ -6,18 +6,19 @@
 
 #include <string.h>
 
-#include "softkin.h"
+#include "lanes.h"
 
 #define SOFTKIN_MODULE "_softkin_native"
 #define SOFTKIN_START PyInit__softkin_native
 /** The digest of what all machines share: the package compares it. */
-#define SOFTKIN_SOURCES "5fc21beec50011aa"
+#define SOFTKIN_SOURCES "391fec267c476132"
 #define SOFTKIN_MACHINES 52
 
 /** A machine, with the key that its class has, too: the module, and a digest of the C. */
 typedef struct {
   const char *key;
   const softkin_mechanism *kind;
+  softkin_in_lanes in_lanes;
 } softkin_native;
 
 extern const softkin_native softkin_machines[];

@@ -104,7 +104,7 @@ class BipodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Bipod_Rotary"
-    KEY = "bipod_rotary 82027583b9b57fb7"
+    KEY = "bipod_rotary 227d5711ef89e1b6"
     AXES = (
         Axis(
             name="A1",

@@ -60,7 +60,7 @@ class CAxis(OrientationKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_CAxis"
-    KEY = "caxis dbf05195023a1808"
+    KEY = "caxis 247be165b85e300d"
     AXES = (Axis(name="C", kind="rotary", unit="deg", meaning="Turn about the flange's Z", multi_turn=True),)
     PARAMETERS = (
         Parameter.of("angle", "offset_c", "C: axis value at the kinematic zero position"),

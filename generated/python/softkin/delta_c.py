@@ -129,7 +129,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Delta_C"
-    KEY = "delta_c 23c4cb07e2d483c6"
+    KEY = "delta_c aa0daccf74beb852"
     AXES = (
         Axis(
             name="A1",

@@ -150,7 +150,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_DualScara"
-    KEY = "dualscara bd57ad229899eb2b"
+    KEY = "dualscara 7ce8d525d5d43aa8"
     AXES = (
         Axis(
             name="A1",

@@ -64,7 +64,7 @@ class P2Y(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_P2Y"
-    KEY = "p2y 438dc457edff0b9d"
+    KEY = "p2y 359888dd06c3fcde"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Motor 1", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Motor 2", multi_turn=False),

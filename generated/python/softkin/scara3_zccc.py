@@ -94,7 +94,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_ZCCC"
-    KEY = "scara3_zccc a3706bc09c06c53a"
+    KEY = "scara3_zccc 5ac809c51ad08b71"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Column along Z, up", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),

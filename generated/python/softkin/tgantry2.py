@@ -65,7 +65,7 @@ class TGantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_TGantry2"
-    KEY = "tgantry2 67e73d1dec7f0660"
+    KEY = "tgantry2 0f368ded8249c88e"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

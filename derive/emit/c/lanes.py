@@ -1,0 +1,206 @@
+"""Several poses at a time in C: one loop over lanes without a branch, which compilers turn into vector instructions.
+
+It has the answers of poses that are regular, on one branch and on open turns; of any other lane it says that it has
+none, and that pose is solved by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.description.mechanism import Joint
+from derive.emit.braces import block
+from derive.emit.c.every_branch import MOST_SLOTS
+from derive.emit.c.functions import read_by
+from derive.emit.c.layout import comment, commented
+from derive.emit.c.printer import C, member, spelled, type_of
+from derive.emit.c.program import function_of, without_brackets
+from derive.emit.every_branch import away_from_folds, constants, known_constants, signs
+from derive.equations.rotation_repair import surely_exact
+from derive.ir.primitives import Root
+from derive.ir.program import Let, Program, Require
+from derive.ir.symbols import COORDINATE_NAMES, REFUSAL, ROTATION_ENTRIES, choices, suffixed, symbols_of
+from derive.kept import kept_by_identity
+from derive.kinematics.kinematics import Kinematics
+from derive.lowering.lower import lowered
+from derive.optimize.regular import regular
+from derive.optimize.without_periods import specialised, without_chosen_turns
+
+ONE, EVERY = "regular", "regular_all"
+"""What the functions of a machine are called, behind its name: of the branch that the signs say, and of all."""
+_FUNCTIONS = {"root": "softkin_lane_root", "atan2": "softkin_lane_angle", "nearest_period": "softkin_lane_turn"}
+_SUMMARIES = {
+    ONE: "The axes of each lane on its branch; where it misses anything, they mean nothing.",
+    EVERY: "The status and the axes of every slot of each lane; where it misses anything, they mean nothing.",
+}
+_GIVEN = "const softkin_lanes *given"
+_LOOP = "for (int lane = 0; lane < SOFTKIN_LANES; lane += 1)"
+
+
+@dataclass(frozen=True)
+class InLanes:
+    """A program for regular poses, of which an axis may be in any turn, and what it reads of constants alone."""
+
+    name: str
+    program: Program
+    parts: tuple[Let, ...]
+
+
+@kept_by_identity(10)
+def in_lanes(kin: Kinematics) -> tuple[InLanes, ...]:
+    """The programs of a machine: none where they would have more than arithmetic, roots and angles, where a turn moves
+    several axes or a gear, and where nothing moves; that of all branches where these are few.
+    """
+    if not kin.mechanism.joints or any(joint.coupling != 0 or joint.is_geared for joint in kin.period_joints):
+        return ()
+    one = specialised(away_from_folds(kin).branch, {j.turn: sp.Integer(0) for j in kin.period_joints})
+    found = regular(without_chosen_turns(one), constants(kin))
+    if found is None:
+        return ()
+    is_one = not kin.branches or 2 ** len(kin.branches) > MOST_SLOTS
+    return tuple(_lowered(kin, found, name) for name in ((ONE,) if is_one else (ONE, EVERY)))
+
+
+def _lowered(kin: Kinematics, program: Program, name: str) -> InLanes:
+    (done,), parts = lowered(
+        [replace(program, name=name)],
+        constants(kin),
+        modulo_turns=True,
+        branches={EVERY: signs(kin)},
+        known=known_constants(kin),
+    )
+    return InLanes(name, done, parts)
+
+
+def lanes_lines(kin: Kinematics, module: str, found: InLanes) -> list[str]:
+    """The function of one of these programs."""
+    printer, places = _Lanes(), _places(kin)
+    program = found.program
+    turned = {joint.reference.name for joint in kin.period_joints}
+    read = read_by(program) | {s.name for part in found.parts for s in symbols_of(part.value)} | turned
+    lane = [
+        *_taken(places, read),
+        "double missed = misses[lane];",
+        *_statements(program, printer),
+        *(f"near[{i}][lane] = {_near(joint)};" for i, joint in enumerate(kin.period_joints)),
+        *_results(kin, found, printer),
+        "misses[lane] = missed;",
+    ]
+    constant = _constants(kin, found, places)
+    inner = [
+        *([f"const {module}_machine *k = machine;"] if constant else []),
+        *constant,
+        *(line for part in found.parts for line in _let(part, printer)),
+        *block(_LOOP, lane),
+    ]
+    results = ", ".join(f"double (*restrict {word})[SOFTKIN_LANES]" for word in _RESULTS[found.name])
+    head = f"void {module}_{found.name}(const void *machine, {_GIVEN}, {results}, double *restrict misses)"
+    return function_of(_SUMMARIES[found.name], head, inner)
+
+
+_RESULTS = {ONE: ("axes", "near"), EVERY: ("statuses", "axes", "near")}
+"""The tables that are written, of each number all lanes: axes, and what each axis with turns is nearest to."""
+
+
+def rotation_lines() -> list[str]:
+    """Whether each lane has a rotation that is used as it is given; it adds to what misses."""
+    printer = _Lanes()
+    places = {r.name: f"given->rotation[{i}][lane]" for i, r in enumerate(ROTATION_ENTRIES)}
+    lane = [
+        *_taken(places, set(places)),
+        "double missed = misses[lane];",
+        *(_missing(condition, printer) for condition in surely_exact()),
+        "misses[lane] = missed;",
+    ]
+    head = f"static void find_inexact({_GIVEN}, double *restrict misses)"
+    return function_of("Lanes miss where the rotation is not exact.", head, block(_LOOP, lane))
+
+
+def _places(kin: Kinematics) -> dict[str, str]:
+    """What differs from lane to lane, and where it stands."""
+    position = {name: f"given->position[{i}][lane]" for i, name in enumerate(COORDINATE_NAMES)}
+    rotation = {r.name: f"given->rotation[{i}][lane]" for i, r in enumerate(ROTATION_ENTRIES)}
+    own = {f"sigma_{b.name}": f"given->signs[{i}][lane]" for i, b in enumerate(kin.branches)}
+    reference = {j.reference.name: f"given->reference[{i}][lane]" for i, j in enumerate(kin.mechanism.joints)}
+    return position | rotation | own | reference
+
+
+def _taken(places: dict[str, str], read: set[str]) -> list[str]:
+    """A variable of the lane for each number that is read, signs among them."""
+    own = [f"{spelled(name)} = {place}" for name, place in places.items() if name in read]
+    return [f"const double {', '.join(own)};"] if own else []
+
+
+def _constants(kin: Kinematics, found: InLanes, places: dict[str, str]) -> list[str]:
+    """The constants of the machine in variables: what is written to the lanes cannot change these."""
+    types = {s.name: type_of(s) for part in found.parts for s in symbols_of(part.value)}
+    types |= {s.name: type_of(s) for s in found.program.inputs}
+    types |= {f"mid_{joint.key}": "double" for joint in kin.period_joints}
+    types |= {f"single_{joint.key}": "bool" for joint in kin.period_joints}
+    computed = {part.name.name for part in found.parts}
+    lines = []
+    for name in sorted(types.keys() - places.keys() - computed):
+        value = f"k->{member(name)}"
+        lines.append(f"const double {spelled(name)} = {f'{value} ? 1.0 : 0.0' if types[name] == 'bool' else value};")
+    return lines
+
+
+def _near(joint: Joint) -> str:
+    """What the turn of an axis is nearest to: where one value is inside the limits, the middle of these."""
+    return f"{spelled(f'single_{joint.key}')} > 0.0 ? {spelled(f'mid_{joint.key}')} : {spelled(joint.reference.name)}"
+
+
+def _statements(program: Program, printer: C) -> Iterator[str]:
+    asked = set[sp.Basic]()
+    for statement in program.body:
+        if isinstance(statement, Let):
+            yield from _let(statement, printer)
+        elif isinstance(statement, Require):
+            new = [part for part in sp.And.make_args(statement.condition) if part not in asked]
+            asked.update(new)
+            if new:
+                yield from comment(statement.comment)
+            for part in sorted(new, key=sp.default_sort_key):
+                yield _missing(part, printer)
+
+
+def _missing(condition: sp.Basic, printer: C) -> str:
+    """A number, not a flag: it is as wide as all others in the loop."""
+    return f"missed += {printer.print(condition)} ? 0.0 : 1.0;"
+
+
+def _let(let: Let, printer: C) -> Sequence[str]:
+    value = without_brackets(let.value, printer.value(let.name, let.value))
+    kind = "bool" if type_of(let.name) == "bool" else "double"
+    return commented(f"const {kind} {spelled(let.name.name)} = {value};", let.comment)
+
+
+def _results(kin: Kinematics, found: InLanes, printer: C) -> Iterator[str]:
+    """What is written: of every slot its status and its axes."""
+    values = {o.name: o.value for o in found.program.outputs}
+    joints = kin.mechanism.joints
+    if found.name == ONE:
+        yield from (f"axes[{i}][lane] = {printer.print(values[j.axis.name])};" for i, j in enumerate(joints))
+        return
+    own = signs(kin)
+    for slot, choice in enumerate(choices(len(own))):
+        yield f"statuses[{slot}][lane] = {printer.print(values[suffixed(REFUSAL, own, choice)])};"
+        for place, joint in enumerate(joints, slot * len(joints)):
+            yield f"axes[{place}][lane] = {printer.print(values[suffixed(joint.axis.name, own, choice)])};"
+
+
+class _Lanes(C):
+    """Expressions without a branch: what a call would decide is computed."""
+
+    def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if isinstance(node, Root):
+            return super(C, self)._spell(node)
+        return super()._spell(node)
+
+    def call(self, key: str, arguments: Sequence[str]) -> str:
+        if key in _FUNCTIONS:
+            return f"{_FUNCTIONS[key]}({', '.join(arguments)})"
+        return super().call(key, arguments)

@@ -1,0 +1,94 @@
+"""The program for poses where nothing is singular: of each choice by amounts the first side, and where that is wrong.
+
+    length = select(radius > 1e-11, radius, 1)                 require(radius > 1e-11)
+    cos_c = select(radius > 1e-11, x/length, cos(free))    →   cos_c = x/radius
+
+The first side of a choice by amounts is the regular one. A choice by a flag of the machine stays. What refuses in the
+result is not known to refuse: the whole program has to be asked. So it serves where many poses are computed by the same
+instructions, of which a few are asked again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from derive.ir.constants import EDGE
+from derive.ir.passes import normalise, untold
+from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, ToReal
+from derive.ir.program import Let, Program, Require, Statement, Status
+from derive.ir.symbols import names_in
+
+_HALF_A_TURN = 180 + 2 * EDGE
+"""Degrees: on its turn an axis is not farther from the centre."""
+_PLAIN = (Root, Atan2, Select, ToReal, NearestPeriod, sp.Abs)
+
+
+def regular(program: Program, constants: Collection[str]) -> Program | None:
+    """The program; None where it has more than arithmetic, roots and angles. constants: names of the machine's own."""
+    if not all(isinstance(s, Let | Require) for s in program.body):
+        return None
+    sides = _FirstSides(frozenset(constants))
+    wanted = {s for o in program.outputs for s in names_in(o.value)}
+    wanted |= {s for r in program.requires() for s in names_in(r.condition)}
+    lets = {let.name: let for let in program.lets()}
+    found = _needed(lets, wanted, sides)
+    body: list[Statement] = []
+    for statement in untold(program).body:
+        body += found.get(statement.name, ()) if isinstance(statement, Let) else (statement,)
+    done = normalise(program.name, body, program.outputs)
+    return done if all(map(_is_plain, done.lets())) else None
+
+
+def _needed(
+    lets: dict[sp.Symbol, Let], wanted: set[sp.Symbol], sides: _FirstSides
+) -> dict[sp.Symbol, tuple[Statement, ...]]:
+    """What stands for each statement that something needs, where only first sides are computed."""
+    found: dict[sp.Symbol, tuple[Statement, ...]] = {}
+    pending = [lets[name] for name in wanted & lets.keys()]
+    while pending:
+        let = pending.pop()
+        if let.name in found:
+            continue
+        value, conditions = sides.of(let.value)
+        found[let.name] = (
+            *(Require(condition, Status.OK) for condition in conditions),
+            Let(let.name, value, let.note, let.turn_of),
+            *_on_its_turn(let.name, value),
+        )
+        read = names_in(value).union(*map(names_in, conditions))
+        pending += [lets[name] for name in read & lets.keys()]
+    return found
+
+
+def _on_its_turn(name: sp.Symbol, value: sp.Basic) -> tuple[Require, ...]:
+    """The condition that a value is a number, and was put on its turn."""
+    if not isinstance(value, NearestPeriod):
+        return ()
+    return (Require(sp.Le(sp.Abs(name - value.args[1]), _HALF_A_TURN), Status.OK),)
+
+
+def _is_plain(let: Let) -> bool:
+    """Whether a value has arithmetic, roots and angles alone."""
+    calls = let.value.atoms(sp.Function)
+    return all(isinstance(call, _PLAIN) for call in calls) and not let.value.atoms(NearestPeriod) - {let.value}
+
+
+@dataclass(frozen=True)
+class _FirstSides:
+    constants: frozenset[str]
+    _known: dict[sp.Basic, sp.Basic] = field(default_factory=dict)
+
+    def of(self, value: sp.Basic) -> tuple[sp.Basic, tuple[sp.Basic, ...]]:
+        """A value with first sides alone, and the conditions that this takes to hold."""
+        conditions: list[sp.Basic] = []
+        while choices := [c for c in value.atoms(Select) if not self._is_of_machine(c.args[0])]:
+            outermost = max(choices, key=lambda c: (sp.count_ops(c), str(c)))
+            conditions.append(outermost.args[0])
+            value = value.xreplace({outermost: outermost.args[1]})
+        return value, tuple(conditions)
+
+    def _is_of_machine(self, condition: sp.Basic) -> bool:
+        return all(name.name in self.constants for name in names_in(condition))

@@ -1,0 +1,93 @@
+"""Several poses at a time: what the lanes compute alone, and that a row is answered alike wherever it stands."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.native.build import SOURCES, STRICT, compiler
+from tests.native.machines import SOME, native
+
+CODE = """
+#include <stdio.h>
+#include "lanes.h"
+int main(void) {
+  double a, b;
+  while (scanf("%lf %lf", &a, &b) == 2) {
+    printf("%.17g %.17g %.17g\\n", softkin_lane_angle(a, b), softkin_lane_turn(a, b), softkin_on_turn(a, b));
+  }
+  return 0;
+}
+"""
+OPTIMIZED = ("-O3", "-fPIC")
+INFORMED = "-fopt-info-vec-optimized"
+LAST_DIGITS = 3 * 2.0**-52
+EDGES = (0.0, -0.0, 1.0, -1.0, math.sqrt(2.0) - 1.0, 1e-300, -1e-300, 1e9, -1e9, 5e-324)
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[float, ...]]:
+    """Two numbers, the angle that the lanes find for them, and the turns that lanes and single calls choose."""
+    folder = tmp_path_factory.mktemp("lanes")
+    (folder / "lanes.c").write_text(CODE)
+    own = [str(folder / "lanes.c"), str(SOURCES / "softkin.c"), f"-I{SOURCES}", "-o", str(folder / "lanes"), "-lm"]
+    subprocess.run([*compiler(), *STRICT, *OPTIMIZED, *own], check=True)
+    random = np.random.default_rng(1)
+    pairs = [(a, b) for a in EDGES for b in EDGES]
+    pairs += list(zip(*random.normal(0.0, 1.0, (2, 2000)), strict=True))
+    pairs += list(zip(*(random.choice([-1.0, 1.0], (2, 500)) * 10 ** random.uniform(-12, 9, (2, 500))), strict=True))
+    pairs += [(centre + 180.0 * k + e, centre) for centre in (0.0, 33.3, -2000.0) for k in range(-9, 10)
+              for e in (-1e-8, -1e-9, 0.0, 1e-9, 1e-8)]  # fmt: skip
+    given = "".join(f"{float(a)!r} {float(b)!r}\n" for a, b in pairs)
+    done = subprocess.run([str(folder / "lanes")], input=given, capture_output=True, text=True, check=True)
+    lines = [tuple(map(float, line.split())) for line in done.stdout.splitlines()]
+    return [(*pair, *line) for pair, line in zip(pairs, lines, strict=True)]
+
+
+def test_angles(answers: list[tuple[float, ...]]) -> None:
+    """In all octants, to the last digits; zeros have no sign."""
+    for y, x, angle, *_ in answers:
+        assert abs(angle - math.atan2(y + 0.0, x + 0.0)) <= LAST_DIGITS * max(abs(angle), 5e-324)
+
+
+def test_turns(answers: list[tuple[float, ...]]) -> None:
+    """Bit for bit those of a single call, on the edges of a turn, too."""
+    for *_, in_lanes, alone in answers:
+        assert in_lanes == alone
+
+
+@pytest.mark.parametrize("module", ["articulatedrobot_6dof", "scara4_zccoupled_type1", "p2c_type1", "delta_p3c_type3"])
+def test_no_branch(module: str, tmp_path: Path) -> None:
+    """The compiler takes several lanes in one instruction, in every loop over poses: a branch would hinder it."""
+    command = compiler()
+    version = subprocess.run([*command, "--version"], capture_output=True, text=True, check=True).stdout
+    if "Free Software Foundation" not in version:
+        return  # another compiler says it in other words
+    source = SOURCES / f"{module}_lanes.c"
+    done = subprocess.run(
+        [*command, *STRICT, *OPTIMIZED, INFORMED, "-c", str(source), "-o", str(tmp_path / "lanes.o")],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    places = [i for i, line in enumerate(source.read_text().splitlines(), 1) if "lane < SOFTKIN_LANES" in line]
+    assert places and all(f"{source.name}:{place}:" in done.stderr for place in places)
+
+
+@pytest.mark.parametrize("name", SOME)
+def test_rows_do_not_depend_on_each_other(name: str) -> None:
+    """One row, some rows, and the same rows among many: the same bytes."""
+    robot = native(name)
+    axes = np.random.default_rng(7).uniform(-150.0, 150.0, (41, len(robot.AXES)))
+    positions, rotations, configurations, _ = robot.forward_batch(axes)
+    whole = robot.inverse_batch(positions, rotations, configurations, axes)
+    every = None if robot._machine.is_searched else robot.inverse_all_batch(positions, rotations, axes)
+    for first, last in ((0, 1), (3, 4), (5, 12), (1, 18), (40, 41), (33, 41)):
+        part = slice(first, last)
+        own = robot.inverse_batch(positions[part], rotations[part], configurations[part], axes[part])
+        assert [v.tobytes() for v in own] == [v[part].tobytes() for v in whole]
+        if every is not None:
+            own = robot.inverse_all_batch(positions[part], rotations[part], axes[part])
+            assert [v.tobytes() for v in own] == [v[part].tobytes() for v in every]
