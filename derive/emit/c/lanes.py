@@ -96,8 +96,8 @@ def lanes_lines(kin: Kinematics, module: str, found: InLanes) -> list[str]:
         *(line for part in found.parts for line in _let(part, printer)),
         *block(_LOOP, lane),
     ]
-    results = ", ".join(f"double (*restrict {word})[SOFTKIN_LANES]" for word in _RESULTS[found.name])
-    head = f"void {module}_{found.name}(const void *machine, {_GIVEN}, {results}, double *restrict misses)"
+    results = ", ".join(f"double (*SOFTKIN_RESTRICT {word})[SOFTKIN_LANES]" for word in _RESULTS[found.name])
+    head = f"void {module}_{found.name}(const void *machine, {_GIVEN}, {results}, double *SOFTKIN_RESTRICT misses)"
     return function_of(_SUMMARIES[found.name], head, inner)
 
 
@@ -115,7 +115,7 @@ def rotation_lines() -> list[str]:
         *(_missing(condition, printer) for condition in surely_exact()),
         "misses[lane] = missed;",
     ]
-    head = f"static void find_inexact({_GIVEN}, double *restrict misses)"
+    head = f"static void find_inexact({_GIVEN}, double *SOFTKIN_RESTRICT misses)"
     return function_of("Lanes miss where the rotation is not exact.", head, block(_LOOP, lane))
 
 
@@ -141,11 +141,11 @@ def _constants(kin: Kinematics, found: InLanes, places: dict[str, str]) -> list[
     types |= {f"mid_{joint.key}": "double" for joint in kin.period_joints}
     types |= {f"single_{joint.key}": "bool" for joint in kin.period_joints}
     computed = {part.name.name for part in found.parts}
-    lines = []
+    own = []
     for name in sorted(types.keys() - places.keys() - computed):
         value = f"k->{member(name)}"
-        lines.append(f"const double {spelled(name)} = {f'{value} ? 1.0 : 0.0' if types[name] == 'bool' else value};")
-    return lines
+        own.append(f"{spelled(name)} = {f'{value} ? 1.0 : 0.0' if types[name] == 'bool' else value}")
+    return [f"const double {', '.join(own)};"] if own else []
 
 
 def _near(joint: Joint) -> str:

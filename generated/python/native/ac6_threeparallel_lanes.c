@@ -6,41 +6,21 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const ac6_threeparallel_machine *k = machine;
-  const double a2 = k->a2;
-  const double a2_minus_a3 = k->a2_minus_a3;
-  const double a2_plus_a3 = k->a2_plus_a3;
-  const double a2_squared_plus_a3_squared = k->a2_squared_plus_a3_squared;
-  const double a3 = k->a3;
-  const double d1 = k->d1;
-  const double d4 = k->d4;
-  const double d5 = k->d5;
-  const double d6 = k->d6;
-  const double machine_scale_squared_times_plane = k->machine_scale_squared_times_plane;
-  const double machine_scale_times_free_angle = k->machine_scale_times_free_angle;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a3 = k->mid_a3;
-  const double mid_a4 = k->mid_a4;
-  const double mid_a5 = k->mid_a5;
-  const double mid_a6 = k->mid_a6;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double offset_a4 = k->offset_a4;
-  const double offset_a5 = k->offset_a5;
-  const double offset_a6 = k->offset_a6;
-  const double quotient_in_cos_q3 = k->quotient_in_cos_q3;
-  const double quotient_in_sin_q3 = k->quotient_in_sin_q3;
-  const double rounding_q1 = k->rounding_q1;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double single_a4 = k->single_a4 ? 1.0 : 0.0;
-  const double single_a5 = k->single_a5 ? 1.0 : 0.0;
-  const double single_a6 = k->single_a6 ? 1.0 : 0.0;
-  const double size_q1_for_q3 = k->size_q1_for_q3;
+  const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3,
+      a2_squared_plus_a3_squared = k->a2_squared_plus_a3_squared, a3 = k->a3, d1 = k->d1, d4 = k->d4,
+      d5 = k->d5, d6 = k->d6, machine_scale_squared_times_plane = k->machine_scale_squared_times_plane,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, quotient_in_cos_q3 = k->quotient_in_cos_q3,
+      quotient_in_sin_q3 = k->quotient_in_sin_q3, rounding_q1 = k->rounding_q1,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
+      single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0,
+      size_q1_for_q3 = k->size_q1_for_q3;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r13 = given->rotation[2][lane],
@@ -153,42 +133,21 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const ac6_threeparallel_machine *k = machine;
-  const double a2 = k->a2;
-  const double a2_minus_a3 = k->a2_minus_a3;
-  const double a2_plus_a3 = k->a2_plus_a3;
-  const double a2_squared_plus_a3_squared = k->a2_squared_plus_a3_squared;
-  const double a3 = k->a3;
-  const double d1 = k->d1;
-  const double d4 = k->d4;
-  const double d5 = k->d5;
-  const double d6 = k->d6;
-  const double machine_scale_squared_times_plane = k->machine_scale_squared_times_plane;
-  const double machine_scale_times_free_angle = k->machine_scale_times_free_angle;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a3 = k->mid_a3;
-  const double mid_a4 = k->mid_a4;
-  const double mid_a5 = k->mid_a5;
-  const double mid_a6 = k->mid_a6;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double offset_a4 = k->offset_a4;
-  const double offset_a5 = k->offset_a5;
-  const double offset_a6 = k->offset_a6;
-  const double quotient_in_cos_q3 = k->quotient_in_cos_q3;
-  const double quotient_in_sin_q3 = k->quotient_in_sin_q3;
-  const double rounding_q1 = k->rounding_q1;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double single_a4 = k->single_a4 ? 1.0 : 0.0;
-  const double single_a5 = k->single_a5 ? 1.0 : 0.0;
-  const double single_a6 = k->single_a6 ? 1.0 : 0.0;
-  const double size_q1_for_q3 = k->size_q1_for_q3;
+  const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3,
+      a2_squared_plus_a3_squared = k->a2_squared_plus_a3_squared, a3 = k->a3, d1 = k->d1, d4 = k->d4,
+      d5 = k->d5, d6 = k->d6, machine_scale_squared_times_plane = k->machine_scale_squared_times_plane,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, quotient_in_cos_q3 = k->quotient_in_cos_q3,
+      quotient_in_sin_q3 = k->quotient_in_sin_q3, rounding_q1 = k->rounding_q1,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
+      single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0,
+      size_q1_for_q3 = k->size_q1_for_q3;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r13 = given->rotation[2][lane],

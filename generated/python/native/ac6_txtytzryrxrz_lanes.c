@@ -6,23 +6,14 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void ac6_txtytzryrxrz_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const ac6_txtytzryrxrz_machine *k = machine;
-  const double flange_x = k->flange_x;
-  const double flange_y = k->flange_y;
-  const double flange_z = k->flange_z;
-  const double mid_a4 = k->mid_a4;
-  const double mid_a5 = k->mid_a5;
-  const double mid_a6 = k->mid_a6;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double offset_a4 = k->offset_a4;
-  const double offset_a5 = k->offset_a5;
-  const double offset_a6 = k->offset_a6;
-  const double single_a4 = k->single_a4 ? 1.0 : 0.0;
-  const double single_a5 = k->single_a5 ? 1.0 : 0.0;
-  const double single_a6 = k->single_a6 ? 1.0 : 0.0;
+  const double flange_x = k->flange_x, flange_y = k->flange_y, flange_z = k->flange_z, mid_a4 = k->mid_a4,
+      mid_a5 = k->mid_a5, mid_a6 = k->mid_a6, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, offset_a4 = k->offset_a4, offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
+      single_a4 = k->single_a4 ? 1.0 : 0.0, single_a5 = k->single_a5 ? 1.0 : 0.0,
+      single_a6 = k->single_a6 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r13 = given->rotation[2][lane],
@@ -67,24 +58,14 @@ void ac6_txtytzryrxrz_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void ac6_txtytzryrxrz_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const ac6_txtytzryrxrz_machine *k = machine;
-  const double flange_x = k->flange_x;
-  const double flange_y = k->flange_y;
-  const double flange_z = k->flange_z;
-  const double mid_a4 = k->mid_a4;
-  const double mid_a5 = k->mid_a5;
-  const double mid_a6 = k->mid_a6;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double offset_a4 = k->offset_a4;
-  const double offset_a5 = k->offset_a5;
-  const double offset_a6 = k->offset_a6;
-  const double single_a4 = k->single_a4 ? 1.0 : 0.0;
-  const double single_a5 = k->single_a5 ? 1.0 : 0.0;
-  const double single_a6 = k->single_a6 ? 1.0 : 0.0;
+  const double flange_x = k->flange_x, flange_y = k->flange_y, flange_z = k->flange_z, mid_a4 = k->mid_a4,
+      mid_a5 = k->mid_a5, mid_a6 = k->mid_a6, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, offset_a4 = k->offset_a4, offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
+      single_a4 = k->single_a4 ? 1.0 : 0.0, single_a5 = k->single_a5 ? 1.0 : 0.0,
+      single_a6 = k->single_a6 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r13 = given->rotation[2][lane],

@@ -6,39 +6,20 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const articulatedrobot_6dof_machine *k = machine;
-  const double a1 = k->a1;
-  const double a2 = k->a2;
-  const double a2_minus_effective_q3 = k->a2_minus_effective_q3;
-  const double a2_plus_effective_q3 = k->a2_plus_effective_q3;
-  const double a3_by_effective_q3 = k->a3_by_effective_q3;
-  const double d1 = k->d1;
-  const double d3 = k->d3;
-  const double d4_by_effective_q3 = k->d4_by_effective_q3;
-  const double d6 = k->d6;
-  const double effective_q3 = k->effective_q3;
-  const double machine_scale_squared_times_plane = k->machine_scale_squared_times_plane;
-  const double machine_scale_times_free_angle = k->machine_scale_times_free_angle;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a3 = k->mid_a3;
-  const double mid_a4 = k->mid_a4;
-  const double mid_a5 = k->mid_a5;
-  const double mid_a6 = k->mid_a6;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double offset_a4 = k->offset_a4;
-  const double offset_a5 = k->offset_a5;
-  const double offset_a6 = k->offset_a6;
-  const double rounding_q1 = k->rounding_q1;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double single_a4 = k->single_a4 ? 1.0 : 0.0;
-  const double single_a5 = k->single_a5 ? 1.0 : 0.0;
-  const double single_a6 = k->single_a6 ? 1.0 : 0.0;
+  const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3 = k->a2_minus_effective_q3,
+      a2_plus_effective_q3 = k->a2_plus_effective_q3, a3_by_effective_q3 = k->a3_by_effective_q3, d1 = k->d1,
+      d3 = k->d3, d4_by_effective_q3 = k->d4_by_effective_q3, d6 = k->d6, effective_q3 = k->effective_q3,
+      machine_scale_squared_times_plane = k->machine_scale_squared_times_plane,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, rounding_q1 = k->rounding_q1,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
+      single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r13 = given->rotation[2][lane],
@@ -153,40 +134,20 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const articulatedrobot_6dof_machine *k = machine;
-  const double a1 = k->a1;
-  const double a2 = k->a2;
-  const double a2_minus_effective_q3 = k->a2_minus_effective_q3;
-  const double a2_plus_effective_q3 = k->a2_plus_effective_q3;
-  const double a3_by_effective_q3 = k->a3_by_effective_q3;
-  const double d1 = k->d1;
-  const double d3 = k->d3;
-  const double d4_by_effective_q3 = k->d4_by_effective_q3;
-  const double d6 = k->d6;
-  const double effective_q3 = k->effective_q3;
-  const double machine_scale_squared_times_plane = k->machine_scale_squared_times_plane;
-  const double machine_scale_times_free_angle = k->machine_scale_times_free_angle;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a3 = k->mid_a3;
-  const double mid_a4 = k->mid_a4;
-  const double mid_a5 = k->mid_a5;
-  const double mid_a6 = k->mid_a6;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double offset_a4 = k->offset_a4;
-  const double offset_a5 = k->offset_a5;
-  const double offset_a6 = k->offset_a6;
-  const double rounding_q1 = k->rounding_q1;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double single_a4 = k->single_a4 ? 1.0 : 0.0;
-  const double single_a5 = k->single_a5 ? 1.0 : 0.0;
-  const double single_a6 = k->single_a6 ? 1.0 : 0.0;
+  const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3 = k->a2_minus_effective_q3,
+      a2_plus_effective_q3 = k->a2_plus_effective_q3, a3_by_effective_q3 = k->a3_by_effective_q3, d1 = k->d1,
+      d3 = k->d3, d4_by_effective_q3 = k->d4_by_effective_q3, d6 = k->d6, effective_q3 = k->effective_q3,
+      machine_scale_squared_times_plane = k->machine_scale_squared_times_plane,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, rounding_q1 = k->rounding_q1,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
+      single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r13 = given->rotation[2][lane],

@@ -78,7 +78,7 @@ typedef struct {
 } asked;
 
 /* Lanes miss where the rotation is not exact. */
-static void find_inexact(const softkin_lanes *given, double *restrict misses) {
+static void find_inexact(const softkin_lanes *given, double *SOFTKIN_RESTRICT misses) {
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double r11 = given->rotation[0][lane], r12 = given->rotation[1][lane],
         r13 = given->rotation[2][lane], r21 = given->rotation[3][lane], r22 = given->rotation[4][lane],

@@ -6,22 +6,17 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void bipod_rotary_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const bipod_rotary_machine *k = machine;
-  const double assembly_sign_by_outer_arm_squared = k->assembly_sign_by_outer_arm_squared;
-  const double inner_arm = k->inner_arm;
-  const double inner_arm_minus_outer_arm = k->inner_arm_minus_outer_arm;
-  const double inner_arm_plus_outer_arm = k->inner_arm_plus_outer_arm;
-  const double inner_arm_times_shortest_link = k->inner_arm_times_shortest_link;
-  const double machine_scale_times_plane = k->machine_scale_times_plane;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double tcp_displacement_minus_displacement = k->tcp_displacement_minus_displacement;
+  const double assembly_sign_by_outer_arm_squared = k->assembly_sign_by_outer_arm_squared,
+      inner_arm = k->inner_arm, inner_arm_minus_outer_arm = k->inner_arm_minus_outer_arm,
+      inner_arm_plus_outer_arm = k->inner_arm_plus_outer_arm,
+      inner_arm_times_shortest_link = k->inner_arm_times_shortest_link,
+      machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
+      min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      tcp_displacement_minus_displacement = k->tcp_displacement_minus_displacement;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         sigma_knee_1 = given->signs[0][lane], sigma_knee_2 = given->signs[1][lane],
@@ -101,23 +96,17 @@ void bipod_rotary_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void bipod_rotary_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const bipod_rotary_machine *k = machine;
-  const double assembly_sign_by_outer_arm_squared = k->assembly_sign_by_outer_arm_squared;
-  const double inner_arm = k->inner_arm;
-  const double inner_arm_minus_outer_arm = k->inner_arm_minus_outer_arm;
-  const double inner_arm_plus_outer_arm = k->inner_arm_plus_outer_arm;
-  const double inner_arm_times_shortest_link = k->inner_arm_times_shortest_link;
-  const double machine_scale_times_plane = k->machine_scale_times_plane;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double tcp_displacement_minus_displacement = k->tcp_displacement_minus_displacement;
+  const double assembly_sign_by_outer_arm_squared = k->assembly_sign_by_outer_arm_squared,
+      inner_arm = k->inner_arm, inner_arm_minus_outer_arm = k->inner_arm_minus_outer_arm,
+      inner_arm_plus_outer_arm = k->inner_arm_plus_outer_arm,
+      inner_arm_times_shortest_link = k->inner_arm_times_shortest_link,
+      machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
+      min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      tcp_displacement_minus_displacement = k->tcp_displacement_minus_displacement;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane];

@@ -5,12 +5,11 @@
 #include "caxis.h"
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
-void caxis_regular(const void *machine, const softkin_lanes *given, double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+void caxis_regular(const void *machine, const softkin_lanes *given,
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const caxis_machine *k = machine;
-  const double mid_c = k->mid_c;
-  const double offset_c = k->offset_c;
-  const double single_c = k->single_c ? 1.0 : 0.0;
+  const double mid_c = k->mid_c, offset_c = k->offset_c, single_c = k->single_c ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double r11 = given->rotation[0][lane], r12 = given->rotation[1][lane],
         r21 = given->rotation[3][lane], r22 = given->rotation[4][lane], ref_c = given->reference[0][lane];

@@ -5,33 +5,22 @@
 #include "delta_c.h"
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
-void delta_c_regular(const void *machine, const softkin_lanes *given, double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+void delta_c_regular(const void *machine, const softkin_lanes *given,
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const delta_c_machine *k = machine;
-  const double arm_length = k->arm_length;
-  const double arm_length_times_shortest_link = k->arm_length_times_shortest_link;
-  const double base_radius = k->base_radius;
-  const double base_radius_minus_plate_radius = k->base_radius_minus_plate_radius;
-  const double half_arm_length = k->half_arm_length;
-  const double half_plate_radius_minus_half_base_radius = k->half_plate_radius_minus_half_base_radius;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a3 = k->mid_a3;
-  const double mid_a4 = k->mid_a4;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double offset_a4 = k->offset_a4;
-  const double plate_radius = k->plate_radius;
-  const double product_in_divisor_a2 = k->product_in_divisor_a2;
-  const double quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
-  const double rod_length = k->rod_length;
-  const double root_of_3 = k->root_of_3;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double single_a4 = k->single_a4 ? 1.0 : 0.0;
+  const double arm_length = k->arm_length,
+      arm_length_times_shortest_link = k->arm_length_times_shortest_link, base_radius = k->base_radius,
+      base_radius_minus_plate_radius = k->base_radius_minus_plate_radius,
+      half_arm_length = k->half_arm_length,
+      half_plate_radius_minus_half_base_radius = k->half_plate_radius_minus_half_base_radius,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4,
+      min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, offset_a4 = k->offset_a4, plate_radius = k->plate_radius,
+      product_in_divisor_a2 = k->product_in_divisor_a2,
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar, rod_length = k->rod_length,
+      root_of_3 = k->root_of_3, single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0;
   const double sum_in_span_2_y = 0.5*plate_radius*root_of_3 - 0.5*base_radius*root_of_3;
   const double arm_length_times_root_of_3_times_half_2 = 0.5*arm_length*root_of_3;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
@@ -178,33 +167,21 @@ void delta_c_regular(const void *machine, const softkin_lanes *given, double (*r
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void delta_c_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const delta_c_machine *k = machine;
-  const double arm_length = k->arm_length;
-  const double arm_length_times_shortest_link = k->arm_length_times_shortest_link;
-  const double base_radius = k->base_radius;
-  const double base_radius_minus_plate_radius = k->base_radius_minus_plate_radius;
-  const double half_arm_length = k->half_arm_length;
-  const double half_plate_radius_minus_half_base_radius = k->half_plate_radius_minus_half_base_radius;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a3 = k->mid_a3;
-  const double mid_a4 = k->mid_a4;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double offset_a4 = k->offset_a4;
-  const double plate_radius = k->plate_radius;
-  const double product_in_divisor_a2 = k->product_in_divisor_a2;
-  const double quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
-  const double rod_length = k->rod_length;
-  const double root_of_3 = k->root_of_3;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double single_a4 = k->single_a4 ? 1.0 : 0.0;
+  const double arm_length = k->arm_length,
+      arm_length_times_shortest_link = k->arm_length_times_shortest_link, base_radius = k->base_radius,
+      base_radius_minus_plate_radius = k->base_radius_minus_plate_radius,
+      half_arm_length = k->half_arm_length,
+      half_plate_radius_minus_half_base_radius = k->half_plate_radius_minus_half_base_radius,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4,
+      min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, offset_a4 = k->offset_a4, plate_radius = k->plate_radius,
+      product_in_divisor_a2 = k->product_in_divisor_a2,
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar, rod_length = k->rod_length,
+      root_of_3 = k->root_of_3, single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0;
   const double sum_in_span_2_y = 0.5*plate_radius*root_of_3 - 0.5*base_radius*root_of_3;
   const double arm_length_times_root_of_3_times_half_2 = 0.5*arm_length*root_of_3;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {

@@ -6,49 +6,34 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void delta_p3c_type3_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const delta_p3c_type3_machine *k = machine;
-  const double base_radius_1 = k->base_radius_1;
-  const double base_radius_2 = k->base_radius_2;
-  const double base_radius_3 = k->base_radius_3;
-  const double cos_azimuth_1 = k->cos_azimuth_1;
-  const double cos_azimuth_1_times_inner_arm_1 = k->cos_azimuth_1_times_inner_arm_1;
-  const double cos_azimuth_1_times_tcp_radius_1 = k->cos_azimuth_1_times_tcp_radius_1;
-  const double cos_azimuth_2 = k->cos_azimuth_2;
-  const double cos_azimuth_2_times_inner_arm_2 = k->cos_azimuth_2_times_inner_arm_2;
-  const double cos_azimuth_2_times_tcp_radius_2 = k->cos_azimuth_2_times_tcp_radius_2;
-  const double cos_azimuth_3 = k->cos_azimuth_3;
-  const double cos_azimuth_3_times_inner_arm_3 = k->cos_azimuth_3_times_inner_arm_3;
-  const double cos_azimuth_3_times_tcp_radius_3 = k->cos_azimuth_3_times_tcp_radius_3;
-  const double inner_arm_1 = k->inner_arm_1;
-  const double inner_arm_1_times_shortest_link = k->inner_arm_1_times_shortest_link;
-  const double inner_arm_1_times_sin_azimuth_1 = k->inner_arm_1_times_sin_azimuth_1;
-  const double inner_arm_2 = k->inner_arm_2;
-  const double inner_arm_2_times_shortest_link = k->inner_arm_2_times_shortest_link;
-  const double inner_arm_2_times_sin_azimuth_2 = k->inner_arm_2_times_sin_azimuth_2;
-  const double inner_arm_3 = k->inner_arm_3;
-  const double inner_arm_3_times_shortest_link = k->inner_arm_3_times_shortest_link;
-  const double inner_arm_3_times_sin_azimuth_3 = k->inner_arm_3_times_sin_azimuth_3;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a3 = k->mid_a3;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double outer_arm_1 = k->outer_arm_1;
-  const double outer_arm_2 = k->outer_arm_2;
-  const double outer_arm_3 = k->outer_arm_3;
-  const double quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
-  const double sin_azimuth_1 = k->sin_azimuth_1;
-  const double sin_azimuth_1_times_tcp_radius_1 = k->sin_azimuth_1_times_tcp_radius_1;
-  const double sin_azimuth_2 = k->sin_azimuth_2;
-  const double sin_azimuth_2_times_tcp_radius_2 = k->sin_azimuth_2_times_tcp_radius_2;
-  const double sin_azimuth_3 = k->sin_azimuth_3;
-  const double sin_azimuth_3_times_tcp_radius_3 = k->sin_azimuth_3_times_tcp_radius_3;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a3 = k->single_a3 ? 1.0 : 0.0;
+  const double base_radius_1 = k->base_radius_1, base_radius_2 = k->base_radius_2,
+      base_radius_3 = k->base_radius_3, cos_azimuth_1 = k->cos_azimuth_1,
+      cos_azimuth_1_times_inner_arm_1 = k->cos_azimuth_1_times_inner_arm_1,
+      cos_azimuth_1_times_tcp_radius_1 = k->cos_azimuth_1_times_tcp_radius_1,
+      cos_azimuth_2 = k->cos_azimuth_2, cos_azimuth_2_times_inner_arm_2 = k->cos_azimuth_2_times_inner_arm_2,
+      cos_azimuth_2_times_tcp_radius_2 = k->cos_azimuth_2_times_tcp_radius_2,
+      cos_azimuth_3 = k->cos_azimuth_3, cos_azimuth_3_times_inner_arm_3 = k->cos_azimuth_3_times_inner_arm_3,
+      cos_azimuth_3_times_tcp_radius_3 = k->cos_azimuth_3_times_tcp_radius_3, inner_arm_1 = k->inner_arm_1,
+      inner_arm_1_times_shortest_link = k->inner_arm_1_times_shortest_link,
+      inner_arm_1_times_sin_azimuth_1 = k->inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k->inner_arm_2,
+      inner_arm_2_times_shortest_link = k->inner_arm_2_times_shortest_link,
+      inner_arm_2_times_sin_azimuth_2 = k->inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k->inner_arm_3,
+      inner_arm_3_times_shortest_link = k->inner_arm_3_times_shortest_link,
+      inner_arm_3_times_sin_azimuth_3 = k->inner_arm_3_times_sin_azimuth_3, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, min_type2_margin = k->min_type2_margin,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
+      outer_arm_1 = k->outer_arm_1, outer_arm_2 = k->outer_arm_2, outer_arm_3 = k->outer_arm_3,
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar, sin_azimuth_1 = k->sin_azimuth_1,
+      sin_azimuth_1_times_tcp_radius_1 = k->sin_azimuth_1_times_tcp_radius_1,
+      sin_azimuth_2 = k->sin_azimuth_2,
+      sin_azimuth_2_times_tcp_radius_2 = k->sin_azimuth_2_times_tcp_radius_2,
+      sin_azimuth_3 = k->sin_azimuth_3,
+      sin_azimuth_3_times_tcp_radius_3 = k->sin_azimuth_3_times_tcp_radius_3,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0;
   const double sum_in_span_1_x = cos_azimuth_1_times_tcp_radius_1 - base_radius_1*cos_azimuth_1;
   const double sum_in_span_1_y = sin_azimuth_1_times_tcp_radius_1 - base_radius_1*sin_azimuth_1;
   const double sum_in_span_2_x = cos_azimuth_2_times_tcp_radius_2 - base_radius_2*cos_azimuth_2;
@@ -190,50 +175,34 @@ void delta_p3c_type3_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void delta_p3c_type3_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const delta_p3c_type3_machine *k = machine;
-  const double base_radius_1 = k->base_radius_1;
-  const double base_radius_2 = k->base_radius_2;
-  const double base_radius_3 = k->base_radius_3;
-  const double cos_azimuth_1 = k->cos_azimuth_1;
-  const double cos_azimuth_1_times_inner_arm_1 = k->cos_azimuth_1_times_inner_arm_1;
-  const double cos_azimuth_1_times_tcp_radius_1 = k->cos_azimuth_1_times_tcp_radius_1;
-  const double cos_azimuth_2 = k->cos_azimuth_2;
-  const double cos_azimuth_2_times_inner_arm_2 = k->cos_azimuth_2_times_inner_arm_2;
-  const double cos_azimuth_2_times_tcp_radius_2 = k->cos_azimuth_2_times_tcp_radius_2;
-  const double cos_azimuth_3 = k->cos_azimuth_3;
-  const double cos_azimuth_3_times_inner_arm_3 = k->cos_azimuth_3_times_inner_arm_3;
-  const double cos_azimuth_3_times_tcp_radius_3 = k->cos_azimuth_3_times_tcp_radius_3;
-  const double inner_arm_1 = k->inner_arm_1;
-  const double inner_arm_1_times_shortest_link = k->inner_arm_1_times_shortest_link;
-  const double inner_arm_1_times_sin_azimuth_1 = k->inner_arm_1_times_sin_azimuth_1;
-  const double inner_arm_2 = k->inner_arm_2;
-  const double inner_arm_2_times_shortest_link = k->inner_arm_2_times_shortest_link;
-  const double inner_arm_2_times_sin_azimuth_2 = k->inner_arm_2_times_sin_azimuth_2;
-  const double inner_arm_3 = k->inner_arm_3;
-  const double inner_arm_3_times_shortest_link = k->inner_arm_3_times_shortest_link;
-  const double inner_arm_3_times_sin_azimuth_3 = k->inner_arm_3_times_sin_azimuth_3;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a3 = k->mid_a3;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double outer_arm_1 = k->outer_arm_1;
-  const double outer_arm_2 = k->outer_arm_2;
-  const double outer_arm_3 = k->outer_arm_3;
-  const double quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
-  const double sin_azimuth_1 = k->sin_azimuth_1;
-  const double sin_azimuth_1_times_tcp_radius_1 = k->sin_azimuth_1_times_tcp_radius_1;
-  const double sin_azimuth_2 = k->sin_azimuth_2;
-  const double sin_azimuth_2_times_tcp_radius_2 = k->sin_azimuth_2_times_tcp_radius_2;
-  const double sin_azimuth_3 = k->sin_azimuth_3;
-  const double sin_azimuth_3_times_tcp_radius_3 = k->sin_azimuth_3_times_tcp_radius_3;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a3 = k->single_a3 ? 1.0 : 0.0;
+  const double base_radius_1 = k->base_radius_1, base_radius_2 = k->base_radius_2,
+      base_radius_3 = k->base_radius_3, cos_azimuth_1 = k->cos_azimuth_1,
+      cos_azimuth_1_times_inner_arm_1 = k->cos_azimuth_1_times_inner_arm_1,
+      cos_azimuth_1_times_tcp_radius_1 = k->cos_azimuth_1_times_tcp_radius_1,
+      cos_azimuth_2 = k->cos_azimuth_2, cos_azimuth_2_times_inner_arm_2 = k->cos_azimuth_2_times_inner_arm_2,
+      cos_azimuth_2_times_tcp_radius_2 = k->cos_azimuth_2_times_tcp_radius_2,
+      cos_azimuth_3 = k->cos_azimuth_3, cos_azimuth_3_times_inner_arm_3 = k->cos_azimuth_3_times_inner_arm_3,
+      cos_azimuth_3_times_tcp_radius_3 = k->cos_azimuth_3_times_tcp_radius_3, inner_arm_1 = k->inner_arm_1,
+      inner_arm_1_times_shortest_link = k->inner_arm_1_times_shortest_link,
+      inner_arm_1_times_sin_azimuth_1 = k->inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k->inner_arm_2,
+      inner_arm_2_times_shortest_link = k->inner_arm_2_times_shortest_link,
+      inner_arm_2_times_sin_azimuth_2 = k->inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k->inner_arm_3,
+      inner_arm_3_times_shortest_link = k->inner_arm_3_times_shortest_link,
+      inner_arm_3_times_sin_azimuth_3 = k->inner_arm_3_times_sin_azimuth_3, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, min_type2_margin = k->min_type2_margin,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
+      outer_arm_1 = k->outer_arm_1, outer_arm_2 = k->outer_arm_2, outer_arm_3 = k->outer_arm_3,
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar, sin_azimuth_1 = k->sin_azimuth_1,
+      sin_azimuth_1_times_tcp_radius_1 = k->sin_azimuth_1_times_tcp_radius_1,
+      sin_azimuth_2 = k->sin_azimuth_2,
+      sin_azimuth_2_times_tcp_radius_2 = k->sin_azimuth_2_times_tcp_radius_2,
+      sin_azimuth_3 = k->sin_azimuth_3,
+      sin_azimuth_3_times_tcp_radius_3 = k->sin_azimuth_3_times_tcp_radius_3,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0;
   const double sum_in_span_1_x = cos_azimuth_1_times_tcp_radius_1 - base_radius_1*cos_azimuth_1;
   const double sum_in_span_1_y = sin_azimuth_1_times_tcp_radius_1 - base_radius_1*sin_azimuth_1;
   const double sum_in_span_2_x = cos_azimuth_2_times_tcp_radius_2 - base_radius_2*cos_azimuth_2;

@@ -6,29 +6,22 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void dualscara_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const dualscara_machine *k = machine;
-  const double arm_length_1 = k->arm_length_1;
-  const double arm_length_1_minus_rod_length_1 = k->arm_length_1_minus_rod_length_1;
-  const double arm_length_1_plus_rod_length_1 = k->arm_length_1_plus_rod_length_1;
-  const double arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link;
-  const double arm_length_2 = k->arm_length_2;
-  const double arm_length_2_minus_rod_length_2 = k->arm_length_2_minus_rod_length_2;
-  const double arm_length_2_plus_rod_length_2 = k->arm_length_2_plus_rod_length_2;
-  const double arm_length_2_times_shortest_link = k->arm_length_2_times_shortest_link;
-  const double half_base_distance = k->half_base_distance;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a4 = k->mid_a4;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double offset_a4 = k->offset_a4;
-  const double quotient_in_type2_rods_aligned = k->quotient_in_type2_rods_aligned;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a4 = k->single_a4 ? 1.0 : 0.0;
+  const double arm_length_1 = k->arm_length_1,
+      arm_length_1_minus_rod_length_1 = k->arm_length_1_minus_rod_length_1,
+      arm_length_1_plus_rod_length_1 = k->arm_length_1_plus_rod_length_1,
+      arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link, arm_length_2 = k->arm_length_2,
+      arm_length_2_minus_rod_length_2 = k->arm_length_2_minus_rod_length_2,
+      arm_length_2_plus_rod_length_2 = k->arm_length_2_plus_rod_length_2,
+      arm_length_2_times_shortest_link = k->arm_length_2_times_shortest_link,
+      half_base_distance = k->half_base_distance, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a4 = k->mid_a4,
+      min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
+      quotient_in_type2_rods_aligned = k->quotient_in_type2_rods_aligned,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a4 = k->single_a4 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r21 = given->rotation[3][lane],
@@ -116,30 +109,22 @@ void dualscara_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void dualscara_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const dualscara_machine *k = machine;
-  const double arm_length_1 = k->arm_length_1;
-  const double arm_length_1_minus_rod_length_1 = k->arm_length_1_minus_rod_length_1;
-  const double arm_length_1_plus_rod_length_1 = k->arm_length_1_plus_rod_length_1;
-  const double arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link;
-  const double arm_length_2 = k->arm_length_2;
-  const double arm_length_2_minus_rod_length_2 = k->arm_length_2_minus_rod_length_2;
-  const double arm_length_2_plus_rod_length_2 = k->arm_length_2_plus_rod_length_2;
-  const double arm_length_2_times_shortest_link = k->arm_length_2_times_shortest_link;
-  const double half_base_distance = k->half_base_distance;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a4 = k->mid_a4;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double offset_a4 = k->offset_a4;
-  const double quotient_in_type2_rods_aligned = k->quotient_in_type2_rods_aligned;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a4 = k->single_a4 ? 1.0 : 0.0;
+  const double arm_length_1 = k->arm_length_1,
+      arm_length_1_minus_rod_length_1 = k->arm_length_1_minus_rod_length_1,
+      arm_length_1_plus_rod_length_1 = k->arm_length_1_plus_rod_length_1,
+      arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link, arm_length_2 = k->arm_length_2,
+      arm_length_2_minus_rod_length_2 = k->arm_length_2_minus_rod_length_2,
+      arm_length_2_plus_rod_length_2 = k->arm_length_2_plus_rod_length_2,
+      arm_length_2_times_shortest_link = k->arm_length_2_times_shortest_link,
+      half_base_distance = k->half_base_distance, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a4 = k->mid_a4,
+      min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
+      quotient_in_type2_rods_aligned = k->quotient_in_type2_rods_aligned,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a4 = k->single_a4 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r21 = given->rotation[3][lane],

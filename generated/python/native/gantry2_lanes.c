@@ -5,13 +5,13 @@
 #include "gantry2.h"
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
-void gantry2_regular(const void *machine, const softkin_lanes *given, double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+void gantry2_regular(const void *machine, const softkin_lanes *given,
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const gantry2_machine *k = machine;
-  const double machine_scale_times_plane = k->machine_scale_times_plane;
-  const double offset_x = k->offset_x;
-  const double offset_y = k->offset_y;
+  const double machine_scale_times_plane = k->machine_scale_times_plane, offset_x = k->offset_x,
+      offset_y = k->offset_y;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane];
     double missed = misses[lane];

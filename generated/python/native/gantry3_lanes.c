@@ -5,13 +5,12 @@
 #include "gantry3.h"
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
-void gantry3_regular(const void *machine, const softkin_lanes *given, double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+void gantry3_regular(const void *machine, const softkin_lanes *given,
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const gantry3_machine *k = machine;
-  const double offset_x = k->offset_x;
-  const double offset_y = k->offset_y;
-  const double offset_z = k->offset_z;
+  const double offset_x = k->offset_x, offset_y = k->offset_y, offset_z = k->offset_z;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane];
     double missed = misses[lane];

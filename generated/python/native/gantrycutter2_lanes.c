@@ -6,15 +6,12 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void gantrycutter2_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const gantrycutter2_machine *k = machine;
-  const double direction_r = k->direction_r;
-  const double machine_scale_times_plane = k->machine_scale_times_plane;
-  const double mid_r = k->mid_r;
-  const double offset_r = k->offset_r;
-  const double offset_x = k->offset_x;
-  const double offset_y = k->offset_y;
-  const double single_r = k->single_r ? 1.0 : 0.0;
+  const double direction_r = k->direction_r, machine_scale_times_plane = k->machine_scale_times_plane,
+      mid_r = k->mid_r, offset_r = k->offset_r, offset_x = k->offset_x, offset_y = k->offset_y,
+      single_r = k->single_r ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r21 = given->rotation[3][lane],

@@ -6,19 +6,12 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void headtable_bc_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const headtable_bc_machine *k = machine;
-  const double head_offset = k->head_offset;
-  const double mid_b = k->mid_b;
-  const double mid_c = k->mid_c;
-  const double offset_b = k->offset_b;
-  const double offset_c = k->offset_c;
-  const double offset_x = k->offset_x;
-  const double offset_y = k->offset_y;
-  const double offset_z = k->offset_z;
-  const double pivot_length = k->pivot_length;
-  const double single_b = k->single_b ? 1.0 : 0.0;
-  const double single_c = k->single_c ? 1.0 : 0.0;
+  const double head_offset = k->head_offset, mid_b = k->mid_b, mid_c = k->mid_c, offset_b = k->offset_b,
+      offset_c = k->offset_c, offset_x = k->offset_x, offset_y = k->offset_y, offset_z = k->offset_z,
+      pivot_length = k->pivot_length, single_b = k->single_b ? 1.0 : 0.0, single_c = k->single_c ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r13 = given->rotation[2][lane], r23 = given->rotation[5][lane], r33 = given->rotation[8][lane],
@@ -59,20 +52,12 @@ void headtable_bc_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void headtable_bc_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const headtable_bc_machine *k = machine;
-  const double head_offset = k->head_offset;
-  const double mid_b = k->mid_b;
-  const double mid_c = k->mid_c;
-  const double offset_b = k->offset_b;
-  const double offset_c = k->offset_c;
-  const double offset_x = k->offset_x;
-  const double offset_y = k->offset_y;
-  const double offset_z = k->offset_z;
-  const double pivot_length = k->pivot_length;
-  const double single_b = k->single_b ? 1.0 : 0.0;
-  const double single_c = k->single_c ? 1.0 : 0.0;
+  const double head_offset = k->head_offset, mid_b = k->mid_b, mid_c = k->mid_c, offset_b = k->offset_b,
+      offset_c = k->offset_c, offset_x = k->offset_x, offset_y = k->offset_y, offset_z = k->offset_z,
+      pivot_length = k->pivot_length, single_b = k->single_b ? 1.0 : 0.0, single_c = k->single_c ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r13 = given->rotation[2][lane], r23 = given->rotation[5][lane], r33 = given->rotation[8][lane],

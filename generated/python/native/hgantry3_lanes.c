@@ -6,12 +6,11 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void hgantry3_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const hgantry3_machine *k = machine;
-  const double offset_a = k->offset_a;
-  const double offset_b = k->offset_b;
-  const double offset_z = k->offset_z;
+  const double offset_a = k->offset_a, offset_b = k->offset_b, offset_z = k->offset_z;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane];
     double missed = misses[lane];

@@ -6,19 +6,13 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void kin_5axes_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const kin_5axes_machine *k = machine;
-  const double mid_a = k->mid_a;
-  const double mid_b = k->mid_b;
-  const double offset_a = k->offset_a;
-  const double offset_b = k->offset_b;
-  const double offset_x = k->offset_x;
-  const double offset_y = k->offset_y;
-  const double offset_z = k->offset_z;
-  const double single_a = k->single_a ? 1.0 : 0.0;
-  const double single_b = k->single_b ? 1.0 : 0.0;
-  const double tool_length = k->tool_length;
-  const double tool_side = k->tool_side;
+  const double mid_a = k->mid_a, mid_b = k->mid_b, offset_a = k->offset_a, offset_b = k->offset_b,
+      offset_x = k->offset_x, offset_y = k->offset_y, offset_z = k->offset_z,
+      single_a = k->single_a ? 1.0 : 0.0, single_b = k->single_b ? 1.0 : 0.0, tool_length = k->tool_length,
+      tool_side = k->tool_side;
   const double one_by_tool_side_2 = 1.0/tool_side;
   const double tool_length_times_tool_side_2 = tool_length*tool_side;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
@@ -60,20 +54,13 @@ void kin_5axes_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void kin_5axes_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const kin_5axes_machine *k = machine;
-  const double mid_a = k->mid_a;
-  const double mid_b = k->mid_b;
-  const double offset_a = k->offset_a;
-  const double offset_b = k->offset_b;
-  const double offset_x = k->offset_x;
-  const double offset_y = k->offset_y;
-  const double offset_z = k->offset_z;
-  const double single_a = k->single_a ? 1.0 : 0.0;
-  const double single_b = k->single_b ? 1.0 : 0.0;
-  const double tool_length = k->tool_length;
-  const double tool_side = k->tool_side;
+  const double mid_a = k->mid_a, mid_b = k->mid_b, offset_a = k->offset_a, offset_b = k->offset_b,
+      offset_x = k->offset_x, offset_y = k->offset_y, offset_z = k->offset_z,
+      single_a = k->single_a ? 1.0 : 0.0, single_b = k->single_b ? 1.0 : 0.0, tool_length = k->tool_length,
+      tool_side = k->tool_side;
   const double one_by_tool_side_2 = 1.0/tool_side;
   const double tool_length_times_tool_side_2 = tool_length*tool_side;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {

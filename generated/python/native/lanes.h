@@ -13,6 +13,11 @@
 #include "softkin.h"
 
 #define SOFTKIN_LANES 8
+#ifdef _MSC_VER
+#define SOFTKIN_RESTRICT __restrict
+#else
+#define SOFTKIN_RESTRICT restrict
+#endif
 #define SOFTKIN_LANE_PI 3.14159265358979323846
 #define SOFTKIN_LANE_OCTANT 0.41421356237309503 /* tan 22.5 degrees */
 

@@ -6,30 +6,24 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void mc_kin_type_12_xy_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const mc_kin_type_12_xy_machine *k = machine;
-  const double link_length_1 = k->link_length_1;
-  const double link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2;
-  const double link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2;
-  const double link_length_1_times_shortest_link = k->link_length_1_times_shortest_link;
-  const double link_length_2 = k->link_length_2;
-  const double link_length_3 = k->link_length_3;
-  const double link_length_3_by_link_length_2 = k->link_length_3_by_link_length_2;
-  const double link_length_4_plus_link_length_5 = k->link_length_4_plus_link_length_5;
-  const double link_length_5_minus_link_length_4 = k->link_length_5_minus_link_length_4;
-  const double link_length_5_times_shortest_link = k->link_length_5_times_shortest_link;
-  const double machine_scale_times_plane = k->machine_scale_times_plane;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double quotient_in_scaled_pivot_rear_y_2 = k->quotient_in_scaled_pivot_rear_y_2;
-  const double quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double sum_in_pivot_rear_x = k->sum_in_pivot_rear_x;
-  const double swap_xy = k->swap_xy ? 1.0 : 0.0;
+  const double link_length_1 = k->link_length_1,
+      link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
+      link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
+      link_length_1_times_shortest_link = k->link_length_1_times_shortest_link,
+      link_length_2 = k->link_length_2, link_length_3 = k->link_length_3,
+      link_length_3_by_link_length_2 = k->link_length_3_by_link_length_2,
+      link_length_4_plus_link_length_5 = k->link_length_4_plus_link_length_5,
+      link_length_5_minus_link_length_4 = k->link_length_5_minus_link_length_4,
+      link_length_5_times_shortest_link = k->link_length_5_times_shortest_link,
+      machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
+      min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      quotient_in_scaled_pivot_rear_y_2 = k->quotient_in_scaled_pivot_rear_y_2,
+      quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      sum_in_pivot_rear_x = k->sum_in_pivot_rear_x, swap_xy = k->swap_xy ? 1.0 : 0.0;
   const double quotient_in_along_a2_2 = link_length_1*(link_length_2 + link_length_3)/link_length_2;
   const double quotient_in_scaled_pivot_rear_y_3 = link_length_2*sum_in_pivot_rear_x/link_length_3;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
@@ -122,31 +116,24 @@ void mc_kin_type_12_xy_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const mc_kin_type_12_xy_machine *k = machine;
-  const double link_length_1 = k->link_length_1;
-  const double link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2;
-  const double link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2;
-  const double link_length_1_times_shortest_link = k->link_length_1_times_shortest_link;
-  const double link_length_2 = k->link_length_2;
-  const double link_length_3 = k->link_length_3;
-  const double link_length_3_by_link_length_2 = k->link_length_3_by_link_length_2;
-  const double link_length_4_plus_link_length_5 = k->link_length_4_plus_link_length_5;
-  const double link_length_5_minus_link_length_4 = k->link_length_5_minus_link_length_4;
-  const double link_length_5_times_shortest_link = k->link_length_5_times_shortest_link;
-  const double machine_scale_times_plane = k->machine_scale_times_plane;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double quotient_in_scaled_pivot_rear_y_2 = k->quotient_in_scaled_pivot_rear_y_2;
-  const double quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double sum_in_pivot_rear_x = k->sum_in_pivot_rear_x;
-  const double swap_xy = k->swap_xy ? 1.0 : 0.0;
+  const double link_length_1 = k->link_length_1,
+      link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
+      link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
+      link_length_1_times_shortest_link = k->link_length_1_times_shortest_link,
+      link_length_2 = k->link_length_2, link_length_3 = k->link_length_3,
+      link_length_3_by_link_length_2 = k->link_length_3_by_link_length_2,
+      link_length_4_plus_link_length_5 = k->link_length_4_plus_link_length_5,
+      link_length_5_minus_link_length_4 = k->link_length_5_minus_link_length_4,
+      link_length_5_times_shortest_link = k->link_length_5_times_shortest_link,
+      machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
+      min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      quotient_in_scaled_pivot_rear_y_2 = k->quotient_in_scaled_pivot_rear_y_2,
+      quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      sum_in_pivot_rear_x = k->sum_in_pivot_rear_x, swap_xy = k->swap_xy ? 1.0 : 0.0;
   const double quotient_in_along_a2_left = link_length_1*(link_length_2 + link_length_3)/link_length_2;
   const double quotient_in_scaled_pivot_rear_y_left_left = link_length_2*sum_in_pivot_rear_x/link_length_3;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {

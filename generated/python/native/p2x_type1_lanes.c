@@ -6,22 +6,18 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void p2x_type1_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const p2x_type1_machine *k = machine;
-  const double arm_length_1 = k->arm_length_1;
-  const double arm_length_1_squared_times_rounding = k->arm_length_1_squared_times_rounding;
-  const double arm_length_2 = k->arm_length_2;
-  const double arm_length_2_squared_times_rounding = k->arm_length_2_squared_times_rounding;
-  const double machine_scale_times_plane = k->machine_scale_times_plane;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned;
-  const double rail_y_1 = k->rail_y_1;
-  const double rail_y_2 = k->rail_y_2;
-  const double tcp_offset_1 = k->tcp_offset_1;
-  const double tcp_offset_2 = k->tcp_offset_2;
+  const double arm_length_1 = k->arm_length_1,
+      arm_length_1_squared_times_rounding = k->arm_length_1_squared_times_rounding,
+      arm_length_2 = k->arm_length_2,
+      arm_length_2_squared_times_rounding = k->arm_length_2_squared_times_rounding,
+      machine_scale_times_plane = k->machine_scale_times_plane, min_type2_margin = k->min_type2_margin,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned, rail_y_1 = k->rail_y_1,
+      rail_y_2 = k->rail_y_2, tcp_offset_1 = k->tcp_offset_1, tcp_offset_2 = k->tcp_offset_2;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         sigma_carriage_1 = given->signs[0][lane], sigma_carriage_2 = given->signs[1][lane];
@@ -59,23 +55,18 @@ void p2x_type1_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void p2x_type1_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const p2x_type1_machine *k = machine;
-  const double arm_length_1 = k->arm_length_1;
-  const double arm_length_1_squared_times_rounding = k->arm_length_1_squared_times_rounding;
-  const double arm_length_2 = k->arm_length_2;
-  const double arm_length_2_squared_times_rounding = k->arm_length_2_squared_times_rounding;
-  const double machine_scale_times_plane = k->machine_scale_times_plane;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned;
-  const double rail_y_1 = k->rail_y_1;
-  const double rail_y_2 = k->rail_y_2;
-  const double tcp_offset_1 = k->tcp_offset_1;
-  const double tcp_offset_2 = k->tcp_offset_2;
+  const double arm_length_1 = k->arm_length_1,
+      arm_length_1_squared_times_rounding = k->arm_length_1_squared_times_rounding,
+      arm_length_2 = k->arm_length_2,
+      arm_length_2_squared_times_rounding = k->arm_length_2_squared_times_rounding,
+      machine_scale_times_plane = k->machine_scale_times_plane, min_type2_margin = k->min_type2_margin,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned, rail_y_1 = k->rail_y_1,
+      rail_y_2 = k->rail_y_2, tcp_offset_1 = k->tcp_offset_1, tcp_offset_2 = k->tcp_offset_2;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane];
     double missed = misses[lane];

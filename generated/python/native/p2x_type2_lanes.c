@@ -6,17 +6,14 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void p2x_type2_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const p2x_type2_machine *k = machine;
-  const double arm_length = k->arm_length;
-  const double assembly_sign_by_arm_length = k->assembly_sign_by_arm_length;
-  const double machine_scale_times_plane = k->machine_scale_times_plane;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double shared_product = k->shared_product;
-  const double span_1_x = k->span_1_x;
+  const double arm_length = k->arm_length, assembly_sign_by_arm_length = k->assembly_sign_by_arm_length,
+      machine_scale_times_plane = k->machine_scale_times_plane, min_type2_margin = k->min_type2_margin,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, shared_product = k->shared_product,
+      span_1_x = k->span_1_x;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane];
     double missed = misses[lane];

@@ -5,13 +5,13 @@
 #include "p2y.h"
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
-void p2y_regular(const void *machine, const softkin_lanes *given, double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+void p2y_regular(const void *machine, const softkin_lanes *given,
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const p2y_machine *k = machine;
-  const double machine_scale_times_plane = k->machine_scale_times_plane;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
+  const double machine_scale_times_plane = k->machine_scale_times_plane, offset_a1 = k->offset_a1,
+      offset_a2 = k->offset_a2;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane];
     double missed = misses[lane];

@@ -6,29 +6,21 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void palletizer_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const palletizer_machine *k = machine;
-  const double base_height_plus_wrist_offset_z = k->base_height_plus_wrist_offset_z;
-  const double half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2;
-  const double link_length_1 = k->link_length_1;
-  const double link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2;
-  const double link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2;
-  const double link_length_2 = k->link_length_2;
-  const double machine_scale_times_free_angle = k->machine_scale_times_free_angle;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a3 = k->mid_a3;
-  const double mid_a4 = k->mid_a4;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double offset_a4 = k->offset_a4;
-  const double quotient_in_cos_swing_a3_from_a2 = k->quotient_in_cos_swing_a3_from_a2;
-  const double shoulder_offset_plus_wrist_offset_x = k->shoulder_offset_plus_wrist_offset_x;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double single_a4 = k->single_a4 ? 1.0 : 0.0;
+  const double base_height_plus_wrist_offset_z = k->base_height_plus_wrist_offset_z,
+      half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
+      link_length_1 = k->link_length_1,
+      link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
+      link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
+      link_length_2 = k->link_length_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
+      quotient_in_cos_swing_a3_from_a2 = k->quotient_in_cos_swing_a3_from_a2,
+      shoulder_offset_plus_wrist_offset_x = k->shoulder_offset_plus_wrist_offset_x,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r21 = given->rotation[3][lane],
@@ -103,30 +95,21 @@ void palletizer_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void palletizer_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const palletizer_machine *k = machine;
-  const double base_height_plus_wrist_offset_z = k->base_height_plus_wrist_offset_z;
-  const double half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2;
-  const double link_length_1 = k->link_length_1;
-  const double link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2;
-  const double link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2;
-  const double link_length_2 = k->link_length_2;
-  const double machine_scale_times_free_angle = k->machine_scale_times_free_angle;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a3 = k->mid_a3;
-  const double mid_a4 = k->mid_a4;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double offset_a4 = k->offset_a4;
-  const double quotient_in_cos_swing_a3_from_a2 = k->quotient_in_cos_swing_a3_from_a2;
-  const double shoulder_offset_plus_wrist_offset_x = k->shoulder_offset_plus_wrist_offset_x;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double single_a4 = k->single_a4 ? 1.0 : 0.0;
+  const double base_height_plus_wrist_offset_z = k->base_height_plus_wrist_offset_z,
+      half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
+      link_length_1 = k->link_length_1,
+      link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
+      link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
+      link_length_2 = k->link_length_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
+      quotient_in_cos_swing_a3_from_a2 = k->quotient_in_cos_swing_a3_from_a2,
+      shoulder_offset_plus_wrist_offset_x = k->shoulder_offset_plus_wrist_offset_x,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r21 = given->rotation[3][lane],

@@ -5,15 +5,13 @@
 #include "polar.h"
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
-void polar_regular(const void *machine, const softkin_lanes *given, double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+void polar_regular(const void *machine, const softkin_lanes *given,
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const polar_machine *k = machine;
-  const double machine_scale_times_free_angle = k->machine_scale_times_free_angle;
-  const double machine_scale_times_plane = k->machine_scale_times_plane;
-  const double mid_c = k->mid_c;
-  const double offset_c = k->offset_c;
-  const double offset_r = k->offset_r;
-  const double single_c = k->single_c ? 1.0 : 0.0;
+  const double machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      machine_scale_times_plane = k->machine_scale_times_plane, mid_c = k->mid_c, offset_c = k->offset_c,
+      offset_r = k->offset_r, single_c = k->single_c ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_c = given->reference[0][lane];

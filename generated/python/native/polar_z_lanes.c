@@ -5,15 +5,13 @@
 #include "polar_z.h"
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
-void polar_z_regular(const void *machine, const softkin_lanes *given, double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+void polar_z_regular(const void *machine, const softkin_lanes *given,
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const polar_z_machine *k = machine;
-  const double machine_scale_times_free_angle = k->machine_scale_times_free_angle;
-  const double mid_c = k->mid_c;
-  const double offset_c = k->offset_c;
-  const double offset_r = k->offset_r;
-  const double offset_z = k->offset_z;
-  const double single_c = k->single_c ? 1.0 : 0.0;
+  const double machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_c = k->mid_c,
+      offset_c = k->offset_c, offset_r = k->offset_r, offset_z = k->offset_z,
+      single_c = k->single_c ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_c = given->reference[0][lane];

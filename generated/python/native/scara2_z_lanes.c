@@ -6,22 +6,17 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void scara2_z_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const scara2_z_machine *k = machine;
-  const double arm_length_1 = k->arm_length_1;
-  const double arm_length_1_minus_arm_length_2 = k->arm_length_1_minus_arm_length_2;
-  const double arm_length_1_plus_arm_length_2 = k->arm_length_1_plus_arm_length_2;
-  const double arm_length_2 = k->arm_length_2;
-  const double half_by_arm_length_1_by_arm_length_2 = k->half_by_arm_length_1_by_arm_length_2;
-  const double machine_scale_times_free_angle = k->machine_scale_times_free_angle;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_z = k->offset_z;
-  const double quotient_in_cos_a2 = k->quotient_in_cos_a2;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
+  const double arm_length_1 = k->arm_length_1,
+      arm_length_1_minus_arm_length_2 = k->arm_length_1_minus_arm_length_2,
+      arm_length_1_plus_arm_length_2 = k->arm_length_1_plus_arm_length_2, arm_length_2 = k->arm_length_2,
+      half_by_arm_length_1_by_arm_length_2 = k->half_by_arm_length_1_by_arm_length_2,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_z = k->offset_z,
+      quotient_in_cos_a2 = k->quotient_in_cos_a2, single_a1 = k->single_a1 ? 1.0 : 0.0,
+      single_a2 = k->single_a2 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         sigma_elbow = given->signs[0][lane], ref_a1 = given->reference[0][lane],
@@ -62,23 +57,17 @@ void scara2_z_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void scara2_z_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const scara2_z_machine *k = machine;
-  const double arm_length_1 = k->arm_length_1;
-  const double arm_length_1_minus_arm_length_2 = k->arm_length_1_minus_arm_length_2;
-  const double arm_length_1_plus_arm_length_2 = k->arm_length_1_plus_arm_length_2;
-  const double arm_length_2 = k->arm_length_2;
-  const double half_by_arm_length_1_by_arm_length_2 = k->half_by_arm_length_1_by_arm_length_2;
-  const double machine_scale_times_free_angle = k->machine_scale_times_free_angle;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_z = k->offset_z;
-  const double quotient_in_cos_a2 = k->quotient_in_cos_a2;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
+  const double arm_length_1 = k->arm_length_1,
+      arm_length_1_minus_arm_length_2 = k->arm_length_1_minus_arm_length_2,
+      arm_length_1_plus_arm_length_2 = k->arm_length_1_plus_arm_length_2, arm_length_2 = k->arm_length_2,
+      half_by_arm_length_1_by_arm_length_2 = k->half_by_arm_length_1_by_arm_length_2,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_z = k->offset_z,
+      quotient_in_cos_a2 = k->quotient_in_cos_a2, single_a1 = k->single_a1 ? 1.0 : 0.0,
+      single_a2 = k->single_a2 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane];

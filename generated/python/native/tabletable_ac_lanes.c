@@ -6,20 +6,13 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void tabletable_ac_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const tabletable_ac_machine *k = machine;
-  const double mid_a = k->mid_a;
-  const double mid_c = k->mid_c;
-  const double offset_a = k->offset_a;
-  const double offset_c = k->offset_c;
-  const double offset_x = k->offset_x;
-  const double offset_y = k->offset_y;
-  const double offset_z = k->offset_z;
-  const double pivot_y = k->pivot_y;
-  const double pivot_z = k->pivot_z;
-  const double single_a = k->single_a ? 1.0 : 0.0;
-  const double single_c = k->single_c ? 1.0 : 0.0;
-  const double tool_length = k->tool_length;
+  const double mid_a = k->mid_a, mid_c = k->mid_c, offset_a = k->offset_a, offset_c = k->offset_c,
+      offset_x = k->offset_x, offset_y = k->offset_y, offset_z = k->offset_z, pivot_y = k->pivot_y,
+      pivot_z = k->pivot_z, single_a = k->single_a ? 1.0 : 0.0, single_c = k->single_c ? 1.0 : 0.0,
+      tool_length = k->tool_length;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r13 = given->rotation[2][lane], r23 = given->rotation[5][lane], r33 = given->rotation[8][lane],
@@ -62,21 +55,13 @@ void tabletable_ac_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void tabletable_ac_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const tabletable_ac_machine *k = machine;
-  const double mid_a = k->mid_a;
-  const double mid_c = k->mid_c;
-  const double offset_a = k->offset_a;
-  const double offset_c = k->offset_c;
-  const double offset_x = k->offset_x;
-  const double offset_y = k->offset_y;
-  const double offset_z = k->offset_z;
-  const double pivot_y = k->pivot_y;
-  const double pivot_z = k->pivot_z;
-  const double single_a = k->single_a ? 1.0 : 0.0;
-  const double single_c = k->single_c ? 1.0 : 0.0;
-  const double tool_length = k->tool_length;
+  const double mid_a = k->mid_a, mid_c = k->mid_c, offset_a = k->offset_a, offset_c = k->offset_c,
+      offset_x = k->offset_x, offset_y = k->offset_y, offset_z = k->offset_z, pivot_y = k->pivot_y,
+      pivot_z = k->pivot_z, single_a = k->single_a ? 1.0 : 0.0, single_c = k->single_c ? 1.0 : 0.0,
+      tool_length = k->tool_length;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r13 = given->rotation[2][lane], r23 = given->rotation[5][lane], r33 = given->rotation[8][lane],

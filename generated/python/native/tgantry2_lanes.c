@@ -6,12 +6,12 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void tgantry2_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const tgantry2_machine *k = machine;
-  const double machine_scale_times_plane = k->machine_scale_times_plane;
-  const double offset_a = k->offset_a;
-  const double offset_b = k->offset_b;
+  const double machine_scale_times_plane = k->machine_scale_times_plane, offset_a = k->offset_a,
+      offset_b = k->offset_b;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane];
     double missed = misses[lane];

@@ -6,34 +6,24 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void tripod_linear_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const tripod_linear_machine *k = machine;
-  const double arm_length = k->arm_length;
-  const double arm_length_squared = k->arm_length_squared;
-  const double arm_length_squared_times_rounding = k->arm_length_squared_times_rounding;
-  const double cos_rail_angle = k->cos_rail_angle;
-  const double cos_rail_angle_squared = k->cos_rail_angle_squared;
-  const double cos_rail_angle_times_sin_rail_angle = k->cos_rail_angle_times_sin_rail_angle;
-  const double half_by_arm_length = k->half_by_arm_length;
-  const double half_sin_rail_angle = k->half_sin_rail_angle;
-  const double inner_radius = k->inner_radius;
-  const double inner_radius_minus_outer_radius = k->inner_radius_minus_outer_radius;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double one_by_arm_length = k->one_by_arm_length;
-  const double one_minus_sin_rail_angle_squared = k->one_minus_sin_rail_angle_squared;
-  const double outer_radius = k->outer_radius;
-  const double product_in_radicand_a1 = k->product_in_radicand_a1;
-  const double quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
-  const double root_of_3 = k->root_of_3;
-  const double sin_max_angle_ball_joint = k->sin_max_angle_ball_joint;
-  const double sin_rail_angle = k->sin_rail_angle;
-  const double sin_rail_angle_squared_times_1_by_4 = k->sin_rail_angle_squared_times_1_by_4;
-  const double sum_in_pivot_2_x = k->sum_in_pivot_2_x;
-  const double sum_in_radicand_a2 = k->sum_in_radicand_a2;
+  const double arm_length = k->arm_length, arm_length_squared = k->arm_length_squared,
+      arm_length_squared_times_rounding = k->arm_length_squared_times_rounding,
+      cos_rail_angle = k->cos_rail_angle, cos_rail_angle_squared = k->cos_rail_angle_squared,
+      cos_rail_angle_times_sin_rail_angle = k->cos_rail_angle_times_sin_rail_angle,
+      half_by_arm_length = k->half_by_arm_length, half_sin_rail_angle = k->half_sin_rail_angle,
+      inner_radius = k->inner_radius, inner_radius_minus_outer_radius = k->inner_radius_minus_outer_radius,
+      min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, one_by_arm_length = k->one_by_arm_length,
+      one_minus_sin_rail_angle_squared = k->one_minus_sin_rail_angle_squared, outer_radius = k->outer_radius,
+      product_in_radicand_a1 = k->product_in_radicand_a1,
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar, root_of_3 = k->root_of_3,
+      sin_max_angle_ball_joint = k->sin_max_angle_ball_joint, sin_rail_angle = k->sin_rail_angle,
+      sin_rail_angle_squared_times_1_by_4 = k->sin_rail_angle_squared_times_1_by_4,
+      sum_in_pivot_2_x = k->sum_in_pivot_2_x, sum_in_radicand_a2 = k->sum_in_radicand_a2;
   const double sum_in_span_2_y = 0.5*outer_radius*root_of_3 - 0.5*inner_radius*root_of_3;
   const double product_in_radicand_a2_3 = root_of_3*cos_rail_angle*sin_rail_angle;
   const double product_in_radicand_a2_4 = 0.5*root_of_3*sin_rail_angle*sin_rail_angle;
@@ -118,35 +108,24 @@ void tripod_linear_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void tripod_linear_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const tripod_linear_machine *k = machine;
-  const double arm_length = k->arm_length;
-  const double arm_length_squared = k->arm_length_squared;
-  const double arm_length_squared_times_rounding = k->arm_length_squared_times_rounding;
-  const double cos_rail_angle = k->cos_rail_angle;
-  const double cos_rail_angle_squared = k->cos_rail_angle_squared;
-  const double cos_rail_angle_times_sin_rail_angle = k->cos_rail_angle_times_sin_rail_angle;
-  const double half_by_arm_length = k->half_by_arm_length;
-  const double half_sin_rail_angle = k->half_sin_rail_angle;
-  const double inner_radius = k->inner_radius;
-  const double inner_radius_minus_outer_radius = k->inner_radius_minus_outer_radius;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double one_by_arm_length = k->one_by_arm_length;
-  const double one_minus_sin_rail_angle_squared = k->one_minus_sin_rail_angle_squared;
-  const double outer_radius = k->outer_radius;
-  const double product_in_radicand_a1 = k->product_in_radicand_a1;
-  const double quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
-  const double root_of_3 = k->root_of_3;
-  const double sin_max_angle_ball_joint = k->sin_max_angle_ball_joint;
-  const double sin_rail_angle = k->sin_rail_angle;
-  const double sin_rail_angle_squared_times_1_by_4 = k->sin_rail_angle_squared_times_1_by_4;
-  const double sum_in_pivot_2_x = k->sum_in_pivot_2_x;
-  const double sum_in_radicand_a2 = k->sum_in_radicand_a2;
+  const double arm_length = k->arm_length, arm_length_squared = k->arm_length_squared,
+      arm_length_squared_times_rounding = k->arm_length_squared_times_rounding,
+      cos_rail_angle = k->cos_rail_angle, cos_rail_angle_squared = k->cos_rail_angle_squared,
+      cos_rail_angle_times_sin_rail_angle = k->cos_rail_angle_times_sin_rail_angle,
+      half_by_arm_length = k->half_by_arm_length, half_sin_rail_angle = k->half_sin_rail_angle,
+      inner_radius = k->inner_radius, inner_radius_minus_outer_radius = k->inner_radius_minus_outer_radius,
+      min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, one_by_arm_length = k->one_by_arm_length,
+      one_minus_sin_rail_angle_squared = k->one_minus_sin_rail_angle_squared, outer_radius = k->outer_radius,
+      product_in_radicand_a1 = k->product_in_radicand_a1,
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar, root_of_3 = k->root_of_3,
+      sin_max_angle_ball_joint = k->sin_max_angle_ball_joint, sin_rail_angle = k->sin_rail_angle,
+      sin_rail_angle_squared_times_1_by_4 = k->sin_rail_angle_squared_times_1_by_4,
+      sum_in_pivot_2_x = k->sum_in_pivot_2_x, sum_in_radicand_a2 = k->sum_in_radicand_a2;
   const double sum_in_span_2_y = 0.5*outer_radius*root_of_3 - 0.5*inner_radius*root_of_3;
   const double product_in_radicand_a2_3 = root_of_3*cos_rail_angle*sin_rail_angle;
   const double product_in_radicand_a2_4 = 0.5*root_of_3*sin_rail_angle*sin_rail_angle;

@@ -6,22 +6,16 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void tripod_p3z_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const tripod_p3z_machine *k = machine;
-  const double arm_length_squared = k->arm_length_squared;
-  const double arm_length_squared_times_rounding = k->arm_length_squared_times_rounding;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double pivot_1_x = k->pivot_1_x;
-  const double pivot_1_y = k->pivot_1_y;
-  const double pivot_2_x = k->pivot_2_x;
-  const double pivot_2_y = k->pivot_2_y;
-  const double pivot_3_x = k->pivot_3_x;
-  const double pivot_3_y = k->pivot_3_y;
-  const double quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
+  const double arm_length_squared = k->arm_length_squared,
+      arm_length_squared_times_rounding = k->arm_length_squared_times_rounding,
+      min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, pivot_1_x = k->pivot_1_x, pivot_1_y = k->pivot_1_y, pivot_2_x = k->pivot_2_x,
+      pivot_2_y = k->pivot_2_y, pivot_3_x = k->pivot_3_x, pivot_3_y = k->pivot_3_y,
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         sigma_carriage_1 = given->signs[0][lane], sigma_carriage_2 = given->signs[1][lane],
@@ -77,23 +71,16 @@ void tripod_p3z_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void tripod_p3z_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const tripod_p3z_machine *k = machine;
-  const double arm_length_squared = k->arm_length_squared;
-  const double arm_length_squared_times_rounding = k->arm_length_squared_times_rounding;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double pivot_1_x = k->pivot_1_x;
-  const double pivot_1_y = k->pivot_1_y;
-  const double pivot_2_x = k->pivot_2_x;
-  const double pivot_2_y = k->pivot_2_y;
-  const double pivot_3_x = k->pivot_3_x;
-  const double pivot_3_y = k->pivot_3_y;
-  const double quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
+  const double arm_length_squared = k->arm_length_squared,
+      arm_length_squared_times_rounding = k->arm_length_squared_times_rounding,
+      min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, pivot_1_x = k->pivot_1_x, pivot_1_y = k->pivot_1_y, pivot_2_x = k->pivot_2_x,
+      pivot_2_y = k->pivot_2_y, pivot_3_x = k->pivot_3_x, pivot_3_y = k->pivot_3_y,
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane];
     double missed = misses[lane];

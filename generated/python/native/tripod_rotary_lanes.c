@@ -6,34 +6,22 @@
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
 void tripod_rotary_regular(const void *machine, const softkin_lanes *given,
-    double (*restrict axes)[SOFTKIN_LANES], double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const tripod_rotary_machine *k = machine;
-  const double arm_1_radius = k->arm_1_radius;
-  const double arm_length_1 = k->arm_length_1;
-  const double arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link;
-  const double arm_length_2 = k->arm_length_2;
-  const double fixed_length_1 = k->fixed_length_1;
-  const double fixed_length_1_minus_arm_1_radius = k->fixed_length_1_minus_arm_1_radius;
-  const double fixed_length_2 = k->fixed_length_2;
-  const double half_arm_length_1 = k->half_arm_length_1;
-  const double half_by_arm_length_2 = k->half_by_arm_length_2;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a3 = k->mid_a3;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double one_by_arm_length_2 = k->one_by_arm_length_2;
-  const double product_in_divisor_a2 = k->product_in_divisor_a2;
-  const double quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
-  const double root_of_3 = k->root_of_3;
-  const double sin_max_angle_ball_joint = k->sin_max_angle_ball_joint;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double sum_in_pivot_2_x = k->sum_in_pivot_2_x;
-  const double twice_arm_length_1 = k->twice_arm_length_1;
+  const double arm_1_radius = k->arm_1_radius, arm_length_1 = k->arm_length_1,
+      arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link, arm_length_2 = k->arm_length_2,
+      fixed_length_1 = k->fixed_length_1,
+      fixed_length_1_minus_arm_1_radius = k->fixed_length_1_minus_arm_1_radius,
+      fixed_length_2 = k->fixed_length_2, half_arm_length_1 = k->half_arm_length_1,
+      half_by_arm_length_2 = k->half_by_arm_length_2, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
+      mid_a3 = k->mid_a3, min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1,
+      offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, one_by_arm_length_2 = k->one_by_arm_length_2,
+      product_in_divisor_a2 = k->product_in_divisor_a2,
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar, root_of_3 = k->root_of_3,
+      sin_max_angle_ball_joint = k->sin_max_angle_ball_joint, single_a1 = k->single_a1 ? 1.0 : 0.0,
+      single_a2 = k->single_a2 ? 1.0 : 0.0, single_a3 = k->single_a3 ? 1.0 : 0.0,
+      sum_in_pivot_2_x = k->sum_in_pivot_2_x, twice_arm_length_1 = k->twice_arm_length_1;
   const double product_in_scaled_cosine_a1_2 = -2.0*arm_length_1*fixed_length_1_minus_arm_1_radius;
   const double sum_in_span_2_y = 0.5*arm_1_radius*root_of_3 - 0.5*fixed_length_1*root_of_3;
   const double arm_length_1_times_root_of_3_times_half_2 = 0.5*arm_length_1*root_of_3;
@@ -164,35 +152,22 @@ void tripod_rotary_regular(const void *machine, const softkin_lanes *given,
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const tripod_rotary_machine *k = machine;
-  const double arm_1_radius = k->arm_1_radius;
-  const double arm_length_1 = k->arm_length_1;
-  const double arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link;
-  const double arm_length_2 = k->arm_length_2;
-  const double fixed_length_1 = k->fixed_length_1;
-  const double fixed_length_1_minus_arm_1_radius = k->fixed_length_1_minus_arm_1_radius;
-  const double fixed_length_2 = k->fixed_length_2;
-  const double half_arm_length_1 = k->half_arm_length_1;
-  const double half_by_arm_length_2 = k->half_by_arm_length_2;
-  const double mid_a1 = k->mid_a1;
-  const double mid_a2 = k->mid_a2;
-  const double mid_a3 = k->mid_a3;
-  const double min_type2_margin = k->min_type2_margin;
-  const double offset_a1 = k->offset_a1;
-  const double offset_a2 = k->offset_a2;
-  const double offset_a3 = k->offset_a3;
-  const double one_by_arm_length_2 = k->one_by_arm_length_2;
-  const double product_in_divisor_a2 = k->product_in_divisor_a2;
-  const double quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
-  const double root_of_3 = k->root_of_3;
-  const double sin_max_angle_ball_joint = k->sin_max_angle_ball_joint;
-  const double single_a1 = k->single_a1 ? 1.0 : 0.0;
-  const double single_a2 = k->single_a2 ? 1.0 : 0.0;
-  const double single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double sum_in_pivot_2_x = k->sum_in_pivot_2_x;
-  const double twice_arm_length_1 = k->twice_arm_length_1;
+  const double arm_1_radius = k->arm_1_radius, arm_length_1 = k->arm_length_1,
+      arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link, arm_length_2 = k->arm_length_2,
+      fixed_length_1 = k->fixed_length_1,
+      fixed_length_1_minus_arm_1_radius = k->fixed_length_1_minus_arm_1_radius,
+      fixed_length_2 = k->fixed_length_2, half_arm_length_1 = k->half_arm_length_1,
+      half_by_arm_length_2 = k->half_by_arm_length_2, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
+      mid_a3 = k->mid_a3, min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1,
+      offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, one_by_arm_length_2 = k->one_by_arm_length_2,
+      product_in_divisor_a2 = k->product_in_divisor_a2,
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar, root_of_3 = k->root_of_3,
+      sin_max_angle_ball_joint = k->sin_max_angle_ball_joint, single_a1 = k->single_a1 ? 1.0 : 0.0,
+      single_a2 = k->single_a2 ? 1.0 : 0.0, single_a3 = k->single_a3 ? 1.0 : 0.0,
+      sum_in_pivot_2_x = k->sum_in_pivot_2_x, twice_arm_length_1 = k->twice_arm_length_1;
   const double product_in_scaled_cosine_a1_2 = -2.0*arm_length_1*fixed_length_1_minus_arm_1_radius;
   const double sum_in_span_2_y = 0.5*arm_1_radius*root_of_3 - 0.5*fixed_length_1*root_of_3;
   const double arm_length_1_times_root_of_3_times_half_2 = 0.5*arm_length_1*root_of_3;

@@ -5,16 +5,12 @@
 #include "wrist2.h"
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
-void wrist2_regular(const void *machine, const softkin_lanes *given, double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+void wrist2_regular(const void *machine, const softkin_lanes *given,
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const wrist2_machine *k = machine;
-  const double mid_a = k->mid_a;
-  const double mid_b = k->mid_b;
-  const double offset_a = k->offset_a;
-  const double offset_b = k->offset_b;
-  const double single_a = k->single_a ? 1.0 : 0.0;
-  const double single_b = k->single_b ? 1.0 : 0.0;
-  const double tool_side = k->tool_side;
+  const double mid_a = k->mid_a, mid_b = k->mid_b, offset_a = k->offset_a, offset_b = k->offset_b,
+      single_a = k->single_a ? 1.0 : 0.0, single_b = k->single_b ? 1.0 : 0.0, tool_side = k->tool_side;
   const double one_by_tool_side_2 = 1.0/tool_side;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double r13 = given->rotation[2][lane], r23 = given->rotation[5][lane],
@@ -44,16 +40,11 @@ void wrist2_regular(const void *machine, const softkin_lanes *given, double (*re
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void wrist2_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const wrist2_machine *k = machine;
-  const double mid_a = k->mid_a;
-  const double mid_b = k->mid_b;
-  const double offset_a = k->offset_a;
-  const double offset_b = k->offset_b;
-  const double single_a = k->single_a ? 1.0 : 0.0;
-  const double single_b = k->single_b ? 1.0 : 0.0;
-  const double tool_side = k->tool_side;
+  const double mid_a = k->mid_a, mid_b = k->mid_b, offset_a = k->offset_a, offset_b = k->offset_b,
+      single_a = k->single_a ? 1.0 : 0.0, single_b = k->single_b ? 1.0 : 0.0, tool_side = k->tool_side;
   const double one_by_tool_side_2 = 1.0/tool_side;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double r13 = given->rotation[2][lane], r23 = given->rotation[5][lane],

@@ -5,18 +5,13 @@
 #include "wrist3.h"
 
 /* The axes of each lane on its branch; where it misses anything, they mean nothing. */
-void wrist3_regular(const void *machine, const softkin_lanes *given, double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+void wrist3_regular(const void *machine, const softkin_lanes *given,
+    double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
+    double *SOFTKIN_RESTRICT misses) {
   const wrist3_machine *k = machine;
-  const double mid_a = k->mid_a;
-  const double mid_b = k->mid_b;
-  const double mid_c = k->mid_c;
-  const double offset_a = k->offset_a;
-  const double offset_b = k->offset_b;
-  const double offset_c = k->offset_c;
-  const double single_a = k->single_a ? 1.0 : 0.0;
-  const double single_b = k->single_b ? 1.0 : 0.0;
-  const double single_c = k->single_c ? 1.0 : 0.0;
+  const double mid_a = k->mid_a, mid_b = k->mid_b, mid_c = k->mid_c, offset_a = k->offset_a,
+      offset_b = k->offset_b, offset_c = k->offset_c, single_a = k->single_a ? 1.0 : 0.0,
+      single_b = k->single_b ? 1.0 : 0.0, single_c = k->single_c ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double r11 = given->rotation[0][lane], r12 = given->rotation[1][lane],
         r21 = given->rotation[3][lane], r22 = given->rotation[4][lane], r31 = given->rotation[6][lane],
@@ -50,18 +45,12 @@ void wrist3_regular(const void *machine, const softkin_lanes *given, double (*re
 
 /* The status and the axes of every slot of each lane; where it misses anything, they mean nothing. */
 void wrist3_regular_all(const void *machine, const softkin_lanes *given,
-    double (*restrict statuses)[SOFTKIN_LANES], double (*restrict axes)[SOFTKIN_LANES],
-    double (*restrict near)[SOFTKIN_LANES], double *restrict misses) {
+    double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
+    double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const wrist3_machine *k = machine;
-  const double mid_a = k->mid_a;
-  const double mid_b = k->mid_b;
-  const double mid_c = k->mid_c;
-  const double offset_a = k->offset_a;
-  const double offset_b = k->offset_b;
-  const double offset_c = k->offset_c;
-  const double single_a = k->single_a ? 1.0 : 0.0;
-  const double single_b = k->single_b ? 1.0 : 0.0;
-  const double single_c = k->single_c ? 1.0 : 0.0;
+  const double mid_a = k->mid_a, mid_b = k->mid_b, mid_c = k->mid_c, offset_a = k->offset_a,
+      offset_b = k->offset_b, offset_c = k->offset_c, single_a = k->single_a ? 1.0 : 0.0,
+      single_b = k->single_b ? 1.0 : 0.0, single_c = k->single_c ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double r11 = given->rotation[0][lane], r12 = given->rotation[1][lane],
         r21 = given->rotation[3][lane], r22 = given->rotation[4][lane], r31 = given->rotation[6][lane],

@@ -150,7 +150,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_DualScara"
-    KEY = "dualscara 7ce8d525d5d43aa8"
+    KEY = "dualscara 0b436b84ee059af7"
     AXES = (
         Axis(
             name="A1",

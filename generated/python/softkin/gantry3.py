@@ -62,7 +62,7 @@ class Gantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Gantry3"
-    KEY = "gantry3 fa9c4240c79259a4"
+    KEY = "gantry3 89684752a810a3fc"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),

@@ -65,7 +65,7 @@ class TGantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_TGantry3"
-    KEY = "tgantry3 b598c89776546049"
+    KEY = "tgantry3 dfea846cc8a159fe"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

@@ -142,7 +142,7 @@ class TripodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
-    KEY = "tripod_rotary 6fbdb47be3e9fb6f"
+    KEY = "tripod_rotary 26decb92a0ca6223"
     AXES = (
         Axis(
             name="A1",
