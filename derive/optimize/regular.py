@@ -11,7 +11,6 @@ instructions, of which a few are asked again.
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass, field
 
 import sympy as sp
 
@@ -30,11 +29,11 @@ def regular(program: Program, constants: Collection[str]) -> Program | None:
     """The program; None where it has more than arithmetic, roots and angles. constants: names of the machine's own."""
     if not all(isinstance(s, Let | Require) for s in program.body):
         return None
-    sides = _FirstSides(frozenset(constants))
+    own = frozenset(constants)
     wanted = {s for o in program.outputs for s in names_in(o.value)}
     wanted |= {s for r in program.requires() for s in names_in(r.condition)}
     lets = {let.name: let for let in program.lets()}
-    found = _needed(lets, wanted, sides)
+    found = _needed(lets, wanted, own)
     body: list[Statement] = []
     for statement in untold(program).body:
         body += found.get(statement.name, ()) if isinstance(statement, Let) else (statement,)
@@ -43,7 +42,7 @@ def regular(program: Program, constants: Collection[str]) -> Program | None:
 
 
 def _needed(
-    lets: dict[sp.Symbol, Let], wanted: set[sp.Symbol], sides: _FirstSides
+    lets: dict[sp.Symbol, Let], wanted: set[sp.Symbol], constants: frozenset[str]
 ) -> dict[sp.Symbol, tuple[Statement, ...]]:
     """What stands for each statement that something needs, where only first sides are computed."""
     found: dict[sp.Symbol, tuple[Statement, ...]] = {}
@@ -52,7 +51,7 @@ def _needed(
         let = pending.pop()
         if let.name in found:
             continue
-        value, conditions = sides.of(let.value)
+        value, conditions = _first_sides(let.value, constants)
         found[let.name] = (
             *(Require(condition, Status.OK) for condition in conditions),
             Let(let.name, value, let.note, let.turn_of),
@@ -76,19 +75,15 @@ def _is_plain(let: Let) -> bool:
     return all(isinstance(call, _PLAIN) for call in calls) and not let.value.atoms(NearestPeriod) - {let.value}
 
 
-@dataclass(frozen=True)
-class _FirstSides:
-    constants: frozenset[str]
-    _known: dict[sp.Basic, sp.Basic] = field(default_factory=dict)
+def _first_sides(value: sp.Basic, constants: frozenset[str]) -> tuple[sp.Basic, tuple[sp.Basic, ...]]:
+    """A value with first sides alone, and the conditions that this takes to hold."""
+    conditions: list[sp.Basic] = []
+    while choices := [c for c in value.atoms(Select) if not _is_of_machine(c.args[0], constants)]:
+        outermost = max(choices, key=lambda c: (sp.count_ops(c), str(c)))
+        conditions.append(outermost.args[0])
+        value = value.xreplace({outermost: outermost.args[1]})
+    return value, tuple(conditions)
 
-    def of(self, value: sp.Basic) -> tuple[sp.Basic, tuple[sp.Basic, ...]]:
-        """A value with first sides alone, and the conditions that this takes to hold."""
-        conditions: list[sp.Basic] = []
-        while choices := [c for c in value.atoms(Select) if not self._is_of_machine(c.args[0])]:
-            outermost = max(choices, key=lambda c: (sp.count_ops(c), str(c)))
-            conditions.append(outermost.args[0])
-            value = value.xreplace({outermost: outermost.args[1]})
-        return value, tuple(conditions)
 
-    def _is_of_machine(self, condition: sp.Basic) -> bool:
-        return all(name.name in self.constants for name in names_in(condition))
+def _is_of_machine(condition: sp.Basic, constants: frozenset[str]) -> bool:
+    return all(name.name in constants for name in names_in(condition))

@@ -36,6 +36,8 @@ _SUMMARIES = {
     ONE: "The axes of each lane on its branch; where it misses anything, they mean nothing.",
     EVERY: "The status and the axes of every slot of each lane; where it misses anything, they mean nothing.",
 }
+_RESULTS = {ONE: ("axes", "near"), EVERY: ("statuses", "axes", "near")}
+"""The tables that are written, of each number all lanes: axes, and what each axis with turns is nearest to."""
 _GIVEN = "const softkin_lanes *given"
 _LOOP = "for (int lane = 0; lane < SOFTKIN_LANES; lane += 1)"
 
@@ -75,6 +77,11 @@ def _lowered(kin: Kinematics, program: Program, name: str) -> InLanes:
     return InLanes(name, done, parts)
 
 
+def constants_of_lanes(kin: Kinematics) -> set[str]:
+    """The constants of the machine that these programs read."""
+    return {name for found in in_lanes(kin) for name in _types(kin, found)}
+
+
 def lanes_lines(kin: Kinematics, module: str, found: InLanes) -> list[str]:
     """The function of one of these programs."""
     printer, places = _Lanes(), _places(kin)
@@ -89,7 +96,7 @@ def lanes_lines(kin: Kinematics, module: str, found: InLanes) -> list[str]:
         *_results(kin, found, printer),
         "misses[lane] = missed;",
     ]
-    constant = _constants(kin, found, places)
+    constant = _constants(kin, found)
     inner = [
         *([f"const {module}_machine *k = machine;"] if constant else []),
         *constant,
@@ -99,10 +106,6 @@ def lanes_lines(kin: Kinematics, module: str, found: InLanes) -> list[str]:
     results = ", ".join(f"double (*SOFTKIN_RESTRICT {word})[SOFTKIN_LANES]" for word in _RESULTS[found.name])
     head = f"void {module}_{found.name}(const void *machine, {_GIVEN}, {results}, double *SOFTKIN_RESTRICT misses)"
     return function_of(_SUMMARIES[found.name], head, inner)
-
-
-_RESULTS = {ONE: ("axes", "near"), EVERY: ("statuses", "axes", "near")}
-"""The tables that are written, of each number all lanes: axes, and what each axis with turns is nearest to."""
 
 
 def rotation_lines() -> list[str]:
@@ -134,17 +137,22 @@ def _taken(places: dict[str, str], read: set[str]) -> list[str]:
     return [f"const double {', '.join(own)};"] if own else []
 
 
-def _constants(kin: Kinematics, found: InLanes, places: dict[str, str]) -> list[str]:
-    """The constants of the machine in variables: what is written to the lanes cannot change these."""
+def _types(kin: Kinematics, found: InLanes) -> dict[str, str]:
+    """The constants of the machine that a program reads, and the types of these."""
     types = {s.name: type_of(s) for part in found.parts for s in symbols_of(part.value)}
     types |= {s.name: type_of(s) for s in found.program.inputs}
     types |= {f"mid_{joint.key}": "double" for joint in kin.period_joints}
     types |= {f"single_{joint.key}": "bool" for joint in kin.period_joints}
-    computed = {part.name.name for part in found.parts}
+    given = _places(kin).keys() | {part.name.name for part in found.parts}
+    return {name: types[name] for name in sorted(types.keys() - given)}
+
+
+def _constants(kin: Kinematics, found: InLanes) -> list[str]:
+    """The constants of the machine in variables: what is written to the lanes cannot change these."""
     own = []
-    for name in sorted(types.keys() - places.keys() - computed):
+    for name, kind in _types(kin, found).items():
         value = f"k->{member(name)}"
-        own.append(f"{spelled(name)} = {f'{value} ? 1.0 : 0.0' if types[name] == 'bool' else value}")
+        own.append(f"{spelled(name)} = {f'{value} ? 1.0 : 0.0' if kind == 'bool' else value}")
     return [f"const double {', '.join(own)};"] if own else []
 
 

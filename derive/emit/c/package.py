@@ -13,6 +13,7 @@ from derive.emit.c.description import counts, in_words, inputs, tables
 from derive.emit.c.every_branch import MOST_SLOTS, constants_of_branches, every_branch_lines
 from derive.emit.c.every_branch import NAME as EVERY_BRANCH
 from derive.emit.c.functions import Function, arguments_of, functions, read_by, rotation_function
+from derive.emit.c.lanes import constants_of_lanes
 from derive.emit.c.layout import comment, harmless, laid_out, page
 from derive.emit.c.printer import C, list_of, member, number, text, type_of
 from derive.emit.c.program import (
@@ -161,7 +162,7 @@ def _known(kin: Kinematics, module: str) -> dict[str, Any]:
     """What the templates of header and source arrange."""
     found = functions(kin)
     read = {name for f in found for name in read_by(f.program) - f.given.keys()} | constants_read(kin)
-    read |= constants_of_branches(kin)
+    read |= constants_of_branches(kin) | constants_of_lanes(kin)
     made = setup(kin, module, read, inputs(kin))
     stored = {name: f"k->{member(name)}" for name in made.constants}
     of_programs = [lines for f in found for lines in _function(kin, f, f"{module}_machine", stored)]
