@@ -46,9 +46,13 @@ _LOOP = "for (int lane = 0; lane < SOFTKIN_LANES; lane += 1)"
 class InLanes:
     """A program for regular poses, of which an axis may be in any turn, and what it reads of constants alone."""
 
-    name: str
     program: Program
     parts: tuple[Let, ...]
+
+    @property
+    def name(self) -> str:
+        """The name of its function, behind that of the machine."""
+        return self.program.name
 
 
 @kept_by_identity(10)
@@ -63,18 +67,24 @@ def in_lanes(kin: Kinematics) -> tuple[InLanes, ...]:
     if found is None:
         return ()
     is_one = not kin.branches or 2 ** len(kin.branches) > MOST_SLOTS
-    return tuple(_lowered(kin, found, name) for name in ((ONE,) if is_one else (ONE, EVERY)))
-
-
-def _lowered(kin: Kinematics, program: Program, name: str) -> InLanes:
-    (done,), parts = lowered(
-        [replace(program, name=name)],
+    programs, parts = lowered(
+        [replace(found, name=name) for name in ((ONE,) if is_one else (ONE, EVERY))],
         constants(kin),
         modulo_turns=True,
         branches={EVERY: signs(kin)},
         known=known_constants(kin),
     )
-    return InLanes(name, done, parts)
+    return tuple(InLanes(program, _read_by(program, parts)) for program in programs)
+
+
+def _read_by(program: Program, parts: Sequence[Let]) -> tuple[Let, ...]:
+    """The parts that a program reads, by way of others, too."""
+    wanted, found = set(program.inputs), list[Let]()
+    for part in reversed(parts):
+        if part.name in wanted:
+            wanted |= symbols_of(part.value)
+            found.insert(0, part)
+    return tuple(found)
 
 
 def constants_of_lanes(kin: Kinematics) -> set[str]:

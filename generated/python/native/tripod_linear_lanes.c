@@ -44,20 +44,20 @@ void tripod_linear_regular(const void *machine, const softkin_lanes *given,
     missed += radicand_a1 >= -arm_length_squared_times_rounding ? 0.0 : 1.0;
     const double span_2_x = x - sum_in_pivot_2_x; /* rod 2: known part of its vector */
     const double span_2_y = sum_in_span_2_y + y;
-    const double sum_in_radicand_a2_2 = z_minus_cos_rail_angle_squared_times_z
+    const double sum_in_radicand_a2_3 = z_minus_cos_rail_angle_squared_times_z
         + span_2_x*cos_rail_angle_times_sin_rail_angle;
-    const double sum_in_radicand_a2_3 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4;
+    const double sum_in_radicand_a2_4 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4;
     /* quadratic equation for a2: rod 2 */
     const double radicand_a2 = arm_length_squared
-        + (-sum_in_radicand_a2_3 - product_in_radicand_a2_4*span_2_y)*span_2_x
-        + (product_in_radicand_a2_3*span_2_y - sum_in_radicand_a2_2)*z - span_2_y*span_2_y*sum_in_radicand_a2;
+        + (-sum_in_radicand_a2_4 - product_in_radicand_a2_4*span_2_y)*span_2_x
+        + (product_in_radicand_a2_3*span_2_y - sum_in_radicand_a2_3)*z - span_2_y*span_2_y*sum_in_radicand_a2;
     /* rod 2 cannot reach */
     missed += radicand_a2 >= -arm_length_squared_times_rounding ? 0.0 : 1.0;
     const double span_3_y = y - sum_in_span_2_y;
     /* quadratic equation for a3: rod 3 */
     const double radicand_a3 = arm_length_squared
-        + (product_in_radicand_a2_4*span_3_y - sum_in_radicand_a2_3)*span_2_x
-        + (-sum_in_radicand_a2_2 - product_in_radicand_a2_3*span_3_y)*z
+        + (product_in_radicand_a2_4*span_3_y - sum_in_radicand_a2_4)*span_2_x
+        + (-sum_in_radicand_a2_3 - product_in_radicand_a2_3*span_3_y)*z
         - span_3_y*span_3_y*sum_in_radicand_a2;
     /* rod 3 cannot reach */
     missed += radicand_a3 >= -arm_length_squared_times_rounding ? 0.0 : 1.0;
