@@ -95,15 +95,14 @@ class _Page:
         self._outline(pen, mark.points)
 
     def _write(self, text: Text) -> None:
-        wide, size = text_width(text.text, text.size, text.is_bold), text.size
-        left, base = text.at[0] - (0.0 if text.is_left else wide / 2), text.at[1] - MIDDLE * size
+        letters, size = _letters(text.text, text.size, text.is_bold), text.size
+        left, base = text.at[0] - (0.0 if text.is_left else letters.width / 2), text.at[1] - MIDDLE * size
         if text.has_ground:
-            right, low, high = left + wide + 1.0, base - 0.25 * size, base + 0.8 * size
+            right, low, high = left + letters.width + 1.0, base - 0.25 * size, base + 0.8 * size
             self._fill(((left - 1.0, low), (right, low), (right, high), (left - 1.0, high)), _GROUND)
-        letters, (aside, up) = _letters(text.text, text.size, text.is_bold)
-        image = np.empty((*letters.shape, 4), dtype=np.uint8)
-        image[:, :, :3], image[:, :, 3] = _bytes_of(text.colour), letters
-        self._renderer.draw_image(GraphicsContextBase(), round(left + aside), round(base) + up, image)
+        image = np.empty((*letters.covered.shape, 4), dtype=np.uint8)
+        image[:, :, :3], image[:, :, 3] = _bytes_of(text.colour), letters.covered
+        self._renderer.draw_image(GraphicsContextBase(), round(left + letters.aside), round(base) + letters.up, image)
 
     def _fill(self, corners: Sequence[Spot], share: float = 1.0) -> None:
         """Cover an area with paper."""
@@ -130,8 +129,8 @@ def _in_colours(pixels: Bytes, palette: Bytes) -> Image.Image:
     whole = np.ascontiguousarray(pixels).view(np.uint32)[:, :, 0]
     is_drawn = whole != whole[0, 0]
     found, places = np.unique(whole[is_drawn], return_inverse=True)
-    colours = found.view(np.uint8).reshape(-1, 4)[:, None, :3].astype(int)
-    nearest = np.argmin(np.sum((colours - palette.astype(int)) ** 2, axis=2), axis=1)
+    colours, known = (table[:, :3].astype(float) for table in (found.view(np.uint8).reshape(-1, 4), palette))
+    nearest = np.argmin(np.sum(known**2, axis=1) - 2.0 * colours @ known.T, axis=1)
     numbers = np.zeros(whole.shape, dtype=np.uint8)
     numbers[is_drawn] = nearest[places]
     picture = Image.fromarray(numbers, "P")
@@ -145,30 +144,34 @@ def _bytes_of(colour: str) -> tuple[int, int, int]:
     return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
 
 
-@cache
 def text_width(text: str, size: float, is_bold: bool = False) -> float:
     """The width of a text in pixels."""
-    return float(_set(text, size, is_bold).get_width_height()[0]) / _PART
+    return _letters(text, size, is_bold).width
+
+
+@dataclass(frozen=True)
+class _Letters:
+    """A text as pixels."""
+
+    width: float
+    covered: Bytes
+    """How much of each pixel it covers, in rows from below."""
+    aside: float
+    """Where the first column is, from the begin of its line; `up` is where the first row is."""
+    up: int
 
 
 @cache
-def _letters(text: str, size: float, is_bold: bool) -> tuple[Bytes, tuple[float, int]]:
-    """How much a text covers of each pixel, in rows from below, and where the first of them is, from the begin of its
-    line. Cached: machines share texts.
-    """
-    font = _set(text, size, is_bold)
-    font.draw_glyphs_to_bitmap(antialiased=True)
-    covered = np.array(font.get_image())[::-1]
-    top = math.ceil((font.get_width_height()[1] - font.get_descent()) / _PART)
-    return covered, (font.get_bitmap_offset()[0] / _PART, top - len(covered))
-
-
-def _set(text: str, size: float, is_bold: bool) -> FT2Font:
-    """The font with a text set in it."""
+def _letters(text: str, size: float, is_bold: bool) -> _Letters:
+    """A text as pixels. Cached: machines share texts."""
     font = _font(is_bold)
     font.set_size(size, _DOTS)
     font.set_text(text, 0.0, flags=LoadFlags.NO_HINTING)
-    return font
+    font.draw_glyphs_to_bitmap(antialiased=True)
+    width, height = font.get_width_height()
+    covered = np.array(font.get_image())[::-1]
+    top = math.ceil((height - font.get_descent()) / _PART)
+    return _Letters(width / _PART, covered, font.get_bitmap_offset()[0] / _PART, top - len(covered))
 
 
 @cache
