@@ -123,7 +123,8 @@ def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:
 
 def _check_expression(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol]) -> None:
     for name in names_in(value):
-        if bound.get(name.name) != name:
+        found = bound.get(name.name)
+        if found is not name and found != name:  # the same symbol, nearly always: SymPy compares slowly
             _refuse_name(program, value, bound)
     if strange := _strange_part(value):
         raise BrokenProgram(f"{program.name}: {strange}")

@@ -25,6 +25,8 @@ from derive.lowering.draft import Rewriting
 from derive.lowering.writing import is_condition
 
 _HALF = 180
+_NONE = sp.Integer(0)
+"""No shift: compared by identity, for nearly nothing is shifted."""
 
 
 class Mirrored(Rewriting):
@@ -95,31 +97,33 @@ class Assumed(Rewriting):
 
     def shift(self, value: Value) -> sp.Expr:
         """What has to be added to the assumed value."""
-        return value.sign * self._shifts.get(value.node, sp.Integer(0))
+        found = self._shifts.get(value.node)
+        return _NONE if found is None else value.sign * found
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
         """The value without its shift."""
         value, shift = self._apart(node, parts)
-        if shift != 0:
+        if shift is not _NONE and shift != 0:
             self._shifts[node] = shift
         return value
 
     def _apart(self, node: Node, parts: tuple[Value, ...]) -> tuple[Value, sp.Expr]:
         shifts = [self.shift(part) for part in node.parts]
+        is_shifted = any(shift is not _NONE for shift in shifts)
         if node.head is Select and node.parts[0].node is self.condition:
             return parts[1], shifts[1]
-        if node.head is Select and not any(shifts):
+        if node.head is Select and not is_shifted:
             sign = next((side.sign for side in parts[1:] if side.node.head != 0), 1)
             sides = (side if side.node.head == 0 else Value(side.node, sign * side.sign) for side in parts[1:])
             value = self.graph.apply(Select, (parts[0], *sides))
-            return Value(value.node, sign * value.sign), sp.Integer(0)
+            return Value(value.node, sign * value.sign), _NONE
         if node.head is Atan2 and node not in self._counted:
             sine, cosine = parts
             value = self.graph.apply(Atan2, (Value(sine.node, 1), Value(cosine.node, 1)))
-            away = _HALF * DEGREE if cosine.sign < 0 else sp.Integer(0)
+            away = _HALF * DEGREE if cosine.sign < 0 else _NONE
             return Value(value.node, value.sign * sine.sign * cosine.sign), away
-        if not any(shifts):
-            return super().rewritten(node, parts), sp.Integer(0)
+        if not is_shifted:
+            return super().rewritten(node, parts), _NONE
         if node.head is SUM:
             return super().rewritten(node, parts), sp.Add(*shifts)
         if node.head is PRODUCT and all(n.is_number or n.head == DEGREE or n in self._shifts for n in node.read):
@@ -130,7 +134,7 @@ class Assumed(Rewriting):
         whole = [
             p if s == 0 else self.graph.sum([p, _number(self.graph, s)]) for p, s in zip(parts, shifts, strict=True)
         ]
-        return super().rewritten(node, tuple(whole)), sp.Integer(0)
+        return super().rewritten(node, tuple(whole)), _NONE
 
 
 def _equals(candidates: Iterable[Node], assumed: Assumed) -> dict[Node, _Equal]:
