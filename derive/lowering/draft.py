@@ -160,7 +160,7 @@ def changed(draft: Draft, change: Callable[[Value], Value]) -> Draft:
     for node, named in draft.names.items():
         value = change(Value(node, 1))
         if not value.node.is_leaf and value.node not in names:
-            names[value.node] = replace(named, sign=named.sign * value.sign)
+            names[value.node] = named if value.sign > 0 else replace(named, sign=-named.sign)
     items = [_changed(item, change) for item in draft.items]
     return Draft(draft.program, items, tuple(map(change, draft.outputs)), names)
 
