@@ -190,6 +190,8 @@ class Rewriting:
         pending = [] if value.node in self._done else [value.node]
         while pending:
             node = pending[-1]
+            if node not in self._done and (known := self.known(node)) is not None:
+                self._done[node] = known
             missing = [] if node in self._done else [n for n in node.read if n not in self._done]
             pending += missing
             if not missing:
@@ -197,6 +199,10 @@ class Rewriting:
                 if node not in self._done:
                     self._done[node] = self.rewritten(node, tuple([self._read(p) for p in node.parts]))
         return self._read(value)
+
+    def known(self, node: Node) -> Value | None:
+        """What becomes of a node, where that is known without its parts."""
+        return None
 
     def _read(self, value: Value) -> Value:
         done = self._done[value.node]

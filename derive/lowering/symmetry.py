@@ -13,7 +13,7 @@ language that computes one side of a choice alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -58,9 +58,11 @@ class Symmetry(Rewriting):
         wanted = (node for node in always & {*named, *turned} if not is_condition(node))
         candidates = sorted(wanted, key=lambda node: (first[node], node.place))
         conditions = {node.parts[0].node for node in always if node.head is Select}
-        found = [_equals(candidates, Assumed(graph, c, counted)) for c in sorted(conditions, key=lambda n: n.place)]
+        always_so, deciding = Assumed(graph, None, counted), _deciding(candidates)
+        assumed = (Assumed(graph, c, counted, (always_so, deciding)) for c in sorted(conditions, key=lambda n: n.place))
+        found = [_equals(candidates, where) for where in assumed]
         found.sort(key=len)  # of several conditions, the one that gives most values
-        everywhere = _equals(candidates, Assumed(graph, None, counted))
+        everywhere = _equals(candidates, always_so)
         self._equals = {node: equal for part in (*found, everywhere) for node, equal in part.items()}
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
@@ -89,11 +91,28 @@ class _Equal:
 class Assumed(Rewriting):
     """Values where a condition holds; what has angles is a value and a shift, a number of half turns."""
 
-    def __init__(self, graph: Graph, condition: Node | None, counted: Iterable[Node]) -> None:
-        """counted: what takes the value of an angle, and may not be a turn more or less."""
+    def __init__(
+        self,
+        graph: Graph,
+        condition: Node | None,
+        counted: Iterable[Node],
+        elsewhere: tuple[Assumed, Mapping[Node, frozenset[Node]]] | None = None,
+    ) -> None:
+        """counted: what takes the value of an angle, and may not be a turn more or less; elsewhere: the values where
+        nothing is assumed, and by node the conditions of the choices in it.
+        """
         super().__init__(graph)
-        self.condition, self._counted = condition, frozenset(counted)
+        self.condition, self._counted, self._elsewhere = condition, frozenset(counted), elsewhere
         self._shifts: dict[Node, sp.Expr] = {}
+
+    def known(self, node: Node) -> Value | None:
+        """The value elsewhere of what the condition does not decide."""
+        if self._elsewhere is None or self.condition in self._elsewhere[1][node]:
+            return None
+        value, shift = self._elsewhere[0](Value(node, 1)), self._elsewhere[0].shift(Value(node, 1))
+        if shift is not _NONE:
+            self._shifts[node] = shift
+        return value
 
     def shift(self, value: Value) -> sp.Expr:
         """What has to be added to the assumed value."""
@@ -135,6 +154,15 @@ class Assumed(Rewriting):
             p if s == 0 else self.graph.sum([p, _number(self.graph, s)]) for p, s in zip(parts, shifts, strict=True)
         ]
         return super().rewritten(node, tuple(whole)), _NONE
+
+
+def _deciding(starts: Iterable[Node]) -> dict[Node, frozenset[Node]]:
+    """By everything that is read: the conditions of the choices in it."""
+    found: dict[Node, frozenset[Node]] = {}
+    for node in sorted(reached(starts), key=lambda n: n.place):
+        own = (node.parts[0].node,) if node.head is Select else ()
+        found[node] = frozenset(own).union(*(found[n] for n in node.read))
+    return found
 
 
 def _equals(candidates: Iterable[Node], assumed: Assumed) -> dict[Node, _Equal]:
