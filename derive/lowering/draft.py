@@ -47,7 +47,7 @@ class Effect:
     def changed(self, change: Callable[[Value], Value]) -> Effect:
         """The same with every value changed."""
         read, told = (tuple((e, change(v)) for e, v in pairs) for pairs in (self.read, self.told))
-        return replace(self, read=read, told=told)
+        return Effect(self.statement, read, told)
 
 
 @dataclass(frozen=True)
