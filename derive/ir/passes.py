@@ -178,9 +178,11 @@ def needed_for(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[S
 def depending_on(statements: Iterable[Statement], names: Collection[sp.Symbol]) -> dict[sp.Symbol, Let]:
     """The bindings whose values depend on names, by what they bind; bindings of these names are not among them."""
     found: dict[sp.Symbol, Let] = {}
+    depending = set(names)
     for s in statements:
-        if isinstance(s, Let) and s.name not in names and not s.value.free_symbols.isdisjoint((*found, *names)):
+        if isinstance(s, Let) and s.name not in names and not depending.isdisjoint(names_in(s.value)):
             found[s.name] = s
+            depending.add(s.name)
     return found
 
 

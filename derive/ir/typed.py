@@ -44,7 +44,9 @@ def check_statement(statement: Statement, known: Known) -> dict[sp.Symbol, Type]
 def _check_let(let: Let, known: Known) -> dict[sp.Symbol, Type]:
     found = type_of(let.value, known)
     bound = {let.name: found} if found in TURNING else {}
-    _check(let.value, found, type_of(let.name, bound))
+    wanted = type_of(let.name, bound)
+    if found is not wanted:
+        _check(let.value, found, wanted)
     return bound
 
 

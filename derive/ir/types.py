@@ -61,7 +61,7 @@ _NOTHING: Known = {}
 def type_of(value: sp.Basic, known: Known = _NOTHING) -> Type:
     """The type of an expression, from those of its parts. Raises `IllTypedError`."""
     names = names_in(value)
-    if names.isdisjoint(known):
+    if known.keys().isdisjoint(names):
         return _type_of(value, frozenset())
     return _type_of(value, frozenset((name, known[name]) for name in names if name in known))
 
