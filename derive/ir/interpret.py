@@ -147,7 +147,7 @@ def _constant(value: float | bool) -> Callable[[Mapping[str, Array]], Array]:
 
 def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array], NDArray[np.object_]]:
     """Outputs and statuses of a program for arrays of inputs; outputs are meaningful where the status is OK."""
-    known = {s.name: _as_declared(values[s.name], s) for s in program.inputs if s.name in values}
+    known = {**values, **{s.name: _as_declared(values[s.name], s) for s in program.inputs if s.name in values}}
     shape = _common_shape(v.shape if isinstance(v, np.ndarray) else np.shape(v) for v in values.values())
     status = np.full(shape, Status.OK, dtype=object)
     with np.errstate(all="ignore"):
